@@ -1,0 +1,52 @@
+"""How is bad input reported? One ValueError that names the field, the value and what is allowed."""
+
+import numpy as np
+
+
+def refuse(field, value, allowed):
+    """The one form of complaint in this package; always use as ``raise refuse(...)``."""
+    return ValueError(f"{field} = {value!r}: {allowed}")
+
+
+def number(field, value, low=-np.inf, high=np.inf, *, open_low=False):
+    """A finite real in [low, high] (or (low, high] with ``open_low``) as float."""
+    bounds = f"must be a finite number in {'(' if open_low else '['}{low:g}, {high:g}]"
+    if isinstance(value, (bool, str, bytes)) or value is None:
+        raise refuse(field, value, bounds)
+    try:
+        x = float(value)
+    except (TypeError, ValueError):
+        raise refuse(field, value, bounds) from None
+    if not np.isfinite(x) or x < low or x > high or (open_low and x == low):
+        raise refuse(field, value, bounds)
+    return x
+
+
+def array(field, value, shape):
+    """A finite float64 array of the given shape (-1: any length); always a fresh C-ordered copy."""
+    want = "(" + ", ".join("n" if s == -1 else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
+    try:
+        a = np.array(value, dtype=np.float64, order="C")
+    except (TypeError, ValueError):
+        raise refuse(field, value, f"must be real numbers of shape {want}") from None
+    if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
+        raise refuse(field, f"array of shape {a.shape}", f"must have shape {want}")
+    bad = np.argwhere(~np.isfinite(a))
+    if len(bad):
+        at = tuple(int(k) for k in bad[0])
+        raise refuse(f"{field}{list(at)}", float(a[at]), "must be finite")
+    return a
+
+
+def choice(field, value, options):
+    """One of ``options`` (a collection of names)."""
+    if not isinstance(value, str) or value not in options:
+        raise refuse(field, value, "must be one of " + ", ".join(repr(o) for o in options))
+    return value
+
+
+def integer(field, value, low, high):
+    """An int in [low, high]."""
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
+        raise refuse(field, value, f"must be an integer in [{low}, {high}]")
+    return int(value)

@@ -1,0 +1,64 @@
+"""How are kernels compiled and where is the machine code kept? The one place that knows numba's options and the cache folder.
+
+* Strict IEEE everywhere: ``fastmath`` would let a freshly compiled and a cached kernel give different trajectories.
+* No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch instead.
+* numba notices a change only in the file that *defines* a cached function; a changed callee or constant in another file would
+  silently run old machine code. So the cache folder's name is a hash of the whole package source: other source, other folder.
+"""
+
+import hashlib
+import os
+import tempfile
+from pathlib import Path
+
+import numba
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+def source_hash(root=_PACKAGE):
+    """A hash of every Python file of the package, names included (16 hex digits)."""
+    h = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        h.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    return h.hexdigest()[:16]
+
+
+def _writable(folder):
+    """Can files be made there? Asked by making one: access bits lie on read-only mounts and for root."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except OSError:
+        return False
+
+
+def cache_folder():
+    """Where compiled entry kernels are kept, or None (then they live in memory only).
+
+    ``$NUMBA_CACHE_DIR`` if set, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it ``snooker_env/<source hash>``.
+    """
+    home = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    folder = Path(home) / "snooker_env" / source_hash()
+    return folder if _writable(folder) else None
+
+
+CACHE_FOLDER = cache_folder()
+
+
+def kernel(function):
+    """Compile an inner kernel: called from other kernels, never cached by itself."""
+    return numba.njit(nogil=True, error_model="numpy")(function)
+
+
+def entry(function):
+    """Compile a kernel that Python calls: cached on disk under the package's source hash."""
+    if CACHE_FOLDER is None:
+        return kernel(function)
+    before = numba.config.CACHE_DIR  # pyright: ignore[reportAttributeAccessIssue]
+    numba.config.CACHE_DIR = str(CACHE_FOLDER)  # pyright: ignore[reportAttributeAccessIssue]
+    try:  # numba reads CACHE_DIR while it decorates, so the setting can be ours for just that moment
+        return numba.njit(nogil=True, error_model="numpy", cache=True)(function)
+    finally:
+        numba.config.CACHE_DIR = before  # pyright: ignore[reportAttributeAccessIssue]

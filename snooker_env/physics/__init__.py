@@ -1,0 +1,1 @@
+"""What happens to balls on a table? Pure kernels on float64 arrays; no Gymnasium, no rules, no objects inside kernels."""

@@ -1,0 +1,133 @@
+"""Which world is simulated? ``Physics``: every constant with its source, validated, and packed to one float64 vector for the kernels.
+
+Sources: [MJP14] Mathavan, Jackson & Parkin, Sports Eng. (2014); [MJP10] the same authors, Proc. IMechE C 224 (2010);
+[Marlow] The Physics of Pocket Billiards (1994), as fitted by Alciatore (TP A.14); [TP A.30, A.31] Alciatore, technical proofs.
+"""
+
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._check import choice, number, refuse
+
+MARLOW = (9.951e-3, 0.108, 1.088)
+"""Marlow's law of ball-ball friction, mu(s) = a + b exp(-c s), s the slip speed in m/s."""
+
+# Places in the packed vector. They are indices, not tunables: freezing them into a kernel is safe.
+(P_R, P_M, P_G, P_MU_S, P_MU_R, P_SPIN, P_E_B, P_MU_A, P_MU_B, P_MU_C, P_E_C, P_E_KNEE, P_E_SLOPE, P_MU_W, P_SIN) = range(15)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Physics:
+    """The constants and laws of one world (SI units). ``Physics()`` is the ``"paper"`` preset; see ``preset``.
+
+    Raises ``ValueError`` (field, value, what is allowed) on anything outside the ranges stated here.
+    """
+
+    R: float = 0.02625
+    """Ball radius [m], in (0, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3]."""
+    M: float = 0.1406
+    """Ball mass [kg], > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal."""
+    g: float = 9.81
+    """Gravity [m/s^2], > 0."""
+    mu_s: float = 0.21
+    """Sliding friction ball-cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245]."""
+    mu_r: float = 0.0127
+    """Rolling resistance, deceleration over g, in [0, 1] (measured 0.124 to 0.126 m/s^2)."""
+    spin_decel: float = 22.0
+    """Decay of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21]."""
+    e_b: float = 0.89
+    """Energetic restitution ball-ball, in [0, 1] [MJP14 2.4.2]."""
+    mu_bb: float | str | tuple[float, float, float] = 0.05
+    """Ball-ball friction: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) for mu(s) = a + b exp(-c s), s in m/s."""
+    e_c: float = 0.98
+    """Energetic restitution ball-cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s]."""
+    e_c_knee: float = 0.0
+    """Normal speed [m/s] above which the cushion's restitution falls, >= 0."""
+    e_c_slope: float = 0.0
+    """How fast it falls there [s/m], >= 0: e(v) = max(0, e_c - e_c_slope * max(0, v - e_c_knee))."""
+    mu_c: float = 0.14
+    """Sliding friction ball-cushion, in [0, 1] [MJP10]."""
+    sin_theta: float = 0.4
+    """Height of the nose above the ball's centre over R, in [0, 0.95]; nose height 7R/5 gives 0.4 [MJP10]."""
+    end_mass_ratio: float = 30.0
+    """Ball mass over the cue's effective end mass, for squirt, >= 0 [TP A.31]."""
+    max_offset: float = 0.5
+    """Tip offset over R beyond which the tip slips (miscue), in (0, 1) [TP A.30]."""
+
+    def __post_init__(self):
+        low_high = {
+            "R": (0, 1), "M": (0, np.inf), "g": (0, np.inf), "mu_s": (0, 1), "mu_r": (0, 1), "spin_decel": (0, np.inf),
+            "e_b": (0, 1), "e_c": (0, 1), "e_c_knee": (0, np.inf), "e_c_slope": (0, np.inf), "mu_c": (0, 1),
+            "sin_theta": (0, 0.95), "end_mass_ratio": (0, np.inf), "max_offset": (0, 0.999),
+        }  # fmt: skip
+        for field, (low, high) in low_high.items():
+            open_low = field in ("R", "M", "g", "max_offset")
+            object.__setattr__(self, field, number(f"physics.{field}", getattr(self, field), low, high, open_low=open_low))
+        object.__setattr__(self, "mu_bb", _mu_bb(self.mu_bb))
+
+    @classmethod
+    def preset(cls, name="paper", **fields):
+        """A named world, with any field replaced: ``Physics.preset("paper", mu_bb=0.06)``.
+
+        ``"paper"``: the constants of [MJP14] and [MJP10]. ``"match"``: measured snooker, that is e_b 0.94, Marlow's mu_bb(s) and a
+        cushion whose restitution falls with speed (fitted to Fig. 7a of [MJP10]: ``python -m benchmarks.fit_cushion``).
+        """
+        return cls._replaced(dict(PRESETS[choice("physics", name, PRESETS)]), fields)
+
+    @classmethod
+    def of(cls, physics=None):
+        """What users may pass as ``physics``: None (paper), a preset's name, a dict of overrides (its ``"preset"`` key picks
+        the base, else ``"paper"``), or a ``Physics``."""
+        if isinstance(physics, cls):
+            return physics
+        if physics is None or isinstance(physics, str):
+            return cls.preset("paper" if physics is None else physics)
+        if isinstance(physics, dict):
+            rest = dict(physics)
+            return cls.preset(rest.pop("preset", "paper"), **rest)
+        raise refuse("physics", physics, "must be None, a preset's name, a dict of overrides, or a Physics")
+
+    @classmethod
+    def _replaced(cls, base, fields):
+        known = [f.name for f in dataclasses.fields(cls)]
+        for field in fields:
+            choice("physics field", field, known)
+        return cls(**{**base, **fields})
+
+    @property
+    def friction_law(self):
+        """(a, b, c) of mu_bb(s) = a + b exp(-c s); b = 0 for a constant."""
+        if isinstance(self.mu_bb, str):
+            return MARLOW
+        return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
+
+    def pack(self):
+        """The constants as the kernels read them: float64, places ``P_*`` of this module."""
+        return np.array([
+            self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law,
+            self.e_c, self.e_c_knee, self.e_c_slope, self.mu_c, self.sin_theta,
+        ])  # fmt: skip
+
+
+def _mu_bb(value):
+    allowed = 'must be a number in [0, 1], "marlow", or (a, b, c) with a, b, c >= 0 and a + b <= 1'
+    if isinstance(value, str):
+        if value != "marlow":
+            raise refuse("physics.mu_bb", value, allowed)
+        return value
+    if isinstance(value, (tuple, list)):
+        if len(value) != 3:
+            raise refuse("physics.mu_bb", value, allowed)
+        a, b, c = (number("physics.mu_bb", x, 0) for x in value)
+        if a + b > 1:
+            raise refuse("physics.mu_bb", value, allowed)
+        return a, b, c
+    return number("physics.mu_bb", value, 0, 1)
+
+
+PRESETS = {
+    "paper": {},
+    "match": {"e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee": 2.0, "e_c_slope": 0.08},
+}
