@@ -1,0 +1,87 @@
+"""How does a ball move on the cloth? Slide on a parabola, roll, spin down: closed forms, and when each phase ends.
+
+[MJP14] 2.5, eq. 16 to 21 (with their slips mended): slip u = v + R (-w_y, w_x); while it lasts du/dt = -(7/2) mu_s g u/|u|, so its
+direction is constant and the path a parabola (curved when the spin is not about the axis of rolling: the masse curve). Slip ends
+after T = 2 |u| / (7 mu_s g); rolling decelerates by mu_r g; spin about the vertical decays by ``spin_decel`` in every state.
+
+A ball's motion is one row of ``motion`` (float64, columns below), valid from its time T0 to T_END, and one code in ``state``.
+"""
+
+from math import copysign, sqrt
+
+from .._jit import kernel
+from .parameters import P_G, P_MU_R, P_MU_S, P_R, P_SPIN
+
+GONE, REST, ROLL, SLIDE = range(4)
+X, Y, VX, VY, AX, AY, WX, WY, WZ, T0, T_END = range(11)
+COLUMNS = 11
+
+_STILL = 1e-12  # m/s: slower is at rest (it would roll 4e-24 m)
+
+
+@kernel
+def begin(motion, state, i, t, x, y, vx, vy, wx, wy, wz, phys):
+    """Ball i is at (x, y) at time t with these velocities: write its next phase of motion into row i."""
+    R, g = phys[P_R], phys[P_G]
+    ux, uy = vx - R * wy, vy + R * wx
+    u = sqrt(ux * ux + uy * uy)
+    v = sqrt(vx * vx + vy * vy)
+    row = motion[i]
+    row[X], row[Y], row[T0], row[WZ] = x, y, t, wz
+    if u > _STILL:
+        decel = phys[P_MU_S] * g
+        state[i] = SLIDE
+        row[VX], row[VY] = vx, vy
+        row[AX], row[AY] = -decel * ux / u, -decel * uy / u
+        row[WX], row[WY] = wx, wy
+        row[T_END] = t + u / (3.5 * decel)  # eq. 19
+    elif v > _STILL:
+        decel = phys[P_MU_R] * g
+        state[i] = ROLL
+        row[VX], row[VY] = vx, vy
+        row[AX], row[AY] = -decel * vx / v, -decel * vy / v
+        row[WX], row[WY] = -vy / R, vx / R
+        row[T_END] = t + v / decel
+    else:
+        state[i] = REST
+        row[VX] = row[VY] = row[AX] = row[AY] = row[WX] = row[WY] = 0.0
+        row[T_END] = float("inf")
+
+
+@kernel
+def spin_after(wz, dt, decel):
+    """Spin about the vertical after dt, eq. 21."""
+    return copysign(max(0.0, abs(wz) - decel * dt), wz)
+
+
+@kernel
+def evaluate(motion, state, i, t, phys):
+    """Ball i at time t within its present phase: (x, y), (vx, vy), (wx, wy, wz)."""
+    row = motion[i]
+    dt = t - row[T0]
+    ax, ay = row[AX], row[AY]
+    vx, vy = row[VX] + ax * dt, row[VY] + ay * dt
+    x, y = row[X] + (row[VX] + 0.5 * ax * dt) * dt, row[Y] + (row[VY] + 0.5 * ay * dt) * dt
+    R = phys[P_R]
+    wz = spin_after(row[WZ], dt, phys[P_SPIN])
+    if state[i] == SLIDE:  # friction at the cloth turns the ball: dw = (5/2) z x (-a) / R
+        wx, wy = row[WX] + 2.5 * ay * dt / R, row[WY] - 2.5 * ax * dt / R
+    else:
+        wx, wy = -vy / R, vx / R
+    return (x, y), (vx, vy), (wx, wy, wz)
+
+
+@kernel
+def next_phase(motion, state, i, phys):
+    """Ball i has come to the end of its phase (T_END): slide -> roll or rest, roll -> rest. The new phase starts exactly rolling."""
+    t = motion[i, T_END]
+    (x, y), (vx, vy), (_wx, _wy, wz) = evaluate(motion, state, i, t, phys)
+    if state[i] == SLIDE:
+        R = phys[P_R]
+        # final v = v0 - (2/7) u0 without the rounding of v0 + a T: u is then zero by construction
+        row = motion[i]
+        vx = row[VX] - (row[VX] - R * row[WY]) / 3.5
+        vy = row[VY] - (row[VY] + R * row[WX]) / 3.5
+        begin(motion, state, i, t, x, y, vx, vy, -vy / R, vx / R, wz, phys)
+    else:
+        begin(motion, state, i, t, x, y, 0.0, 0.0, 0.0, 0.0, wz, phys)

@@ -1,0 +1,259 @@
+"""How does a whole shot run? The event loop: predict, take the earliest event, resolve it, predict again what it touched.
+
+Predictions are kept: a ball's contacts stand as long as no event changes its motion. Ties are decided by (time, kind, ball, partner),
+kinds in the order of ``EventKind``. Nothing is allocated inside the loop. Impacts at closing speeds under ``MICRO`` exchange the
+normal velocities elastically and without friction, and no impact leaves a pair parting slower than ``CREEP`` (or than it closed):
+a ball held against another by its spin then bounces on it in steps far below a micrometre instead of without end.
+"""
+
+from enum import IntEnum
+from math import inf, sqrt
+
+import numpy as np
+
+from .._jit import entry, kernel
+from . import cloth
+from .cloth import GONE, REST, T0, T_END, WZ
+from .contact import collide_balls, collide_cushion, cushion_restitution
+from .detection import CREEP, boundary_event, pair_time
+from .parameters import P_E_B, P_R, P_SPIN
+
+MICRO = 1e-4  # m/s
+
+
+class EventKind(IntEnum):
+    """What happened. In the event log ``i`` is the ball; ``j`` the other ball (i < j), nose, jaw or pocket, or -1."""
+
+    BALL_BALL = 0
+    CUSHION = 1
+    JAW = 2
+    POT = 3
+    ROLL = 4
+    """Ball i stopped sliding; it rolls from now on."""
+    STOP = 5
+    """Ball i stopped (it may still spin on the spot)."""
+
+
+class Status(IntEnum):
+    """How a run ended."""
+
+    OK = 0
+    TOO_MANY_EVENTS = 1
+    LOG_FULL = 2
+    IMPACT_UNSOLVED = 3
+
+
+_BALL_BALL, _POT, _ROLL, _STOP = int(EventKind.BALL_BALL), int(EventKind.POT), int(EventKind.ROLL), int(EventKind.STOP)
+_OK, _TOO_MANY, _FULL, _UNSOLVED = int(Status.OK), int(Status.TOO_MANY_EVENTS), int(Status.LOG_FULL), int(Status.IMPACT_UNSOLVED)
+
+
+@kernel
+def _meet(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
+    """Ball-ball impact inside a shot: ``collide_balls`` with the two rules against endless bouncing; vertical velocity dropped."""
+    closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
+    if closing <= MICRO:
+        k = max(closing, 0.0)
+        return (v1[0] - k * nx, v1[1] - k * ny), w1, (v2[0] + k * nx, v2[1] + k * ny), w2, True
+    e = max(phys[P_E_B], CREEP / closing)
+    a, wa, b, wb, solved = collide_balls((v1[0], v1[1], 0.0), w1, (v2[0], v2[1], 0.0), w2, nx, ny, phys, e, fidelity, n_steps)
+    return (a[0], a[1]), wa, (b[0], b[1]), wb, solved
+
+
+@kernel
+def _rebound(v, w, nx, ny, phys, fidelity, n_steps):
+    """Ball-cushion impact inside a shot, by the same rules; (nx, ny) points into the cushion."""
+    closing = v[0] * nx + v[1] * ny
+    if closing <= MICRO:
+        k = 2.0 * max(closing, 0.0)
+        return (v[0] - k * nx, v[1] - k * ny), w, True
+    e = max(cushion_restitution(closing, phys), CREEP / closing)
+    a, wa, solved = collide_cushion((v[0], v[1], 0.0), w, nx, ny, phys, e, fidelity, n_steps)
+    return (a[0], a[1]), wa, solved
+
+
+@kernel
+def _begin(motion, state, i, t, r, v, w, phys):
+    cloth.begin(motion, state, i, t, r[0], r[1], v[0], v[1], w[0], w[1], w[2], phys)
+
+
+@kernel
+def _rescan(pair, best_time, best_ball, i):
+    """The earliest partner of ball i from the kept pair times; the lower ball wins a tie."""
+    n = pair.shape[0]
+    time, ball = inf, -1
+    for j in range(n):
+        if pair[i, j] < time:
+            time, ball = pair[i, j], j
+    best_time[i], best_ball[i] = time, ball
+
+
+@kernel
+def _predict(motion, state, i, t, noses, jaws, falls, R, pair, best_time, best_ball, own_time, own_kind, own_index):
+    """Ball i has a new motion at time t: predict all its events, and mend the rows of its partners."""
+    n = pair.shape[0]
+    still = state[i] == REST
+    time, ball = inf, -1
+    for j in range(n):
+        if j == i or state[j] == GONE:
+            continue
+        if still and state[j] == REST:
+            s = inf
+        else:
+            a, b = (i, j) if i < j else (j, i)
+            s = pair_time(motion, state, a, b, t, 2.0 * R)
+        pair[i, j] = pair[j, i] = s
+        if s < time:
+            time, ball = s, j
+        if s < best_time[j] or (s == best_time[j] and i < best_ball[j]):
+            best_time[j], best_ball[j] = s, i
+        elif best_ball[j] == i and s > best_time[j]:
+            _rescan(pair, best_time, best_ball, j)
+    best_time[i], best_ball[i] = time, ball
+    own_time[i], own_kind[i], own_index[i] = inf, 0, -1
+    if not still:
+        s, kind, index = boundary_event(motion, state, i, noses, jaws, falls, R)
+        if s > motion[i, T_END] or kind == 0:
+            s, index = motion[i, T_END], -1
+            kind = _ROLL if state[i] == cloth.SLIDE else _STOP
+        own_time[i], own_kind[i], own_index[i] = s, kind, index
+
+
+@kernel
+def _leave(state, i, pair, best_time, best_ball, own_time):
+    """Ball i is off the table: no more events for it, and none with it."""
+    state[i] = GONE
+    n = pair.shape[0]
+    pair[i, :] = inf
+    pair[:, i] = inf
+    best_time[i], best_ball[i], own_time[i] = inf, -1, inf
+    for j in range(n):
+        if best_ball[j] == i:
+            _rescan(pair, best_time, best_ball, j)
+
+
+@kernel
+def _record(segments, n_segments, motion, state, i):
+    """Append ball i's present phase to the path log: its motion row, then ball and state."""
+    if segments.shape[0] == 0:
+        return n_segments
+    row = segments[n_segments]
+    row[: cloth.COLUMNS] = motion[i]
+    row[cloth.COLUMNS], row[cloth.COLUMNS + 1] = i, state[i]
+    return n_segments + 1
+
+
+@kernel
+def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, fidelity, n_steps, max_events,
+        event_time, event_what, segments, motion, state, pair, best_time, own_time, best_ball, own_kind, own_index):  # fmt: skip
+    """One shot to rest. In place: positions, velocities, spins become the final ones, on_table and potted are updated.
+
+    event_time (m,), event_what (m, 3): the log (kind, i, j); with m = 0 nothing is logged. segments (k, COLUMNS + 2): the paths, or
+    k = 0. The rest is work space for n balls. Returns status, number of events, number of segments, duration [s].
+    """
+    n = positions.shape[0]
+    R = phys[P_R]
+    n_segments = n_events = 0
+    for i in range(n):
+        potted[i] = -1
+        best_time[i], best_ball[i], own_time[i] = inf, -1, inf
+        pair[i, :] = inf
+        if on_table[i]:
+            _begin(motion, state, i, 0.0, positions[i], velocities[i], spins[i], phys)
+        else:
+            state[i] = GONE
+            motion[i, :] = 0.0
+            motion[i, 0], motion[i, 1] = positions[i, 0], positions[i, 1]
+        n_segments = _record(segments, n_segments, motion, state, i)
+    for i in range(n):
+        if state[i] > REST:
+            _predict(motion, state, i, 0.0, noses, jaws, falls, R, pair, best_time, best_ball, own_time, own_kind, own_index)
+    status = _OK
+    end = 0.0
+    while True:
+        t, kind, i, j = inf, 9, -1, -1
+        for k in range(n):
+            s = best_time[k]
+            if s < t or (s == t and s < inf and kind > _BALL_BALL):
+                t, kind, i, j = s, _BALL_BALL, k, best_ball[k]
+            s = own_time[k]
+            if s < t or (s == t and s < inf and kind > own_kind[k]):
+                t, kind, i, j = s, own_kind[k], k, own_index[k]
+        if t == inf:
+            break
+        if n_events == max_events:
+            status = _TOO_MANY
+            break
+        if event_time.shape[0] > 0:
+            if n_events == event_time.shape[0] or (segments.shape[0] > 0 and n_segments + 2 > segments.shape[0]):
+                status = _FULL
+                break
+            event_time[n_events] = t
+            event_what[n_events, 0], event_what[n_events, 1], event_what[n_events, 2] = kind, i, j
+        n_events += 1
+        end = t
+        if kind == _BALL_BALL:
+            r1, v1, w1 = cloth.evaluate(motion, state, i, t, phys)
+            r2, v2, w2 = cloth.evaluate(motion, state, j, t, phys)
+            nx, ny = r2[0] - r1[0], r2[1] - r1[1]
+            d = sqrt(nx * nx + ny * ny)
+            v1, w1, v2, w2, solved = _meet(v1, w1, v2, w2, nx / d, ny / d, phys, fidelity, n_steps)
+            _begin(motion, state, i, t, r1, v1, w1, phys)
+            _begin(motion, state, j, t, r2, v2, w2, phys)
+        elif kind == _ROLL or kind == _STOP:
+            cloth.next_phase(motion, state, i, phys)
+            solved = True
+        elif kind == _POT:
+            r, v, w = cloth.evaluate(motion, state, i, t, phys)
+            potted[i] = j
+            _leave(state, i, pair, best_time, best_ball, own_time)
+            motion[i, :] = 0.0
+            motion[i, 0], motion[i, 1], motion[i, T0], motion[i, T_END] = r[0], r[1], t, inf
+            n_segments = _record(segments, n_segments, motion, state, i)
+            continue
+        else:
+            r, v, w = cloth.evaluate(motion, state, i, t, phys)
+            if kind == 1:
+                nx, ny = (noses[j, 1], 0.0) if noses[j, 0] == 0.0 else (0.0, noses[j, 1])
+            else:
+                nx, ny = jaws[j, 0] - r[0], jaws[j, 1] - r[1]
+                d = sqrt(nx * nx + ny * ny)
+                nx, ny = nx / d, ny / d
+            v, w, solved = _rebound(v, w, nx, ny, phys, fidelity, n_steps)
+            _begin(motion, state, i, t, r, v, w, phys)
+        if not solved:
+            status = _UNSOLVED
+            break
+        n_segments = _record(segments, n_segments, motion, state, i)
+        _predict(motion, state, i, t, noses, jaws, falls, R, pair, best_time, best_ball, own_time, own_kind, own_index)
+        if kind == _BALL_BALL:
+            n_segments = _record(segments, n_segments, motion, state, j)
+            _predict(motion, state, j, t, noses, jaws, falls, R, pair, best_time, best_ball, own_time, own_kind, own_index)
+    for i in range(n):
+        if state[i] == GONE:
+            positions[i, 0], positions[i, 1] = motion[i, 0], motion[i, 1]
+            on_table[i] = False
+        else:
+            r, v, w = cloth.evaluate(motion, state, i, max(end, motion[i, T0]), phys)
+            positions[i, 0], positions[i, 1] = r[0], r[1]
+            velocities[i, 0], velocities[i, 1] = v[0], v[1]
+            spins[i, 0], spins[i, 1], spins[i, 2] = w[0], w[1], w[2]
+            if status == _OK and phys[P_SPIN] > 0.0:  # at rest a ball may still spin on the spot
+                end = max(end, motion[i, T0] + abs(motion[i, WZ]) / phys[P_SPIN])
+    return status, n_events, n_segments, end
+
+
+@entry
+def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, fidelity, n_steps, max_events,
+              event_time, event_what, segments, status, n_events, n_segments, duration, start, stop):  # fmt: skip
+    """Shots ``start`` to ``stop`` of a batch; arrays as in ``run`` with a leading batch axis. Work space is made once."""
+    n = positions.shape[1]
+    motion = np.zeros((n, cloth.COLUMNS))
+    pair = np.full((n, n), inf)
+    best_time, own_time = np.full(n, inf), np.full(n, inf)
+    state, best_ball = np.zeros(n, np.int64), np.full(n, -1)
+    own_kind, own_index = np.zeros(n, np.int64), np.full(n, -1)
+    for k in range(start, stop):
+        status[k], n_events[k], n_segments[k], duration[k] = run(
+            positions[k], velocities[k], spins[k], on_table[k], potted[k], phys, noses, jaws, falls, fidelity, n_steps, max_events,
+            event_time[k], event_what[k], segments[k], motion, state, pair, best_time, own_time, best_ball, own_kind, own_index,
+        )  # fmt: skip

@@ -1,0 +1,293 @@
+"""How do I call the physics? One impact, one strike, one shot, many shots: checked input in, plain arrays and ``Shot`` out."""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ._check import array, integer, refuse
+from ._jit import entry
+from .physics import cloth, contact, cue, engine, trajectory
+from .physics.engine import EventKind, Status
+from .physics.parameters import P_E_B, Physics
+from .physics.table import OVERLAP_ALLOWED, Table
+
+EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
+"""One logged event; ``kind`` is an ``EventKind``."""
+
+MAX_EVENTS = 100_000
+_FIRST_LOG = 512
+
+
+class SimulationError(RuntimeError):
+    """A shot that could not be computed; the message names the shot, its last event and what to try."""
+
+
+@entry
+def _collide_balls(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
+    return contact.collide_balls(v1, w1, v2, w2, nx, ny, phys, phys[P_E_B], fidelity, n_steps)
+
+
+@entry
+def _collide_cushion(v, w, nx, ny, phys, fidelity, n_steps):
+    e = contact.cushion_restitution(v[0] * nx + v[1] * ny, phys)
+    return contact.collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps)
+
+
+def _unit_normal(normal):
+    nx, ny, nz = array("normal", normal, (3,)).tolist()
+    if abs(nz) > 1e-9 or abs(np.hypot(nx, ny) - 1.0) > 1e-6:
+        raise refuse("normal", (nx, ny, nz), "must be a horizontal unit vector (z = 0, length 1)")
+    size = float(np.hypot(nx, ny))
+    return nx / size, ny / size
+
+
+def _vector(name, value):
+    return tuple(array(name, value, (3,)).tolist())
+
+
+def collide_balls(v1, w1, v2, w2, normal, physics=None, fidelity="standard"):
+    """The frictional impact of two balls standing on the cloth (Mathavan, Jackson & Parkin 2014, 2.1 to 2.4).
+
+    v1, v2: velocities [m/s], w1, w2: spins [rad/s], each (3,); normal: horizontal unit vector from ball 1 to ball 2.
+    Returns v1, w1, v2, w2 after the impact, (3,) float64 each, the vertical velocity of the lifted ball included. Balls that do not
+    close (zero or parting normal speed) come back unchanged. ``fidelity``: "fast" (closed form, free spheres), "standard",
+    "reference", or "euler:N" (the paper's own scheme with N of eq. 14).
+
+    Raises ValueError on bad shapes, non-finite numbers, a normal that is not horizontal and unit, an unknown fidelity or physics.
+    """
+    physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
+    args = _vector("v1", v1), _vector("w1", w1), _vector("v2", v2), _vector("w2", w2)
+    *out, solved = _collide_balls(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
+    if not solved:
+        raise SimulationError(f"the impact of v1, w1, v2, w2 = {args} did not end at fidelity {fidelity!r}; try another fidelity")
+    return tuple(np.array(a) for a in out)
+
+
+def collide_cushion(v, w, normal, physics=None, fidelity="standard"):
+    """The impact of a ball with a cushion's nose (Mathavan, Jackson & Parkin 2010, with Coulomb's law at zero slip).
+
+    v: velocity [m/s], w: spin [rad/s], (3,) each; normal: horizontal unit vector INTO the cushion. Returns v, w after the impact; a
+    ball that does not move into the cushion comes back unchanged. Fidelities as in ``collide_balls``; "fast" integrates with a loose
+    tolerance (no closed form keeps the cloth's reaction, worth 7 % of the rebound). Raises ValueError as ``collide_balls`` does.
+    """
+    physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
+    args = _vector("v", v), _vector("w", w)
+    *out, solved = _collide_cushion(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
+    if not solved:
+        raise SimulationError(f"the cushion impact of v, w = {args} did not end at fidelity {fidelity!r}; try another fidelity")
+    return tuple(np.array(a) for a in out)
+
+
+def strike(speed, aim, side=0.0, top=0.0, elevation=0.0, physics=None):
+    """The cue ball's velocity (3,) [m/s] and spin (3,) [rad/s] just after the cue has struck it.
+
+    speed >= 0: the speed the cue gives [m/s], along the cue; aim: direction of the cue [rad], anticlockwise from +x; side, top: tip
+    offset over R, + right, + up as the player sees it; elevation of the butt [rad] in [0, 1.5]. Side spin deflects the ball off the
+    aim (squirt, to the left for right side); an elevated cue with side gives the spin of a swerve or masse, and the cloth takes the
+    downward part of the speed: the ball leaves along the cloth with speed cos(elevation).
+
+    Raises ValueError on a miscue (offset beyond ``physics.max_offset`` R, 0.5 by default), a negative speed, non-finite numbers.
+    """
+    v, w = cue.strike(speed, aim, side, top, elevation, Physics.of(physics))
+    return np.array(v), np.array(w)
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """One simulated shot. All arrays are fresh and the caller's own."""
+
+    positions: np.ndarray
+    """(n, 2) [m] at rest; of a potted ball: where its centre crossed the fall."""
+    potted: np.ndarray
+    """(n,) int: pocket index (``snooker_env.POCKETS``), or -1 if not potted in this shot."""
+    on_table: np.ndarray
+    """(n,) bool: still in play."""
+    duration: float
+    """Time [s] until everything is at rest, spin included."""
+    events: np.ndarray
+    """Structured array of ``time`` [s], ``kind`` (EventKind), ``i``, ``j``, in order."""
+    segments: np.ndarray = field(repr=False)
+    physics: Physics = field(repr=False)
+
+    def at(self, t):
+        """Positions (n, 2) [m], velocities (n, 2) [m/s] and spins (n, 3) [rad/s] at time t [s]; after ``duration`` at rest.
+
+        t may be an array of shape (m,): then a leading axis m is added to each. At the time of an impact: just after it.
+        """
+        times = array("t", np.atleast_1d(t), (-1,))
+        if times.size and times.min() < 0:
+            raise refuse("t", float(times.min()), "must not be negative")
+        n, m = len(self.positions), len(times)
+        out = np.zeros((m, n, 2)), np.zeros((m, n, 2)), np.zeros((m, n, 3))
+        trajectory.states_at(self.segments, n, times, self.physics.pack(), *out)
+        return tuple(a[0] for a in out) if np.ndim(t) == 0 else out
+
+
+@dataclass(frozen=True, eq=False)
+class ShotBatch:
+    """Many simulated shots: the fields of ``Shot`` with a leading axis b. ``events``: one array a shot if asked for, else None."""
+
+    positions: np.ndarray
+    potted: np.ndarray
+    on_table: np.ndarray
+    duration: np.ndarray
+    event_count: np.ndarray
+    events: list[np.ndarray] | None = None
+
+
+def _check_layout(positions, on_table, R, table, at=""):
+    table.check(positions, R, f"positions{at}", on_table)
+    here = np.flatnonzero(on_table)
+    p = positions[here]
+    far = np.hypot(p[:, None, 0] - p[None, :, 0], p[:, None, 1] - p[None, :, 1]) + np.triu(np.full((len(p), len(p)), np.inf)).T
+    bad = np.argwhere(far < 2 * R - OVERLAP_ALLOWED) if len(p) > 1 else []
+    for a, b in bad:
+        i, j = int(here[a]), int(here[b])
+        if i != j:
+            depth = 2 * R - float(np.hypot(*(positions[i] - positions[j])))
+            raise refuse(f"positions{at}", f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
+
+
+def _balls(positions, velocities, spins, on_table, batch):
+    lead = (-1,) if batch else ()
+    r = array("positions", positions, (*lead, -1, 2))
+    shape = r.shape[:-1]
+    v, w = array("velocities", velocities, (*shape, 2)), array("spins", spins, (*shape, 3))
+    if shape[-1] == 0:
+        raise refuse("positions", f"array of shape {r.shape}", "must hold at least one ball")
+    if on_table is None:
+        here = np.ones(shape, bool)
+    else:
+        here = np.array(on_table)
+        if here.shape != shape or here.dtype != bool:
+            raise refuse("on_table", f"{here.dtype} array of shape {here.shape}", f"must be bool of shape {shape}")
+    return r, v, w, here
+
+
+def _moving_needs(physics):
+    for name in ("mu_s", "mu_r"):
+        if getattr(physics, name) <= 0:
+            raise refuse(f"physics.{name}", getattr(physics, name), "must be > 0 to simulate a shot: without it no ball comes to rest")
+
+
+def simulate(positions, velocities, spins, table="match", physics=None, fidelity="standard", *, on_table=None, max_events=MAX_EVENTS):
+    """Play one shot until everything is at rest.
+
+    positions (n, 2) [m], velocities (n, 2) [m/s], spins (n, 3) [rad/s] of n balls in the world frame (origin at the table's centre, +y
+    to the black end); table: "match", "tight", a ``Table``, or None for unbounded cloth; on_table (n,) bool: balls to leave out are
+    False. Balls may touch each other and the cushions (to within 1e-6 m). The same input gives the same bits.
+
+    Returns a ``Shot``. Raises ValueError on bad input (field, value, what is allowed), SimulationError if the shot does not come to rest
+    within ``max_events`` events.
+    """
+    physics, table, (code, n_steps) = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
+    r, v, w, here = _balls(positions, velocities, spins, on_table, batch=False)
+    _moving_needs(physics)
+    _check_layout(r, here, physics.R, table)
+    max_events = integer("max_events", max_events, 1, 2**31)
+    capacity = min(_FIRST_LOG, max_events)
+    while True:
+        state = [r[None].copy(), v[None].copy(), w[None].copy(), here[None].copy()]
+        out = _run(state, physics, table, code, n_steps, max_events, capacity, 2 * capacity + len(r) + 2, 0, 1)
+        if out.status[0] != Status.LOG_FULL:
+            break
+        capacity *= 4
+    events = out.log(0)
+    _raise_unless_ok(out, 0, events)
+    return Shot(
+        state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, out.segments[0, : out.n_segments[0]].copy(), physics
+    )
+
+
+def simulate_batch(
+    positions, velocities, spins, table="match", physics=None, fidelity="standard", *, on_table=None, threads=None, events=False,
+    max_events=MAX_EVENTS,
+):  # fmt: skip
+    """Play b shots on b tables at once: positions (b, n, 2), velocities (b, n, 2), spins (b, n, 3), on_table (b, n) bool or None.
+
+    threads: how many to use, None for one per core; results do not depend on it. events: also return each shot's event log.
+    Returns a ``ShotBatch``. Errors as in ``simulate``.
+    """
+    physics, table, (code, n_steps) = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
+    r, v, w, here = _balls(positions, velocities, spins, on_table, batch=True)
+    _moving_needs(physics)
+    for k in range(len(r)):
+        _check_layout(r[k], here[k], physics.R, table, f"[{k}]")
+    threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
+    max_events = integer("max_events", max_events, 1, 2**31)
+    out = _run((r, v, w, here), physics, table, code, n_steps, max_events, _FIRST_LOG if events else 0, 0, 0, len(r), threads)
+    logs = [out.log(k) for k in range(len(r))] if events else None
+    for k in range(len(r)):
+        if out.status[k] == Status.LOG_FULL:  # rare: a log longer than the first guess; played once more with room
+            one = simulate(positions[k], velocities[k], spins[k], table, physics, fidelity, on_table=on_table and on_table[k])
+            r[k], here[k], out.potted[k], out.duration[k], out.n_events[k] = (
+                one.positions, one.on_table, one.potted, one.duration, len(one.events),
+            )  # fmt: skip
+            if logs is not None:
+                logs[k] = one.events
+        else:
+            _raise_unless_ok(out, k, logs[k] if logs else None)
+    return ShotBatch(r, out.potted, here, out.duration, out.n_events, logs)
+
+
+@dataclass
+class _Run:
+    potted: np.ndarray
+    status: np.ndarray
+    n_events: np.ndarray
+    n_segments: np.ndarray
+    duration: np.ndarray
+    event_time: np.ndarray
+    event_what: np.ndarray
+    segments: np.ndarray
+
+    def log(self, k):
+        events = np.zeros(self.n_events[k], EVENT)
+        m = min(self.n_events[k], self.event_time.shape[1])
+        events["time"][:m] = self.event_time[k, :m]
+        for c, name in enumerate(("kind", "i", "j")):
+            events[name][:m] = self.event_what[k, :m, c]
+        return events[:m]
+
+
+def _run(state, physics, table, code, n_steps, max_events, log_size, path_size, start, stop, threads=1):
+    """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place)."""
+    b, n = state[0].shape[:2]
+    out = _Run(
+        np.zeros((b, n), np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b),
+        np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.COLUMNS + 2)),
+    )  # fmt: skip
+    args = (
+        *state, out.potted, physics.pack(), table.noses, table.jaws, table.falls, code, n_steps, max_events,
+        out.event_time, out.event_what, out.segments, out.status, out.n_events, out.n_segments, out.duration,
+    )  # fmt: skip
+    threads = min(threads, stop - start)
+    if threads <= 1:
+        engine.run_batch(*args, start, stop)
+    else:
+        cuts = np.linspace(start, stop, 4 * threads + 1).astype(int)  # more slices than threads: shots differ in length
+        with ThreadPoolExecutor(threads) as pool:
+            list(pool.map(lambda a, z: engine.run_batch(*args, a, z), cuts[:-1], cuts[1:]))
+    return out
+
+
+def _raise_unless_ok(out, k, events):
+    status = out.status[k]
+    if status == Status.OK:
+        return
+    last = f"; last event {events[-1]} ({EventKind(events[-1]['kind']).name})" if events is not None and len(events) else ""
+    why = {
+        Status.TOO_MANY_EVENTS: "did not come to rest in time; a ball may be held against another: allow more max_events",
+        Status.IMPACT_UNSOLVED: "holds an impact that did not end; try another fidelity, or less extreme friction",
+    }[Status(status)]
+    raise SimulationError(f"shot {k} {why} (after {out.n_events[k]} events{last})")
+
+
+def warmup():
+    """Compile everything a shot needs (or load it from the cache), so that no worker or first step pays for it."""
+    Shot_ = simulate([(0.0, 0.0), (0.3, 0.0)], [(1.0, 0.0), (0.0, 0.0)], np.zeros((2, 3)))
+    Shot_.at(0.1)
+    collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
+    collide_cushion((1, 0, 0), (0, 0, 0), (1, 0, 0))
