@@ -1,5 +1,7 @@
 """snooker_env: whole snooker shots, frictional impacts, and the Gymnasium environment ``Snooker-v0`` built on them."""
 
+import gymnasium as _gymnasium
+
 from .physics.engine import EventKind
 from .physics.parameters import Physics
 from .physics.table import POCKETS, Table
@@ -9,3 +11,7 @@ __all__ = [
     "POCKETS", "EventKind", "Physics", "Shot", "ShotBatch", "SimulationError", "Table", "collide_balls", "collide_cushion", "simulate",
     "simulate_batch", "strike", "warmup",
 ]  # fmt: skip
+
+# A string entry point keeps this import light and the spec JSON-able; a second import (a reload) stays silent.
+if "Snooker-v0" not in _gymnasium.registry:
+    _gymnasium.register(id="Snooker-v0", entry_point="snooker_env.envs.snooker:SnookerEnv")

@@ -186,19 +186,26 @@ def simulate(positions, velocities, spins, table="match", physics=None, fidelity
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=False)
     _moving_needs(physics)
     _check_layout(r, here, physics.R, table)
-    max_events = integer("max_events", max_events, 1, 2**31)
+    return play(r, v, w, here, physics, table, (code, n_steps), integer("max_events", max_events, 1, 2**31))
+
+
+def play(positions, velocities, spins, on_table, physics, table, fidelity, max_events=MAX_EVENTS, *, path=True):
+    """``simulate`` without its checks, for callers whose layouts are known to be sound; the arrays given are left as they are.
+
+    fidelity: as ``parse_fidelity`` returns it. path=False saves the log that ``Shot.at`` needs.
+    """
     capacity = min(_FIRST_LOG, max_events)
     while True:
-        state = [r[None].copy(), v[None].copy(), w[None].copy(), here[None].copy()]
-        out = _run(state, physics, table, code, n_steps, max_events, capacity, 2 * capacity + len(r) + 2, 0, 1)
+        state = [a[None].copy() for a in (positions, velocities, spins, on_table)]
+        path_size = 2 * capacity + len(positions) + 2 if path else 0
+        out = _run(state, physics, table, *fidelity, max_events, capacity, path_size)
         if out.status[0] != Status.LOG_FULL:
             break
         capacity *= 4
     events = out.log(0)
     _raise_unless_ok(out, 0, events)
-    return Shot(
-        state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, out.segments[0, : out.n_segments[0]].copy(), physics
-    )
+    segments = out.segments[0, : out.n_segments[0]].copy()
+    return Shot(state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, segments, physics)
 
 
 def simulate_batch(
@@ -217,16 +224,14 @@ def simulate_batch(
         _check_layout(r[k], here[k], physics.R, table, f"[{k}]")
     threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
     max_events = integer("max_events", max_events, 1, 2**31)
-    out = _run((r, v, w, here), physics, table, code, n_steps, max_events, _FIRST_LOG if events else 0, 0, 0, len(r), threads)
+    start = r.copy(), v.copy(), w.copy(), here.copy()
+    out = _run((r, v, w, here), physics, table, code, n_steps, max_events, _FIRST_LOG if events else 0, 0, threads)
     logs = [out.log(k) for k in range(len(r))] if events else None
     for k in range(len(r)):
         if out.status[k] == Status.LOG_FULL:  # rare: a log longer than the first guess; played once more with room
-            one = simulate(positions[k], velocities[k], spins[k], table, physics, fidelity, on_table=on_table and on_table[k])
-            r[k], here[k], out.potted[k], out.duration[k], out.n_events[k] = (
-                one.positions, one.on_table, one.potted, one.duration, len(one.events),
-            )  # fmt: skip
-            if logs is not None:
-                logs[k] = one.events
+            one = play(*(a[k] for a in start), physics, table, (code, n_steps), max_events, path=False)
+            r[k], here[k], out.potted[k], out.duration[k] = one.positions, one.on_table, one.potted, one.duration
+            out.n_events[k], logs[k] = len(one.events), one.events
         else:
             _raise_unless_ok(out, k, logs[k] if logs else None)
     return ShotBatch(r, out.potted, here, out.duration, out.n_events, logs)
@@ -252,7 +257,7 @@ class _Run:
         return events[:m]
 
 
-def _run(state, physics, table, code, n_steps, max_events, log_size, path_size, start, stop, threads=1):
+def _run(state, physics, table, code, n_steps, max_events, log_size, path_size, threads=1):
     """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place)."""
     b, n = state[0].shape[:2]
     out = _Run(
@@ -263,11 +268,11 @@ def _run(state, physics, table, code, n_steps, max_events, log_size, path_size, 
         *state, out.potted, physics.pack(), table.noses, table.jaws, table.falls, code, n_steps, max_events,
         out.event_time, out.event_what, out.segments, out.status, out.n_events, out.n_segments, out.duration,
     )  # fmt: skip
-    threads = min(threads, stop - start)
+    threads = min(threads, b)
     if threads <= 1:
-        engine.run_batch(*args, start, stop)
+        engine.run_batch(*args, 0, b)
     else:
-        cuts = np.linspace(start, stop, 4 * threads + 1).astype(int)  # more slices than threads: shots differ in length
+        cuts = np.linspace(0, b, 4 * threads + 1).astype(int)  # more slices than threads: shots differ in length
         with ThreadPoolExecutor(threads) as pool:
             list(pool.map(lambda a, z: engine.run_batch(*args, a, z), cuts[:-1], cuts[1:]))
     return out

@@ -1,0 +1,88 @@
+"""How were the opened tables made? Plays frames open with the project's own engine and referee and writes ``game/opened.npz``.
+
+    python -m benchmarks.make_opened [--tables 8192] [--seed 0]
+"""
+
+import argparse
+from math import atan2
+
+import numpy as np
+
+from snooker_env.game import layouts
+from snooker_env.game.balls import BALL_RADIUS, CUE, N_BALLS, N_REDS, REDS_MASK, BallOn, mask_of
+from snooker_env.game.opened import FILE
+from snooker_env.game.pots import pots
+from snooker_env.game.referee import Situation, Stroke
+from snooker_env.game.settle import settle_table
+from snooker_env.physics import cue
+from snooker_env.physics.contact import parse_fidelity
+from snooker_env.physics.parameters import Physics
+from snooker_env.physics.table import Table
+from snooker_env.simulation import play
+
+PHYSICS, TABLE, FIDELITY = Physics.preset("match"), Table.preset("match"), parse_fidelity("standard")
+SPREAD = 6.0  # m: mean distance of the reds from their centre of mass, times 15, that counts as opened
+STROKES = 8
+
+
+def stroke(rng, positions, on_table):
+    """One hard stroke at a red; the settled table, or None if a ball other than the cue ball left it."""
+    red = positions[rng.integers(1, 1 + N_REDS)]
+    aim = atan2(red[1] - positions[CUE, 1], red[0] - positions[CUE, 0]) + rng.normal(0.0, 0.02)
+    v, w = cue.strike(rng.uniform(3.0, 6.5), aim, *rng.uniform(-0.3, 0.3, 2), 0.0, PHYSICS)
+    velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
+    velocities[CUE], spins[CUE] = v[:2], w
+    shot = play(positions, velocities, spins, on_table, PHYSICS, TABLE, FIDELITY, path=False)
+    potted = mask_of(np.flatnonzero(shot.potted >= 0))
+    if potted & REDS_MASK:
+        return None
+    situation = Situation(on_table=mask_of(np.flatnonzero(on_table)), ball_on=BallOn.RED)
+    _, positions, on_table = settle_table(shot.positions, on_table, situation, Stroke(potted=potted, first=2))
+    if not on_table[CUE]:
+        positions, on_table = in_hand(rng, positions, on_table)
+    return positions, on_table
+
+
+def in_hand(rng, positions, on_table):
+    """The cue ball at a free random place of the D."""
+    while True:
+        place = layouts.break_off(rng)[0][CUE]
+        others = positions[on_table]
+        if np.all(np.hypot(*(others - place).T) > 2 * BALL_RADIUS + layouts.GAP):
+            positions[CUE], on_table[CUE] = place, True
+            return positions, on_table
+
+
+def opened_table(rng):
+    """One opened table, or None if this frame gave none."""
+    table = layouts.break_off(rng)
+    for _ in range(STROKES):
+        table = stroke(rng, *table)
+        if table is None:
+            return None
+        reds = table[0][1 : 1 + N_REDS]
+        if np.hypot(*(reds - reds.mean(0)).T).sum() > SPREAD:
+            return table[0] if len(pots(*table, REDS_MASK)) else None
+    return None
+
+
+def main():
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tables", type=int, default=8192)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", default=FILE)
+    options = parser.parse_args()
+    rng = np.random.default_rng(options.seed)
+    tables, frames = [], 0
+    while len(tables) < options.tables:
+        frames += 1
+        table = opened_table(rng)
+        if table is not None:
+            tables.append(table.astype(np.float32))  # to a tenth of a micrometre: within what the engine accepts as touching
+    np.savez_compressed(options.out, positions=np.array(tables))
+    print(f"{len(tables)} tables from {frames} frames -> {options.out}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""How does an agent meet the table? The Gymnasium environments and their parts."""

@@ -1,0 +1,1 @@
+"""Snooker itself: balls, rules, frames and layouts, without physics and without Gymnasium."""

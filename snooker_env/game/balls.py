@@ -1,0 +1,166 @@
+"""Which balls are there, what is each worth and where does it belong? Ids, values, spots and the lines of the table.
+
+World frame: origin at the table's centre, +x to the yellow side, +y to the black end; metres. The 22 balls have fixed ids: 0 the cue
+ball, 1 to 15 the reds, 16 to 21 the colours in the order of their values. A set of balls is an integer whose bit i stands for ball i,
+or a bool array (22,); positions are float64 (22, 2).
+"""
+
+from enum import IntEnum
+
+import numpy as np
+
+from .._check import array, integer, refuse
+from .._jit import kernel
+
+N_BALLS = 22
+CUE, YELLOW, GREEN, BROWN, BLUE, PINK, BLACK = 0, 16, 17, 18, 19, 20, 21
+N_REDS = 15
+
+COLOUR_NAMES = ("yellow", "green", "brown", "blue", "pink", "black")
+NAMES = ("cue", *(f"red {i}" for i in range(1, 16)), *COLOUR_NAMES)
+"""Names by id."""
+
+VALUES = np.array([0] + [1] * 15 + [2, 3, 4, 5, 6, 7], dtype=np.int64)
+"""Points by id; the cue ball has none."""
+
+CUE_BIT = 1
+REDS_MASK = 0xFFFE
+COLOURS_MASK = 0x3F0000
+ALL_MASK = 0x3FFFFF
+
+
+class BallOn(IntEnum):
+    """What the striker must hit first. From RED on, the number is the points that the ball on is worth."""
+
+    NOTHING = -1
+    """The frame is over."""
+    ANY_COLOUR = 0
+    """A red was just potted: any one colour, which the striker nominates."""
+    RED = 1
+    YELLOW = 2
+    GREEN = 3
+    BROWN = 4
+    BLUE = 5
+    PINK = 6
+    BLACK = 7
+
+
+# The table. The playing area between the noses is 3569 mm by 1778 mm; the D and the spots as the rules place them.
+BALL_RADIUS = 0.02625
+HALF_WIDTH = 0.889
+HALF_LENGTH = 1.7845
+BAULK_Y = -1.0475
+D_RADIUS = 0.292
+
+PINK_GAP = 0.0005
+"""Gap [m] between the pink on its spot and the red at the apex: as near as possible without touching."""
+
+TOUCH = 1e-6
+"""Two balls touch when the gap between them is below this [m]: far under what an eye sees, far over rounding."""
+
+POCKETS = np.array(
+    [[x, y] for y in (-HALF_LENGTH, 0.0, HALF_LENGTH) for x in (-HALF_WIDTH, HALF_WIDTH)],
+    dtype=np.float64,
+)
+"""Where the nose lines meet (corners) or are cut (middles); nominal places, enough to keep a layout clear of the pockets."""
+
+
+def _spots():
+    """A place for each ball: the cue ball's usual place for the break, the racked triangle, the six spots."""
+    spots = np.empty((N_BALLS, 2))
+    spots[CUE] = D_RADIUS / 2, BAULK_Y
+    pink_y = HALF_LENGTH / 2
+    spots[YELLOW] = D_RADIUS, BAULK_Y
+    spots[GREEN] = -D_RADIUS, BAULK_Y
+    spots[BROWN] = 0.0, BAULK_Y
+    spots[BLUE] = 0.0, 0.0
+    spots[PINK] = 0.0, pink_y
+    spots[BLACK] = 0.0, 1.4605
+    # Rows sqrt(3) R apart with a pitch of 2 R: each red touches its neighbours to rounding. Figures rounded to mm would overlap.
+    ball = 1
+    for row in range(5):
+        for k in range(row + 1):
+            spots[ball] = (2 * k - row) * BALL_RADIUS, pink_y + 2 * BALL_RADIUS + PINK_GAP + row * np.sqrt(3.0) * BALL_RADIUS
+            ball += 1
+    return spots
+
+
+SPOTS = _spots()
+"""(22, 2): each colour's spot; for a red its place in the triangle, for the cue ball its usual place for the break."""
+
+for _constant in (VALUES, POCKETS, SPOTS):
+    _constant.setflags(write=False)
+
+
+@kernel
+def bits(present):
+    """The mask of a bool array (22,)."""
+    mask = 0
+    for i in range(N_BALLS):
+        if present[i]:
+            mask |= 1 << i
+    return mask
+
+
+@kernel
+def count(mask):
+    """How many balls are in a mask."""
+    n = 0
+    for i in range(N_BALLS):
+        n += (mask >> i) & 1
+    return n
+
+
+def next_on(mask):
+    """The ball on (a ``BallOn``) for a player who comes to the table: red while there is one, then the lowest colour, or NOTHING (-1)."""
+    if mask & REDS_MASK:
+        return 1
+    for i in range(YELLOW, N_BALLS):
+        if (mask >> i) & 1:
+            return i - 14
+    return -1
+
+
+def balls_on(ball_on, on_table):
+    """The mask of the balls that ``ball_on`` (a ``BallOn``) allows, of those in the mask ``on_table``."""
+    if ball_on == 1:
+        return on_table & REDS_MASK
+    if ball_on == 0:
+        return on_table & COLOURS_MASK
+    if ball_on < 0:
+        return 0
+    return on_table & (1 << (ball_on + 14))
+
+
+# The same two for kernels; Python calls the plain ones, which need no compiling.
+next_on_kernel = kernel(next_on)
+balls_on_kernel = kernel(balls_on)
+
+
+def mask_of(balls):
+    """The mask of an iterable of ids."""
+    mask = 0
+    for ball in balls:
+        mask |= 1 << integer("ball", ball, 0, N_BALLS - 1)
+    return mask
+
+
+def ids_of(mask):
+    """The ids in a mask, in order."""
+    integer("mask", mask, 0, ALL_MASK)
+    return tuple(i for i in range(N_BALLS) if mask >> i & 1)
+
+
+def check_table(positions, on_table):
+    """Fresh copies of ``positions`` (22, 2) and ``on_table`` (22,) bool; raises ``ValueError`` for anything else."""
+    present = np.array(on_table)
+    if present.shape != (N_BALLS,) or present.dtype != np.bool_:
+        raise refuse("on_table", f"{present.dtype} array of shape {present.shape}", f"must be bool of shape ({N_BALLS},)")
+    return array("positions", positions, (N_BALLS, 2)), present
+
+
+def colour(name):
+    """The id of a colour by its name."""
+    if name not in COLOUR_NAMES:
+        raise refuse("colour", name, "must be one of " + ", ".join(map(repr, COLOUR_NAMES)))
+    return YELLOW + COLOUR_NAMES.index(name)

@@ -1,0 +1,123 @@
+"""Was there a clear path to a ball on? The two tests that the rule of the foul and a miss asks, as kernels.
+
+*Any part*: in some direction the cue ball, rolling straight, meets a ball on before any ball not on. *Full ball*: the straight line
+from centre to centre of some ball on passes every ball not on at 2 R or more. Other balls on never obstruct. A place is asked for the
+cue ball that is on the table; for one in hand the caller asks where it was played from.
+"""
+
+import numpy as np
+
+from .._check import integer, refuse
+from .._jit import entry, kernel
+from .balls import ALL_MASK, BALL_RADIUS, CUE_BIT, N_BALLS, check_table
+from .snookered import SLACK, segment_distance
+
+WINDOW = 1e-9
+"""An opening must be wider than this [rad] to count: below it is rounding."""
+
+
+@kernel
+def _meets(bx, by, ux, uy, radius):
+    """How far the cue ball, from the origin along the unit vector u, rolls until it meets the ball at b; inf if it passes."""
+    along, across = bx * ux + by * uy, bx * uy - by * ux
+    if along <= 0.0 or abs(across) >= 2.0 * radius:
+        return np.inf
+    return along - np.sqrt(4.0 * radius * radius - across * across)
+
+
+@kernel
+def full_ball_path(positions, on_table, on, radius):
+    """Is there a ball on (mask ``on``) that can be struck full from where the cue ball lies?"""
+    cx, cy = positions[0, 0], positions[0, 1]
+    for target in range(1, N_BALLS):
+        if on_table[target] and (on >> target) & 1:
+            tx, ty = positions[target, 0], positions[target, 1]
+            # The run ends at contact, 2 R short of the target's centre.
+            d = np.hypot(tx - cx, ty - cy)
+            run = max(0.0, 1.0 - 2.0 * radius / d)
+            clear = True
+            for i in range(1, N_BALLS):
+                if on_table[i] and not (on >> i) & 1:
+                    gap = segment_distance(positions[i, 0], positions[i, 1], cx, cy, cx + run * (tx - cx), cy + run * (ty - cy))
+                    clear = clear and gap >= 2.0 * radius - SLACK
+            if clear:
+                return True
+    return False
+
+
+@kernel
+def _open_direction(positions, on_table, on, target, angle, radius):
+    """Does the cue ball, rolling at ``angle``, meet ``target`` before any ball not on?"""
+    ux, uy = np.cos(angle), np.sin(angle)
+    cx, cy = positions[0, 0], positions[0, 1]
+    run = _meets(positions[target, 0] - cx, positions[target, 1] - cy, ux, uy, radius)
+    if run == np.inf:
+        return False
+    for i in range(1, N_BALLS):
+        if on_table[i] and not (on >> i) & 1 and _meets(positions[i, 0] - cx, positions[i, 1] - cy, ux, uy, radius) < run:
+            return False
+    return True
+
+
+@kernel
+def clear_path(positions, on_table, on, radius):
+    """Is there a straight path to any part of a ball on (mask ``on``) from where the cue ball lies?
+
+    The view of a ball can open or close only in finitely many directions: tangents to a ball, and those in which the cue ball would
+    meet the target and another ball at once. Between two neighbouring ones nothing changes, so their midpoints decide, exactly.
+    """
+    cx, cy = positions[0, 0], positions[0, 1]
+    edges = np.empty(4 * N_BALLS)
+    for target in range(1, N_BALLS):
+        if not (on_table[target] and (on >> target) & 1):
+            continue
+        tx, ty = positions[target, 0] - cx, positions[target, 1] - cy
+        d = np.hypot(tx, ty)
+        towards = np.arctan2(ty, tx)
+        half = np.arcsin(min(1.0, 2.0 * radius / d))
+        edges[0], edges[1] = -half, half
+        n = 2
+        for i in range(1, N_BALLS):
+            if not on_table[i] or (on >> i) & 1:
+                continue
+            bx, by = positions[i, 0] - cx, positions[i, 1] - cy
+            b = np.hypot(bx, by)
+            turn = np.arctan2(by, bx) - towards
+            reach = np.arcsin(min(1.0, 2.0 * radius / b))
+            edges[n], edges[n + 1] = turn - reach, turn + reach
+            n += 2
+            # Touching both: on the middle perpendicular of b-t, 2 R from each.
+            sx, sy = bx - tx, by - ty
+            apart = np.hypot(sx, sy)
+            if 0.0 < apart < 4.0 * radius:
+                height = np.sqrt(4.0 * radius * radius - apart * apart / 4.0) / apart
+                for sign in (-1.0, 1.0):
+                    mx = 0.5 * (bx + tx) - sign * height * sy
+                    my = 0.5 * (by + ty) + sign * height * sx
+                    edges[n] = np.arctan2(my, mx) - towards
+                    n += 1
+        for k in range(n):  # into (-pi, pi], so that the target's window is one interval about 0
+            edges[k] -= 2.0 * np.pi * np.round(edges[k] / (2.0 * np.pi))
+        ordered = np.sort(edges[:n])
+        for k in range(n - 1):
+            low, high = ordered[k], ordered[k + 1]
+            inside = low >= -half and high <= half and high - low > WINDOW
+            if inside and _open_direction(positions, on_table, on, target, towards + 0.5 * (low + high), radius):
+                return True
+    return False
+
+
+@entry
+def _paths(positions, on_table, on, radius):
+    return clear_path(positions, on_table, on, radius), full_ball_path(positions, on_table, on, radius)
+
+
+def paths(positions, on_table, on, *, radius=BALL_RADIUS):
+    """Both tests for Python: (any part, full ball). The cue ball must be on the table; raises ``ValueError`` if it is not."""
+    placed, present = check_table(positions, on_table)
+    if not present[0]:
+        raise refuse("on_table[0]", False, "must be True: the cue ball needs a place")
+    if integer("on", on, 0, ALL_MASK) & CUE_BIT:
+        raise refuse("on", on, "must name object balls only")
+    any_part, full = _paths(placed, present, on, float(radius))
+    return bool(any_part), bool(full)

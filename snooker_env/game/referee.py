@@ -1,0 +1,161 @@
+"""How does Python ask the referee? ``judge(Situation, Stroke) -> Verdict``: checked in, named out, around the kernel ``ruling``."""
+
+from dataclasses import dataclass, fields
+
+from .._check import integer, refuse
+from .._jit import entry
+from .balls import ALL_MASK, COLOURS_MASK, CUE_BIT, N_BALLS, NAMES, REDS_MASK, BallOn, balls_on, ids_of
+from .ruling import AUTO, Flag, Foul, Outcome, VisitEnd, ruling
+
+FULL_TABLE = ALL_MASK & ~CUE_BIT
+"""The mask of all 21 object balls."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Situation:
+    """What the referee must know of the frame before the stroke. Masks have bit i for ball i (``balls.mask_of``)."""
+
+    on_table: int = FULL_TABLE
+    """Mask of the object balls on the table (the cue ball's bit does not matter)."""
+    ball_on: BallOn = BallOn.RED
+    """What the striker must hit first; not NOTHING, and of it at least one ball must be on the table."""
+    free_ball: bool = False
+    """The striker may nominate a free ball: only with a red or a colour of the sequence on."""
+    lead: int = 0
+    """The striker's score less the opponent's; it matters for the end of the frame only."""
+
+    def __post_init__(self):
+        integer("on_table", self.on_table, 0, ALL_MASK)
+        object.__setattr__(self, "ball_on", BallOn(integer("ball_on", self.ball_on, BallOn.ANY_COLOUR, BallOn.BLACK)))
+        integer("lead", self.lead, -10_000, 10_000)
+        if not balls_on(self.ball_on, self.on_table & ~CUE_BIT):
+            raise refuse("ball_on", self.ball_on.name, "must name balls of which one is on the table")
+        if self.ball_on > BallOn.RED and self.on_table & REDS_MASK:
+            raise refuse("ball_on", self.ball_on.name, "must be RED or ANY_COLOUR while reds are on the table")
+        if self.free_ball and self.ball_on == BallOn.ANY_COLOUR:
+            raise refuse("free_ball", self.free_ball, "must be False when any colour is on")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stroke:
+    """What was seen of one stroke. Masks have bit i for ball i; every ball named must be on the table."""
+
+    first: int = 0
+    """Object balls struck by the cue ball's first impact: 0 for none, more than one if struck at the same time."""
+    potted: int = 0
+    """Balls that entered a pocket, bit 0 the cue ball."""
+    off: int = 0
+    """Balls forced off the table, bit 0 the cue ball."""
+    touching: int = 0
+    """Object balls that touched the cue ball before the stroke."""
+    moved: int = 0
+    """Those of ``touching`` that the cue ball moved in leaving (not those that another ball moved later)."""
+    nominated: int = AUTO
+    """Id of the colour nominated, after a red or as the free ball; 0 for none (a free ball declined); AUTO: the colour first struck."""
+    jump: bool = False
+    """An illegal jump shot."""
+    push: bool = False
+    double_hit: bool = False
+    outside_d: bool = False
+    """In hand, and played from outside the D."""
+    feet: bool = False
+    """Both feet off the floor."""
+    out_of_turn: bool = False
+    seven: bool = False
+    """An act that costs 7 whatever is on: wrong cue ball, a ball off the table used, measuring, no declaration on request ..."""
+    snookered: bool = False
+    """After it, colours respotted, the next striker is snookered on the next ball on."""
+    behind_free_ball: bool = False
+    """... and by the ball that was nominated as the free ball."""
+
+    def __post_init__(self):
+        for name in ("first", "touching", "moved"):
+            if integer(name, getattr(self, name), 0, ALL_MASK) & CUE_BIT:
+                raise refuse(name, getattr(self, name), "must name object balls only")
+        for name in ("potted", "off"):
+            integer(name, getattr(self, name), 0, ALL_MASK)
+        if self.moved & ~self.touching:
+            raise refuse("moved", ids_of(self.moved), "must be some of the touching balls")
+        if self.potted & self.off:
+            raise refuse("off", ids_of(self.off), "must name no ball that was potted")
+        if integer("nominated", self.nominated, AUTO, N_BALLS - 1) > 0 and not COLOURS_MASK >> self.nominated & 1:
+            raise refuse("nominated", self.nominated, "must be a colour (ids 16 to 21), 0 for none or -1 (AUTO)")
+
+    @property
+    def flags(self):
+        """The true ones among the bool fields, as a ``Flag``."""
+        return Flag(sum(flag for flag in Flag if getattr(self, flag.name.lower())))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """What the referee decides. A stroke with a foul scores nothing."""
+
+    fouls: Foul
+    """The rules broken; false if the stroke was fair."""
+    penalty: int
+    """Points to the opponent: 0, or the highest that any of the fouls costs (4 to 7)."""
+    points: int
+    """Points to the striker."""
+    respotted: int
+    """Mask of the colours to be spotted."""
+    on_table: int
+    """Mask of the object balls on the table after that."""
+    ball_on: BallOn
+    """The next ball on; NOTHING when the frame is over."""
+    stays: bool | None
+    """Whether the striker plays on; None: a lot decides (re-spotted black). After a foul the opponent may choose otherwise."""
+    in_hand: bool
+    """The next stroke is played from the D."""
+    free_ball: bool
+    """The next striker, if it is the opponent, has a free ball."""
+    visit_end: VisitEnd
+    outcome: Outcome
+    nominated: int
+    """The colour that counted as nominated (or as the free ball), 0 if none."""
+
+    @property
+    def over(self):
+        """Whether the frame has ended."""
+        return self.outcome in (Outcome.STRIKER_WINS, Outcome.OPPONENT_WINS)
+
+
+@entry
+def _ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags):
+    return ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags)
+
+
+def verdict_of(result):
+    """The kernel's ``Ruling`` as a ``Verdict``."""
+    kinds = {"fouls": Foul, "ball_on": BallOn, "visit_end": VisitEnd, "outcome": Outcome, "in_hand": bool, "free_ball": bool}
+    named = {field.name: kinds.get(field.name, int)(getattr(result, field.name)) for field in fields(Verdict)}
+    return Verdict(**named | {"stays": None if result.stays < 0 else bool(result.stays)})
+
+
+def check(situation, stroke):
+    """Raise ``ValueError`` if a ``Stroke`` cannot have been played in a ``Situation``."""
+    for name in ("first", "touching", "potted", "off"):
+        absent = getattr(stroke, name) & ~CUE_BIT & ~situation.on_table
+        if absent:
+            raise refuse(name, [NAMES[i] for i in ids_of(absent)], "must be on the table before the stroke")
+    if stroke.nominated > 0:
+        on = balls_on(situation.ball_on, situation.on_table)
+        allowed = on if situation.ball_on == BallOn.ANY_COLOUR else situation.on_table & ~on if situation.free_ball else 0
+        if not allowed >> stroke.nominated & 1:
+            what = [NAMES[i] for i in ids_of(allowed & COLOURS_MASK)]
+            raise refuse("nominated", NAMES[stroke.nominated], f"must be one of {what}" if what else "must be none: no choice is on")
+
+
+def numbers_of(situation, stroke):
+    """Both as the integers that the kernels take, in their order."""
+    state = (situation.on_table, int(situation.ball_on), int(situation.free_ball), situation.lead)
+    return (*state, stroke.first, stroke.touching, stroke.moved, stroke.potted, stroke.off, stroke.nominated, int(stroke.flags))
+
+
+def judge(situation, stroke):
+    """Judge one stroke: the ``Verdict`` on a ``Stroke`` in a ``Situation``. A pure function.
+
+    Raises ``ValueError`` if the two cannot belong together (a ball potted that was not on the table, a nomination not open).
+    """
+    check(situation, stroke)
+    return verdict_of(_ruling(*numbers_of(situation, stroke)))

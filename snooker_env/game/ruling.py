@@ -1,0 +1,249 @@
+"""Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke, as a pure function.
+
+``ruling`` is a kernel on integers and masks (bit i is ball i), so one and the same machine code judges one table from Python and
+thousands in a batch. ``referee.judge`` is its face for Python, ``settle.settle`` the same for a table with positions.
+
+It takes what a simulator can see. It does not judge intent or effort (whether a miss was deliberate or the attempt good enough,
+``frame.py`` has the part of that rule which geometry decides), time wasting or conduct; acts that happen outside the simulation (a foot
+off the floor, playing out of turn, measuring ...) come in as flags. An illegal jump, a push and a double hit are flags too: whoever
+simulates the cue ball's flight and the tip's contact must know them.
+"""
+
+from collections import namedtuple
+from enum import IntEnum, IntFlag
+
+from .._jit import kernel
+from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on_kernel, count, next_on_kernel
+
+AUTO = -1
+"""Nomination left to the referee: the ball that was evidently played at (see ``_nomination``)."""
+
+
+class Flag(IntFlag):
+    """What else was seen of a stroke: input of ``ruling``."""
+
+    JUMP = 1
+    """An illegal jump: the cue ball passed over part of a ball before it struck one, or landed on the far side of the ball struck."""
+    PUSH = 2
+    DOUBLE_HIT = 4
+    OUTSIDE_D = 8
+    """In hand, but not played from on or within the lines of the D."""
+    FEET = 16
+    OUT_OF_TURN = 32
+    SEVEN = 64
+    """An act that costs 7 whatever is on: wrong cue ball, a ball off the table used, measuring, no declaration on request ..."""
+    SNOOKERED = 128
+    """After the stroke, colours respotted, the next striker is snookered on the next ball on."""
+    BEHIND_FREE_BALL = 256
+    """... and the effective snookering ball is the free ball just nominated."""
+
+
+class Foul(IntFlag):
+    """Which rules a stroke broke: output of ``ruling``."""
+
+    NO_CONTACT = 1
+    WRONG_FIRST = 2
+    WRONG_POT = 4
+    CUE_POTTED = 8
+    CUE_OFF = 16
+    BALL_OFF = 32
+    JUMP = 64
+    PUSH = 128
+    DOUBLE_HIT = 256
+    OUTSIDE_D = 512
+    FEET = 1024
+    OUT_OF_TURN = 2048
+    BEHIND_FREE_BALL = 4096
+    NO_NOMINATION = 8192
+    """A foul on a colour that was never nominated; reds played in successive strokes are of this kind."""
+    SEVEN = 16384
+
+
+class VisitEnd(IntEnum):
+    """Why the striker's visit ended with this stroke."""
+
+    CONTINUES = 0
+    MISS = 1
+    """A fair stroke that potted nothing."""
+    FOUL = 2
+    CLEARANCE = 3
+    """No object ball is left."""
+
+
+class Outcome(IntEnum):
+    """What the stroke did to the frame."""
+
+    PLAYING = 0
+    STRIKER_WINS = 1
+    OPPONENT_WINS = 2
+    RESPOTTED_BLACK = 3
+    """Level with no ball to play for: the black comes back, the cue ball is in hand, a lot decides who chooses to play first."""
+
+
+def _plain(enum):
+    """The members of an enumeration as plain integers: kernels know no ``IntFlag``."""
+    return namedtuple(enum.__name__, enum.__members__)(*map(int, enum))
+
+
+FLAG, FOUL, VISIT, OUTCOME = _plain(Flag), _plain(Foul), _plain(VisitEnd), _plain(Outcome)
+
+Ruling = namedtuple("Ruling", "fouls penalty points respotted on_table ball_on stays in_hand free_ball visit_end outcome nominated")
+"""What ``ruling`` returns, all integers; the fields are explained in ``referee.Verdict``."""
+
+
+@kernel
+def _highest(mask, free, value_on):
+    """The highest value in a mask; a free ball counts as the ball on that it stands for."""
+    high = 0
+    for i in range(N_BALLS):
+        if (mask >> i) & 1:
+            high = max(high, value_on if i == free else VALUES[i])
+    return high
+
+
+@kernel
+def _top_ball(mask):
+    """The highest id in a mask, or 0."""
+    for i in range(N_BALLS - 1, 0, -1):
+        if (mask >> i) & 1:
+            return i
+    return 0
+
+
+@kernel
+def _nomination(on, ball_on, free_ball, first, touching, nominated):
+    """The id of the colour on, or of the free ball, or 0 for none.
+
+    A nomination is asked for only on "any colour" or with a free ball. Left to the referee (AUTO) it is the colour first struck that
+    it could be, the highest if there are several; if none was struck, such a colour that the cue ball was touching.
+    """
+    if ball_on != 0 and not free_ball:
+        return 0
+    if nominated >= 0:
+        return nominated
+    could_be = COLOURS_MASK if ball_on == 0 else COLOURS_MASK & ~on
+    ball = _top_ball(first & could_be)
+    # Who plays from a touching ball and strikes the real ball on first has not asked for his free ball.
+    return ball if ball != 0 or (ball_on != 0 and first & on != 0) else _top_ball(touching & could_be)
+
+
+@kernel
+def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags):
+    """Judge one stroke. Everything is an integer; masks have bit i for ball i. Returns a ``Ruling``.
+
+    Before the stroke: ``on_table`` mask, ``ball_on`` a BallOn, ``free_ball`` 0 or 1 (the striker has one), ``lead`` the striker's
+    score less the opponent's. The stroke: ``first`` the balls struck by the first impact (more than one: at the same time),
+    ``touching`` the balls that touched the cue ball beforehand, ``moved`` those of them that the cue ball moved in leaving,
+    ``potted`` and ``off`` the balls in pockets and off the table (bit 0 the cue ball), ``nominated`` an id, 0 for none or AUTO,
+    ``flags`` Flag bits. The order is that of the rule book; the highest penalty counts and nothing is scored with a foul.
+    """
+    reds_and_colours = on_table & ~CUE_BIT
+    on = balls_on_kernel(ball_on, reds_and_colours)
+    choice = _nomination(on, ball_on, free_ball, first, touching, nominated)
+    free = choice if ball_on != 0 else 0
+
+    # 1. The target, what it is worth and what a plain foul costs.
+    value_on = ball_on
+    if ball_on == 0:
+        on = (1 << choice) & ~CUE_BIT
+        value_on = VALUES[choice]
+    target = 1 << free if free else on
+    fair = target | on
+    base = max(4, value_on)
+    fouls = 0
+    penalty = 0
+
+    # 2. First impact. A touching ball that is on counts as struck, as long as the stroke does not move it.
+    if touching & moved:
+        fouls |= FOUL.PUSH
+        penalty = max(penalty, base, _highest(touching & moved, free, value_on))
+    if touching & target & ~moved == 0:
+        if first == 0:
+            fouls |= FOUL.NO_CONTACT
+            penalty = max(penalty, base)
+        elif first & target == 0 or first & ~fair != 0:
+            fouls |= FOUL.WRONG_FIRST
+            penalty = max(penalty, base, _highest(first, free, value_on))
+
+    # 3. Balls potted, 4. the cue ball and balls that left the table.
+    down = (potted | off) & ~CUE_BIT
+    if potted & ~CUE_BIT & ~fair:
+        fouls |= FOUL.WRONG_POT
+        penalty = max(penalty, base, _highest(potted & ~fair, free, value_on))
+    if potted & CUE_BIT:
+        fouls |= FOUL.CUE_POTTED
+        penalty = max(penalty, base)
+    if off & CUE_BIT:
+        fouls |= FOUL.CUE_OFF
+        penalty = max(penalty, base)
+    if off & ~CUE_BIT:
+        fouls |= FOUL.BALL_OFF
+        penalty = max(penalty, base, _highest(off, free, value_on))
+
+    # 5. How the cue ball was played.
+    if flags & FLAG.PUSH:
+        fouls |= FOUL.PUSH
+        penalty = max(penalty, base, _highest(first, free, value_on))
+    for flag, foul in (
+        (FLAG.JUMP, FOUL.JUMP),
+        (FLAG.DOUBLE_HIT, FOUL.DOUBLE_HIT),
+        (FLAG.OUTSIDE_D, FOUL.OUTSIDE_D),
+        (FLAG.FEET, FOUL.FEET),
+        (FLAG.OUT_OF_TURN, FOUL.OUT_OF_TURN),
+    ):
+        if flags & flag:
+            fouls |= foul
+            penalty = max(penalty, base)
+
+    # 6. No snooker behind the free ball, unless only pink and black are left.
+    if free and flags & FLAG.BEHIND_FREE_BALL and reds_and_colours & ~(down & on) != (1 << PINK | 1 << BLACK):
+        fouls |= FOUL.BEHIND_FREE_BALL
+        penalty = max(penalty, base)
+
+    # 7. Seven points, whatever is on.
+    if flags & FLAG.SEVEN:
+        fouls |= FOUL.SEVEN
+        penalty = 7
+    if ball_on == 0 and choice == 0 and fouls:
+        fouls |= FOUL.NO_NOMINATION
+        penalty = 7
+
+    # Points, and the colours that return: all after a foul; else those not potted as the ball on of the sequence.
+    points = 0
+    respotted = down & COLOURS_MASK
+    if not fouls:
+        if ball_on == 1:
+            points = count(down)
+        elif down:
+            points = value_on
+            if ball_on != 0:
+                respotted &= ~on
+    remaining = (reds_and_colours & ~down) | respotted
+
+    # Who plays on, and on what.
+    stays = 1 if points else 0
+    next_on = next_on_kernel(remaining)
+    if points and ball_on == 1 and remaining & COLOURS_MASK:
+        next_on = 0
+    visit_end = VISIT.FOUL if fouls else VISIT.CONTINUES if points else VISIT.MISS
+    if remaining == 0 and not fouls:
+        visit_end = VISIT.CLEARANCE
+
+    # The frame ends with the table empty, and with the first score or foul when only the black is left; level, the black comes back.
+    outcome = OUTCOME.PLAYING
+    if remaining == 0 or (fouls and reds_and_colours == 1 << BLACK):
+        lead += points - penalty
+        if lead == 0:
+            outcome = OUTCOME.RESPOTTED_BLACK
+            remaining = respotted = 1 << BLACK
+            next_on = 7
+            stays = -1
+        else:
+            outcome = OUTCOME.STRIKER_WINS if lead > 0 else OUTCOME.OPPONENT_WINS
+            remaining = respotted = 0
+            next_on = -1
+            stays = 0
+    playing = outcome == OUTCOME.PLAYING
+    in_hand = 1 if (potted | off) & CUE_BIT or outcome == OUTCOME.RESPOTTED_BLACK else 0
+    free_next = 1 if playing and fouls and flags & FLAG.SNOOKERED else 0
+    return Ruling(fouls, penalty, points, respotted, remaining, next_on, stays, in_hand, free_next, visit_end, outcome, choice)

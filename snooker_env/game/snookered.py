@@ -1,0 +1,138 @@
+"""Is the cue ball snookered, by which ball, and is there a clear path? Straight lines past circles, as kernels.
+
+A ball on can be struck at an extreme edge if the cue ball's centre can run straight along the line that passes the ball's centre at
+2 R; the run ends at the graze, and no ball not on may come nearer to it than 2 R. The cue ball is not snookered if one ball on can be
+struck so at both edges (or touches it). Other balls on never hide a ball on. A cushion does not snooker: where the curved face of a jaw
+bars an edge and is nearer to the cue ball than any ball not on that bars it, the cue ball counts as not snookered.
+
+In hand the whole D is asked: its three corners (the ends of the baulk line's part, the brown spot), then a grid of ``D_STEP`` with the
+arc. A place is taken only if a ball can stand there. An opening narrower than the step may be overlooked: nobody places a ball finer.
+"""
+
+import numpy as np
+
+from .._check import array, integer, refuse
+from .._jit import entry, kernel
+from .balls import ALL_MASK, BALL_RADIUS, BAULK_Y, CUE_BIT, D_RADIUS, N_BALLS, TOUCH, check_table
+from .spotting import occupied
+
+D_STEP = 0.005
+"""Distance [m] between neighbouring places tried in the D."""
+SLACK = 1e-9
+"""A ball counts as in the way only if it is nearer than 2 R by more than this [m]: touching the path is not obstructing it."""
+NO_JAWS = np.empty((0, 3))
+"""No curved cushion faces known: an (m, 3) array of their circles (x, y, radius) in the world frame may be given."""
+
+
+@kernel
+def segment_distance(px, py, ax, ay, bx, by):
+    """The distance of the point p from the segment a-b."""
+    ux, uy = bx - ax, by - ay
+    length2 = ux * ux + uy * uy
+    t = 0.0 if length2 == 0.0 else min(1.0, max(0.0, ((px - ax) * ux + (py - ay) * uy) / length2))
+    return np.hypot(px - ax - t * ux, py - ay - t * uy)
+
+
+@kernel
+def _edge(cx, cy, tx, ty, side, radius):
+    """Where the cue ball, starting at c, grazes the ball at t at its edge ``side`` (+1 left, -1 right of the line c-t): (x, y)."""
+    dx, dy = tx - cx, ty - cy
+    d = np.hypot(dx, dy)
+    s = 2.0 * radius / d  # the sine of the angle between the line of centres and the tangent
+    c = np.sqrt(max(0.0, 1.0 - s * s))
+    run = d * c
+    return cx + run * (c * dx - side * s * dy) / d, cy + run * (c * dy + side * s * dx) / d
+
+
+@kernel
+def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
+    """The mask of the nearest balls not on that bar an edge of ``target`` from the cue ball at (cx, cy); 0: it can be struck fully.
+
+    -1: a jaw bars an edge and is nearer than those balls. ``on`` is the mask of the balls on. Nearest is by the distance of centres.
+    """
+    tx, ty = positions[target, 0], positions[target, 1]
+    if np.hypot(tx - cx, ty - cy) <= 2.0 * radius + TOUCH:
+        return 0
+    nearest, mask, jaw = np.inf, 0, np.inf
+    for side in (-1.0, 1.0):
+        ex, ey = _edge(cx, cy, tx, ty, side, radius)
+        for i in range(1, N_BALLS):
+            if on_table[i] and not (on >> i) & 1:
+                bx, by = positions[i, 0], positions[i, 1]
+                if segment_distance(bx, by, cx, cy, ex, ey) < 2.0 * radius - SLACK:
+                    d = np.hypot(bx - cx, by - cy)
+                    if d < nearest - SLACK:
+                        nearest, mask = d, 1 << i
+                    elif d <= nearest + SLACK:
+                        mask |= 1 << i
+        for j in range(jaws.shape[0]):
+            if segment_distance(jaws[j, 0], jaws[j, 1], cx, cy, ex, ey) < jaws[j, 2] + radius - SLACK:
+                jaw = min(jaw, np.hypot(jaws[j, 0] - cx, jaws[j, 1] - cy) - jaws[j, 2])
+    if jaw < nearest - radius:
+        return -1
+    return mask
+
+
+@kernel
+def snookered_from(positions, on_table, on, cx, cy, jaws, radius):
+    """Whether the cue ball at (cx, cy) is snookered on the mask ``on``, and the mask of the effective snookering balls: (bool, int).
+
+    The mask is 0 if there is none: reds hidden by different balls have no effective snookering ball.
+    """
+    effective = -1
+    for target in range(1, N_BALLS):
+        if on_table[target] and (on >> target) & 1:
+            mask = hidden(positions, on_table, on, target, cx, cy, jaws, radius)
+            if mask <= 0:
+                return False, 0
+            effective &= mask
+    return effective != -1, max(effective, 0)
+
+
+@kernel
+def _open_at(positions, on_table, on, x, y, jaws, radius):
+    """Can the cue ball stand at (x, y), and is it not snookered there?"""
+    return not occupied(positions, on_table, x, y, radius) and not snookered_from(positions, on_table, on, x, y, jaws, radius)[0]
+
+
+@kernel
+def snookered_in_hand(positions, on_table, on, jaws, radius):
+    """Whether the cue ball in hand is snookered from every place in the D. The cue ball's entry in ``on_table`` must be False."""
+    for k in range(3):
+        if _open_at(positions, on_table, on, (k - 1) * D_RADIUS, BAULK_Y, jaws, radius):
+            return False
+    steps = int(np.ceil(D_RADIUS / D_STEP))
+    for row in range(steps + 1):
+        depth = D_RADIUS * row / steps
+        half = np.sqrt(D_RADIUS * D_RADIUS - depth * depth)
+        places = int(np.ceil(half / D_STEP))
+        for k in range(-places, places + 1):
+            x = half * k / places if places else 0.0
+            if _open_at(positions, on_table, on, x, BAULK_Y - depth, jaws, radius):
+                return False
+    return True
+
+
+@kernel
+def snookered(positions, on_table, on, jaws, radius):
+    """Whether the next striker is snookered on the mask ``on``, and by which balls: (bool, int). In hand if on_table[0] is False."""
+    if on_table[0]:
+        return snookered_from(positions, on_table, on, positions[0, 0], positions[0, 1], jaws, radius)
+    return snookered_in_hand(positions, on_table, on, jaws, radius), 0
+
+
+@entry
+def _snookered(positions, on_table, on, jaws, radius):
+    return snookered(positions, on_table, on, jaws, radius)
+
+
+def is_snookered(positions, on_table, on, *, jaws=NO_JAWS, radius=BALL_RADIUS):
+    """``snookered`` for Python: (bool, mask of the effective snookering balls). ``on`` is the mask of the balls on.
+
+    Raises ``ValueError`` for wrong arrays or a mask that names the cue ball.
+    """
+    placed, present = check_table(positions, on_table)
+    if integer("on", on, 0, ALL_MASK) & CUE_BIT:
+        raise refuse("on", on, "must name object balls only")
+    hidden_all, effective = _snookered(placed, present, on, array("jaws", jaws, (-1, 3)), float(radius))
+    return bool(hidden_all), int(effective)

@@ -1,0 +1,113 @@
+"""How is a scene drawn in a terminal? From above in characters, baulk left and black right, as the picture of ``pygame_view``.
+
+A ball is a letter in the cell of its centre: W the white cue ball, r a red, Y G N B P K the colours (N brown and K black, because B is
+blue). Reds that share a cell become their number; the cue ball is never hidden, and a line below names what lies under another ball.
+"""
+
+import numpy as np
+
+from .._check import integer
+from ..game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, YELLOW
+from .scene import BAULK_LINE, COLOURS, D_ARC, LETTERS, SPOT_MARKS, outline
+
+WIDTH = 100
+"""Characters a line unless told."""
+
+_LEGEND = "W cue  r red (a digit: so many in one cell)  Y yellow  G green  N brown  B blue  P pink  K black"
+_LINE, _ARC, _SPOT, _PATH, _AIM, _GHOST, _POCKET = "│", "·", "+", "∙", "-", "o", "O"
+
+
+class _Grid:
+    """Characters on a table, ``columns`` by ``rows`` cells between the noses; a cell is about twice as high as wide."""
+
+    def __init__(self, columns):
+        self.columns = columns
+        self.rows = max(9, round(columns * HALF_WIDTH / HALF_LENGTH / 2)) | 1  # odd: blue, brown, pink and black have their own row
+        self.cells = np.full((self.rows, columns), " ")
+        self.owner = np.full((self.rows, columns), -1)  # ball id, for colours
+
+    def cell(self, point):
+        """Row and column of a point [m], or None if it lies outside the noses."""
+        x, y = point
+        if abs(x) > HALF_WIDTH or abs(y) > HALF_LENGTH:
+            return None
+        row = int((x + HALF_WIDTH) / (2 * HALF_WIDTH) * self.rows)
+        column = int((y + HALF_LENGTH) / (2 * HALF_LENGTH) * self.columns)
+        return min(row, self.rows - 1), min(column, self.columns - 1)
+
+    def mark(self, point, character, owner=-1):
+        at = self.cell(point)
+        if at is not None:
+            self.cells[at], self.owner[at] = character, owner
+
+    def line(self, points, character, owner=-1):
+        """A polyline, by points closer than the cells."""
+        step = HALF_LENGTH / self.columns
+        for a, b in zip(points[:-1], points[1:], strict=True):
+            for part in np.linspace(0.0, 1.0, 2 + int(np.hypot(*(b - a)) / step)):
+                self.mark(a + part * (b - a), character, owner)
+
+
+def ansi(scene, width=WIDTH, *, colour=False):
+    """The scene as lines of text ``width`` characters wide (60 to 400), the status and a legend below. No line ends with a line break.
+
+    colour: True adds terminal colour codes (24 bit) around balls and paths; without it there are none.
+    """
+    grid = _Grid(integer("width", width, 60, 400) - 2)
+    grid.line(BAULK_LINE, _LINE)
+    grid.line(D_ARC, _ARC)
+    for spot in SPOT_MARKS:
+        grid.mark(spot, _SPOT)
+    for ball, points in scene.paths.items():
+        grid.line(points, _PATH, ball)
+    if scene.aim is not None:
+        grid.line(scene.aim, _AIM)
+    if scene.ghost is not None:
+        grid.mark(scene.ghost, _GHOST)
+    hidden = _balls(grid, scene)
+    lines = _framed(grid, scene.table, colour)
+    if scene.text:
+        lines.append(scene.text)
+    lines.append(_LEGEND)
+    if hidden:
+        lines.append("hidden: " + ", ".join(hidden))
+    return "\n".join(lines)
+
+
+def _balls(grid, scene):
+    """Put the balls' letters on the grid; returns what could not be shown, e.g. "r under W"."""
+    shared = {}
+    for ball, point in zip(scene.ids.tolist(), scene.positions, strict=True):
+        at = grid.cell(np.clip(point, (-HALF_WIDTH, -HALF_LENGTH), (HALF_WIDTH, HALF_LENGTH)))
+        shared.setdefault(at, []).append(ball)
+    hidden = []
+    for at, balls in shared.items():
+        top = min(balls, key=lambda ball: (ball != 0, -ball))  # the cue ball, else the most valuable
+        under = "".join(LETTERS[ball] for ball in balls if ball != top)
+        letter = LETTERS[top]
+        if letter == "r" and under:
+            letter = str(len(balls)) if len(balls) < 10 else "*"
+        elif under:
+            hidden.append(f"{under} under {letter}")
+        grid.cells[at], grid.owner[at] = letter, top
+    return hidden
+
+
+def _framed(grid, table, colour):
+    """The grid's lines inside the rails, with the pockets in them."""
+    side, end = ("═", "║") if len(table.noses) else (" ", " ")
+    rails = [[side] * grid.columns, [side] * grid.columns]
+    for x, y, _ in table.falls:
+        if abs(y) < HALF_LENGTH:
+            rails[int(x > 0)][grid.cell((0.0, y))[1]] = _POCKET
+    corners = "OOOO" if len(table.noses) else "    "
+    rows = ["".join(_paint(c, o) if colour else c for c, o in zip(*row, strict=True)) for row in zip(grid.cells.tolist(), grid.owner.tolist(), strict=True)]
+    middle = [end + row + end for row in rows]
+    return [corners[0] + "".join(rails[0]) + corners[1], *middle, corners[2] + "".join(rails[1]) + corners[3]]
+
+
+def _paint(character, ball):
+    if ball < 0:
+        return character
+    r, g, b = COLOURS[ball]
+    return f"\x1b[38;2;{r};{g};{b}m{character}\x1b[0m"

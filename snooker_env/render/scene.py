@@ -1,0 +1,177 @@
+"""What is there to draw? A table, its lines, balls and overlays, in metres and without a drawing library.
+
+World frame: origin at the table's centre, +x to the yellow side, +y to the black end. ``scene`` says what lies on the table now,
+``outline`` gives the parts of a table that never move, ``shot_scenes`` cuts a shot into the pictures of a film.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from .._check import array, number, refuse
+from ..game.balls import BAULK_Y, CUE, D_RADIUS, N_BALLS, SPOTS, YELLOW
+from ..physics.engine import EventKind
+from ..physics.table import Table
+
+RAIL = 0.155
+"""From the nose line to the outer edge of the table [m]: cushion and wood."""
+CUSHION = 0.050
+"""From the nose line to the wood [m]."""
+
+COLOURS = np.array(
+    [(250, 246, 232)] + [(186, 16, 22)] * 15 + [(246, 205, 20), (2, 80, 48), (128, 70, 26), (22, 76, 200), (240, 128, 158), (24, 24, 27)],
+    dtype=np.uint8,
+)
+"""(22, 3) red, green, blue by ball id."""
+LETTERS = "W" + "r" * 15 + "YGNBPK"
+"""By ball id: W the white cue ball, r a red; N is brown and K black, because B is blue."""
+
+BAULK_LINE = np.array([(-0.889, BAULK_Y), (0.889, BAULK_Y)])
+_TURN = np.linspace(np.pi, 2 * np.pi, 65)
+D_ARC = np.stack([D_RADIUS * np.cos(_TURN), BAULK_Y + D_RADIUS * np.sin(_TURN)], axis=1)
+SPOT_MARKS = SPOTS[YELLOW:]
+
+for _constant in (COLOURS, BAULK_LINE, D_ARC):
+    _constant.setflags(write=False)
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """The parts of a table that never move. All empty for unbounded cloth."""
+
+    cushions: tuple
+    """Closed polygons (m, 2): nose, the jaw arcs at its two ends, and the cushion's back under the wood."""
+    noses: tuple
+    """Polylines (m, 2): the part of each cushion that balls meet, arc - nose - arc."""
+    falls: np.ndarray
+    """(k, 3) centre x, y and radius of the slate circles over which balls drop."""
+    throats: np.ndarray
+    """(k, 5) the hole in the wood: from x, y (middle of the mouth) to x, y, half as wide as the fifth number says."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """One picture. Only balls on the table are in it; k of them."""
+
+    table: Table
+    ids: np.ndarray
+    """(k,) ball ids: 0 the cue ball, 1 to 15 reds, 16 to 21 yellow to black."""
+    positions: np.ndarray
+    """(k, 2) [m]."""
+    paths: dict
+    """Ball id -> (m, 2) [m]: where that ball ran."""
+    aim: np.ndarray | None
+    """(m, 2) [m]: line of aim."""
+    ghost: np.ndarray | None
+    """(2,) [m]: where the cue ball should meet its object ball."""
+    text: str
+
+    @property
+    def colours(self):
+        """(k, 3) uint8."""
+        return COLOURS[self.ids]
+
+    @property
+    def labels(self):
+        """One letter a ball."""
+        return tuple(LETTERS[i] for i in self.ids)
+
+
+def scene(table, positions, on_table=None, *, paths=None, aim=None, ghost=None, text=""):
+    """What to draw: n <= 22 balls with the ids 0 .. n-1 at ``positions`` (n, 2) [m], and what to lay over them.
+
+    table: as in ``snooker_env.simulate``; on_table (n,) bool, None for all; paths: {ball id: (m, 2) points}, e.g. of ``ball_paths``;
+    aim: (m, 2) points of a line; ghost: (2,) a ball's outline; text: one line of status. Arrays are copied. Raises ValueError.
+    """
+    r = array("positions", positions, (-1, 2))
+    if len(r) > N_BALLS:
+        raise refuse("positions", f"array of shape {r.shape}", f"must hold at most {N_BALLS} balls")
+    here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
+    if here.shape != (len(r),) or here.dtype != bool:
+        raise refuse("on_table", f"{here.dtype} array of shape {here.shape}", f"must be bool of shape ({len(r)},)")
+    paths = {} if paths is None else paths
+    for ball in paths:
+        if ball not in range(N_BALLS):
+            raise refuse("paths", ball, f"must have ball ids 0 to {N_BALLS - 1} as keys")
+    ids = np.flatnonzero(here)
+    return Scene(
+        Table.of(table), ids, r[ids], {int(ball): array(f"paths[{ball}]", points, (-1, 2)) for ball, points in paths.items()},
+        None if aim is None else array("aim", aim, (-1, 2)), None if ghost is None else array("ghost", ghost, (2,)), str(text),
+    )  # fmt: skip
+
+
+def ball_paths(shot, balls=(CUE,), until=None, step=0.02):
+    """{ball: (m, 2) points [m]} of a ``Shot`` from its start to the time ``until`` [s] (None: to its end), every ``step`` seconds.
+
+    Times of impacts are added, so that corners are sharp; a ball that did not move has no path.
+    """
+    until = shot.duration if until is None else min(number("until", until, 0.0), shot.duration)
+    times = np.append(np.arange(0.0, until, number("step", step, 0.0, open_low=True)), until)
+    impacts = shot.events["time"][shot.events["kind"] <= EventKind.POT]
+    times = np.union1d(times, impacts[impacts < until])
+    r = shot.at(times)[0]
+    paths = {}
+    for ball in balls:
+        points = r[:, ball]
+        moved = np.append(True, np.any(np.abs(np.diff(points, axis=0)) > 1e-5, axis=1))
+        if moved.sum() > 1:
+            paths[int(ball)] = points[moved]
+    return paths
+
+
+def shot_scenes(table, shot, *, fps=30.0, speed=1.0, trail=(CUE,), **overlays):
+    """The film of a ``Shot``: one ``Scene`` every speed / fps seconds of the shot's own time, and one of its end.
+
+    A potted ball leaves the picture when it drops. trail: balls whose path grows as they run; overlays: as in ``scene``.
+    """
+    step = number("speed", speed, 0.0, open_low=True) / number("fps", fps, 0.0, open_low=True)
+    drops = shot.events[shot.events["kind"] == EventKind.POT]
+    gone_at = np.where(shot.on_table, np.inf, -1.0)  # -1: not on the table when the shot began
+    gone_at[drops["i"]] = drops["time"]
+    for t in np.append(np.arange(0.0, shot.duration, step), shot.duration):
+        yield scene(table, shot.at(t)[0], gone_at > t, paths=ball_paths(shot, trail, until=t), **overlays)
+
+
+@lru_cache(maxsize=16)
+def outline(table):
+    """The ``Outline`` of a ``Table``, put together from its noses, jaws and falls."""
+    cushions, noses = [], []
+    for axis, side, level, low, high in table.noses:
+        out = np.array([side, 0.0]) if axis == 0 else np.array([0.0, side])  # from the nose into the wood
+        left, right = (_jaw(table.jaws, _point(axis, side * level, end), out) for end in (low, high))
+        nose = np.concatenate([left[::-1], right])
+        depth = max(CUSHION + 0.017, *(nose @ out - level))  # some way under the wood
+        ends = [_onward(arc, out, level + depth) for arc in (left, right)]
+        noses.append(nose)
+        cushions.append(np.concatenate([ends[:1], nose, ends[1:]]))
+    return Outline(tuple(cushions), tuple(noses), table.falls, np.array([_throat(fall, noses) for fall in table.falls]).reshape(-1, 5))
+
+
+def _point(axis, across, along):
+    return np.array([across, along] if axis == 0 else [along, across])
+
+
+def _jaw(jaws, start, out):
+    """(m, 2) the jaw arc that begins at ``start`` on a nose, from there to its end in the pocket; only ``start`` if there is none."""
+    for cx, cy, radius, ux, uy, cos_half in jaws:
+        centre = np.array([cx, cy])
+        if np.allclose(centre - radius * out, start, atol=1e-6):
+            first, middle = np.arctan2(-out[1], -out[0]), np.arctan2(uy, ux)
+            half = np.arccos(cos_half) * np.sign(np.sin(middle - first))
+            angles = middle + half * np.linspace(-1.0, 1.0, 25)
+            return centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    return start[None]
+
+
+def _onward(arc, out, level):
+    """Where a jaw, run on straight behind its arc, meets the line ``level`` behind the nose."""
+    onward = arc[-1] - arc[-2] if len(arc) > 1 else out
+    return arc[-1] + onward * ((level - arc[-1] @ out) / (onward @ out))
+
+
+def _throat(fall, noses):
+    """The hole in the wood: from the middle between the pocket's two jaw ends to the centre of its fall."""
+    ends = sorted((end for nose in noses for end in (nose[0], nose[-1])), key=lambda end: np.hypot(*(end - fall[:2])))[:2]
+    return [*(ends[0] + ends[1]) / 2, *fall[:2], np.hypot(*(ends[0] - ends[1])) / 2]

@@ -1,0 +1,95 @@
+"""Does the code place and see as a case says? The kinds "spotting" and "snooker_geometry" of ``tests.rules_cases``."""
+
+import numpy as np
+
+from snooker_env.game.balls import BALL_RADIUS, CUE, HALF_LENGTH, N_BALLS, NAMES, SPOTS, colour, mask_of
+from snooker_env.game.snookered import is_snookered
+from snooker_env.game.spotting import spot_colours
+
+ABOUT = ("id", "kind", "title", "rule", "confidence", "note", "expect")
+
+
+def unknown(given, known):
+    extra = set(given) - set(known)
+    return f"not understood: {', '.join(sorted(extra))}" if extra else None
+
+
+def blockers(occupied, no_room):
+    """Centres of balls that occupy the spots named and leave no room between some of them and the top cushion."""
+    balls = [SPOTS[colour(name)].copy() for name in occupied]
+    for name in no_room:
+        x, y = SPOTS[colour(name)]
+        while True:
+            ys = np.arange(y, HALF_LENGTH - BALL_RADIUS, 1e-4)
+            free = ys[~touched(balls, x, ys)]
+            if not len(free):
+                break
+            # As high as it still bars the lowest free place, but not into the next ball above.
+            above = min([b[1] for b in balls if b[0] == x and b[1] > free[0]], default=np.inf)
+            balls.append(np.array([x, min(free[0] + 1.9 * BALL_RADIUS, above - 2 * BALL_RADIUS, HALF_LENGTH - BALL_RADIUS)]))
+    return balls
+
+
+def touched(balls, x, ys):
+    """For each y: would a ball at (x, y) touch one of ``balls``?"""
+    if not len(balls):
+        return np.zeros(len(ys), dtype=bool)
+    bx, by = np.array(balls).T
+    return np.any(np.hypot(bx - x, ys[:, None] - by) <= 2 * BALL_RADIUS, axis=1)
+
+
+def run_spotting(case):
+    problem = unknown(case, (*ABOUT, "to_spot", "occupied", "no_room_toward_top"))
+    if problem:
+        return problem
+    to_spot = [colour(name) for name in case["to_spot"]]
+    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, dtype=bool)
+    spare = [i for i in range(1, N_BALLS) if i not in to_spot]
+    for ball, place in zip(spare, blockers(case["occupied"], case.get("no_room_toward_top", [])), strict=False):
+        positions[ball], on_table[ball] = place, True
+    positions, on_table = spot_colours(positions, on_table, mask_of(to_spot))
+    if not all(on_table[to_spot]):
+        return "a colour was not returned"
+    for name, wanted in case["expect"].items():
+        ball = colour(name)
+        others = [positions[i] for i in range(N_BALLS) if on_table[i] and i != ball]
+        problem = misplaced(positions[ball], others, wanted)
+        if problem:
+            return f"{name} at {positions[ball]}, expected {wanted}: {problem}"
+    return None
+
+
+def misplaced(place, others, wanted):
+    """What is wrong with a place, found by trying places 10 um apart on the line; None if nothing is."""
+    if touched(others, place[0], place[1:])[0]:
+        return "touches a ball"
+    if wanted in NAMES:
+        return None if np.array_equal(place, SPOTS[colour(wanted)]) else "not that spot"
+    near, name, side = wanted.split(":")
+    sign = {"toward_top": 1.0, "toward_baulk_on_centre_line": -1.0}.get(side)
+    if near != "near" or sign is None:
+        return "not understood"
+    x, y = SPOTS[colour(name)]
+    if place[0] != x or sign * (place[1] - y) <= 0:
+        return "not on the line"
+    if place[1] + BALL_RADIUS >= HALF_LENGTH:
+        return "touches the cushion"
+    step = 1e-5
+    if not all(touched(others, x, np.arange(y, place[1] - sign * step, sign * step))):
+        return "there is a nearer place"
+    if sign < 0 and not all(touched(others, x, np.arange(y, HALF_LENGTH - BALL_RADIUS, step))):
+        return "there is room above"
+    return None
+
+
+def run_snooker_geometry(case):
+    problem = unknown(case, (*ABOUT, "cue", "balls_on", "obstructing"))
+    if problem:
+        return problem
+    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, dtype=bool)
+    on = range(1, 1 + len(case["balls_on"]))
+    obstructing = range(N_BALLS - len(case["obstructing"]), N_BALLS)
+    for ball, place in zip([CUE, *on, *obstructing], [case["cue"], *case["balls_on"], *case["obstructing"]], strict=True):
+        positions[ball], on_table[ball] = np.array(place) / 1000, True
+    got = is_snookered(positions, on_table, mask_of(on))[0]
+    return None if got == case["expect"] else f"expected {case['expect']}, got {got}"

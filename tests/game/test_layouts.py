@@ -1,0 +1,76 @@
+"""Do the layouts stand as they promise, for every seed, and only from the seed?"""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from snooker_env.game import layouts
+from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKETS, SPOTS, YELLOW
+
+NAMES = [*layouts.LAYOUTS, "random:0", "random:6", "random:15"]
+
+
+def gaps(positions, on_table):
+    """Gaps between the cue ball and each other ball on the table, and the least between those."""
+    placed = positions[on_table]
+    distances = np.hypot(*(placed[:, None] - placed[None]).T) - 2 * BALL_RADIUS
+    np.fill_diagonal(distances, np.inf)
+    return distances
+
+
+@pytest.mark.parametrize("name", NAMES)
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_every_layout_is_playable(name, seed):
+    positions, on_table = layouts.layout(name, np.random.default_rng(seed))
+    assert positions.shape == (22, 2) and positions.dtype == np.float64 and on_table.shape == (22,) and on_table.dtype == np.bool_
+    assert on_table[0] and np.all(on_table[YELLOW:])
+    assert np.array_equal(positions[YELLOW:], SPOTS[YELLOW:])
+    distances = gaps(positions, on_table)
+    assert distances.min() > -1e-12
+    assert distances[0].min() >= layouts.GAP - 1e-12
+    if name != "break_off":
+        assert distances.min() >= layouts.GAP - 1e-12
+    sprinkled = positions[:16][on_table[:16]] if name.startswith("random") else positions[:1]
+    assert np.all(np.abs(sprinkled) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - layouts.CUSHION_GAP)
+    assert all(np.hypot(*(POCKETS - place).T).min() >= layouts.POCKET_GAP for place in sprinkled)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_generator_decides(name):
+    first, again, other = (layouts.layout(name, np.random.default_rng(seed))[0] for seed in (5, 5, 6))
+    assert np.array_equal(first, again)
+    assert not np.array_equal(first, other)
+    rng = np.random.default_rng(5)
+    assert not np.array_equal(layouts.layout(name, rng)[0], layouts.layout(name, rng)[0])
+
+
+@pytest.mark.parametrize(("name", "reds"), [("break_off", 15), ("line_up", 15), ("colours", 0), ("random:7", 7)])
+def test_number_of_reds(name, reds):
+    assert layouts.layout(name, np.random.default_rng(0))[1][1:16].sum() == reds
+
+
+def test_break_off_is_played_from_the_d():
+    places = np.array([layouts.break_off(np.random.default_rng(seed))[0][0] for seed in range(200)]) - [0.0, BAULK_Y]
+    assert np.all(places[:, 1] <= 0) and np.all(np.hypot(*places.T) <= D_RADIUS)
+    assert np.ptp(places[:, 0]) > 1.5 * D_RADIUS
+
+
+def test_line_up_is_a_line_through_which_a_ball_passes():
+    positions, _ = layouts.line_up(np.random.default_rng(0))
+    on_line = np.sort(np.append(positions[1:16, 1], SPOTS[19:22, 1]))
+    assert np.all(positions[1:16, 0] == 0.0)
+    assert np.diff(on_line).min() > 4 * BALL_RADIUS
+    assert abs(on_line).max() < HALF_LENGTH - 3 * BALL_RADIUS
+
+
+@pytest.mark.parametrize("name", ["", "opened", "random", "random:", "random:16", "random:-1", "random:N", None, 3])
+def test_unknown_names_are_refused(name):
+    with pytest.raises(ValueError):
+        layouts.layout(name, np.random.default_rng(0))
+
+
+def test_other_generators_are_refused():
+    with pytest.raises(ValueError, match="Generator"):
+        layouts.break_off(np.random.RandomState(0))

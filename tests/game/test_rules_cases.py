@@ -1,0 +1,56 @@
+"""Does the real code pass every case of the file, and would it show if it did not?"""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests import rules_cases
+
+FILE = Path(__file__).parents[1] / "data" / "rules_cases.json"
+CASES = json.loads(FILE.read_text(encoding="utf-8"))["cases"]
+
+
+@pytest.mark.parametrize("case", CASES, ids=[case["id"] for case in CASES])
+def test_case(case):
+    assert rules_cases.run(case) is None
+
+
+WRONG = {True: False, False: True, None: "A", "A": "B", "B": "A", "red": "blue", "black": "yellow"}
+
+
+@pytest.mark.parametrize("case", CASES, ids=[case["id"] for case in CASES])
+def test_a_wrong_expectation_fails(case):
+    expect = case["expect"]
+    if isinstance(expect, bool):
+        assert rules_cases.run(case | {"expect": not expect})
+        return
+    for key, value in expect.items():
+        if isinstance(value, dict):
+            wrong = {player: points + 1 for player, points in value.items()}
+        elif isinstance(value, list):
+            wrong = [*value, "red"]
+        elif isinstance(value, bool) or value is None:
+            wrong = WRONG[value]
+        elif isinstance(value, int):
+            wrong = value + 1
+        else:
+            wrong = WRONG.get(value, "green" if value != "green" else "brown")
+        assert rules_cases.run(case | {"expect": expect | {key: wrong}}), key
+
+
+def test_unknown_keys_fail():
+    case = CASES[0]
+    assert "not understood" in rules_cases.run(case | {"expect": {"no such key": 1}})
+    assert "not understood" in rules_cases.run(case | {"shot": case["shot"] | {"no such field": True}})
+    assert "not understood" in rules_cases.run(case | {"kind": "no such kind"})
+
+
+def test_command_line(tmp_path, capsys):
+    assert rules_cases.main([str(FILE)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"{len(CASES)} passed, 0 failed"
+    bad = dict(CASES[0], expect=CASES[0]["expect"] | {"foul": True})
+    file = tmp_path / "bad.json"
+    file.write_text(json.dumps({"cases": [CASES[0], bad]}), encoding="utf-8")
+    assert rules_cases.main([str(file)]) == 1
+    assert capsys.readouterr().out.splitlines()[-1] == "1 passed, 1 failed"

@@ -1,0 +1,233 @@
+"""Are snookers and clear paths seen as the rules define them? Named cases, and a cue ball rolled in small steps as the judge."""
+
+import time
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, BLACK, D_RADIUS, PINK, SPOTS, YELLOW, mask_of
+from snooker_env.game.paths import paths
+from snooker_env.game.snookered import is_snookered
+
+R = BALL_RADIUS
+RED = mask_of([1])
+
+
+def table(cue, reds, others=()):
+    """Arrays and the mask on: reds are on, the others (from black down) are not. ``cue`` None is in hand."""
+    positions, on_table = SPOTS.copy(), np.zeros(22, dtype=bool)
+    for ball, place in [*zip(range(1, 16), reds), *zip(range(BLACK, YELLOW - 1, -1), others)]:  # noqa: B905
+        positions[ball], on_table[ball] = place, True
+    if cue is not None:
+        positions[0], on_table[0] = cue, True
+    return positions, on_table, mask_of(range(1, 1 + len(reds)))
+
+
+def snookered(*args, **options):
+    return is_snookered(*table(*args), **options)
+
+
+CUE = (0.0, -0.8)
+FAR = (0.0, 0.8)
+
+
+@pytest.mark.parametrize(
+    ("reds", "others", "expected"),
+    [
+        ([FAR], [], False),
+        ([FAR], [(0.0, 0.0)], True),
+        ([FAR], [(0.06, 0.0)], True),  # one edge hidden is enough
+        ([FAR], [(-0.06, 0.0)], True),
+        ([FAR], [(0.08, 0.0)], False),
+        ([FAR], [(0.0, -0.9)], False),  # behind the cue ball
+        ([FAR], [(0.0, 0.9)], False),  # behind the red
+        ([FAR, (0.0, 0.3)], [], False),  # a ball on hides nothing
+        ([FAR, (0.5, 0.7)], [(0.0, 0.0)], False),  # one of two is enough
+        ([FAR, (0.5, 0.7)], [(0.06, 0.0), (0.33, 0.3)], True),
+        ([(0.0, -0.8 + 2 * R)], [(0.0, 0.0)], False),  # touching a ball on
+        ([FAR], [(0.0, -0.8 - 2 * R)], False),  # touching a ball not on, which is behind
+        ([FAR], [(0.0, -0.8 + 2 * R)], True),
+    ],
+)
+def test_snookers(reds, others, expected):
+    assert snookered(CUE, reds, others)[0] == expected
+
+
+def test_the_edge_is_that_of_a_graze():
+    # The tangent at 2 R from FAR passes x(y) = 2 R cos / ... ; a ball just 2 R from that line is not in the way, 0.1 mm nearer it is.
+    d = 1.6
+    s = 2 * R / d
+    normal = np.array([np.sqrt(1 - s * s), -s])  # the tangent on the right goes along (s, cos) from the cue ball
+    middle = np.array(CUE) + 0.8 * np.array([s, np.sqrt(1 - s * s)])
+    assert not snookered(CUE, [FAR], [middle + 2 * R * normal])[0]
+    assert snookered(CUE, [FAR], [middle + (2 * R - 1e-4) * normal])[0]
+
+
+@pytest.mark.parametrize(
+    ("reds", "others", "effective"),
+    [
+        ([FAR], [(0.0, 0.0), (0.0, 0.3)], [BLACK]),  # the nearest
+        ([FAR], [(0.0, 0.3), (0.0, 0.0)], [PINK]),
+        ([FAR], [(-0.06, 0.0), (0.06, 0.0)], [BLACK, PINK]),  # equally near: both
+        ([FAR, (0.0, 1.2)], [(0.0, 0.0)], [BLACK]),
+        ([FAR, (0.5, 0.7)], [(0.06, 0.0), (0.33, 0.3)], []),  # different reds, different balls
+        ([FAR], [], []),
+    ],
+)
+def test_effective_snookering_ball(reds, others, effective):
+    assert snookered(CUE, reds, others)[1] == mask_of(effective)
+
+
+def test_a_cushion_does_not_snooker():
+    jaw, elsewhere = np.array([[0.08, -0.6, 0.06]]), np.array([[0.58, -0.6, 0.06]])
+    behind, before = (0.06, 0.0), (0.05, -0.7)
+    assert snookered(CUE, [FAR], [behind])[0]
+    assert not snookered(CUE, [FAR], [behind], jaws=jaw)[0]  # the jaw bars the edge and is nearer
+    assert snookered(CUE, [FAR], [before], jaws=jaw)[0]  # the ball is nearer
+    assert snookered(CUE, [FAR], [behind], jaws=elsewhere)[0]  # the jaw bars nothing
+
+
+# In hand: the whole D
+
+
+def test_in_hand_sees_from_any_place():
+    assert not snookered(None, [FAR])[0]
+    assert not snookered(None, [FAR], [(0.0, 0.0)])[0]  # round the blocker from the ends of the D
+    cage = [(2.1 * R * np.sin(a), 0.8 - 2.1 * R * np.cos(a)) for a in np.radians([-60.0, 0.0, 60.0])]
+    assert snookered(None, [FAR], cage)[0]
+    assert not snookered(None, [FAR, (0.5, 0.0)], cage)[0]
+
+
+@pytest.mark.parametrize(("spare", "expected"), [(0.0012, False), (-0.0005, True)])
+def test_in_hand_finds_a_narrow_view(spare, expected):
+    # From the brown spot both edges of FAR need half a way of 2 R (1 + a / b) at the gate, a and b the runs to gate and red. From beside
+    # the spot the way shifts at the gate, so that the view is a few millimetres wide; from behind it needs more.
+    gate = 0.4
+    half = 2 * R * (1 + (gate - BAULK_Y) / (FAR[1] - BAULK_Y)) + spare
+    assert snookered(None, [FAR], [(-half, gate), (half, gate)])[0] == expected
+
+
+def test_in_hand_a_ball_in_the_d_takes_its_place_away():
+    full = [(x, BAULK_Y + 0.001) for x in np.linspace(-D_RADIUS, D_RADIUS, 6)]
+    assert not snookered(None, [FAR], full)[0]
+
+
+def test_in_hand_agrees_with_places_drawn_at_random():
+    rng = np.random.default_rng(1)
+    seen = {True: 0, False: 0}
+    for _ in range(60):
+        red = np.array([rng.uniform(-0.8, 0.8), rng.uniform(-0.9, 1.7)])
+        others = [red + rng.uniform(2 * R, 0.4) * np.array([np.sin(a), -np.cos(a)]) for a in rng.uniform(-1.0, 1.0, 2)]
+        places = rng.uniform([-D_RADIUS, -D_RADIUS], [D_RADIUS, 0.0], (300, 2))
+        places = places[np.hypot(*places.T) <= D_RADIUS] + [0.0, BAULK_Y]
+        legal = [p for p in places if all(np.hypot(*(p - b)) > 2 * R + 1e-3 for b in [red, *others])]
+        somewhere = any(not snookered(p, [red], others)[0] for p in legal)
+        in_hand = snookered(None, [red], others)[0]
+        assert not (somewhere and in_hand)
+        seen[in_hand] += 1
+    assert min(seen.values()) >= 5
+
+
+def test_in_hand_is_fast_enough():
+    positions, on_table, on = table(None, [(x, 1.6) for x in np.linspace(-0.8, 0.8, 15)], [(x, 1.5) for x in np.linspace(-0.7, 0.7, 6)])
+    is_snookered(positions, on_table, on)
+    start = time.perf_counter()
+    is_snookered(positions, on_table, on)
+    assert time.perf_counter() - start < 0.25
+
+
+# Small steps as the judge
+
+
+def rolls_into(cue, angle, reach, balls):
+    """Index of the ball that a cue ball rolling along ``angle`` meets first within ``reach``, or None: tried every 0.2 mm."""
+    path = np.array(cue) + np.arange(0.0, reach, 2e-4)[:, None] * [np.cos(angle), np.sin(angle)]
+    distance = np.hypot(*(path[:, None] - np.array(balls)).T).T
+    meets = np.argwhere(distance < 2 * R - 1e-7)
+    return int(meets[0][1]) if len(meets) else None
+
+
+@st.composite
+def scenes(draw):
+    """A cue ball at the origin, one or two reds, up to four other balls between and around."""
+    number = st.floats(-0.6, 0.6).map(lambda x: round(x, 4))
+    places = [(0.0, 0.0)]
+    for place in draw(st.lists(st.tuples(number, number), min_size=2, max_size=6)):
+        if all(np.hypot(place[0] - x, place[1] - y) > 2 * R + 1e-3 for x, y in places):
+            places.append(place)
+    assume(len(places) >= 3)
+    reds = draw(st.integers(1, min(2, len(places) - 2)))
+    return places[1 : 1 + reds], places[1 + reds :]
+
+
+@settings(max_examples=60, deadline=None)
+@given(scenes())
+def test_paths_agree_with_rolling(scene):
+    reds, others = scene
+    positions, on_table, on = table((0.0, 0.0), reds, others)
+    any_part, full = paths(positions, on_table, on)
+    # A narrow opening may fall between the directions of the coarse sweep; then the fine one must find it.
+    assert any_part == (swept(reds, others, 81) or (any_part and swept(reds, others, 4001)))
+    fulls = [rolls_into((0.0, 0.0), np.arctan2(red[1], red[0]), 1.0, [red, *others]) == 0 for red in reds]
+    margins = [abs(abs(b[0] * r[1] - b[1] * r[0]) / np.hypot(*r) - 2 * R) for r in reds for b in others]
+    assume(min(margins) > 1e-4)
+    assert full == any(fulls)
+
+
+def swept(reds, others, directions):
+    """Does a sweep over each red find a direction in which a ball rolls into it? Other reds do not obstruct, so they are taken away."""
+    spread = np.linspace(-0.999, 0.999, directions)
+    return any(
+        rolls_into((0.0, 0.0), np.arctan2(red[1], red[0]) + part * np.arcsin(min(1.0, 2 * R / np.hypot(*red))), 1.0, [red, *others]) == 0
+        for red in reds
+        for part in spread
+    )
+
+
+@settings(max_examples=150, deadline=None)
+@given(scenes())
+def test_snookers_agree_with_rolling(scene):
+    reds, others = scene
+    open_reds = []
+    for red in reds:
+        d = np.hypot(*red)
+        edges = np.arctan2(red[1], red[0]) + np.array([-1, 1]) * np.arcsin(2 * R / d)
+        run = np.sqrt(d * d - 4 * R * R)
+        steps = np.linspace(0.0, run, 4000)[:, None]
+        nearest = [np.hypot(*(steps * [np.cos(a), np.sin(a)] - b).T).min() for a in edges for b in np.array(others)]
+        assume(abs(np.array(nearest) - 2 * R).min() > 1e-5)
+        open_reds.append(min(nearest) >= 2 * R)
+    assert snookered((0.0, 0.0), reds, others)[0] != any(open_reds)
+
+
+# Paths by name
+
+
+@pytest.mark.parametrize(
+    ("reds", "others", "expected"),
+    [
+        ([FAR], [], (True, True)),
+        ([FAR], [(0.0, 0.0)], (False, False)),
+        ([FAR], [(0.06, 0.0)], (True, True)),
+        ([FAR], [(0.04, 0.0)], (True, False)),
+        ([FAR], [(0.07, 0.0), (-0.07, 0.0)], (True, True)),
+        ([FAR], [(0.04, 0.0), (-0.04, 0.1)], (False, False)),
+        ([FAR, (0.0, 0.3)], [], (True, True)),  # a red behind a red is not obstructed
+        ([FAR], [(0.0, 0.9)], (True, True)),
+        ([FAR], [(0.05, 0.755)], (True, False)),
+    ],
+)
+def test_clear_paths(reds, others, expected):
+    assert paths(*table(CUE, reds, others)) == expected
+
+
+def test_wrong_input_is_refused():
+    positions, on_table, on = table(CUE, [FAR])
+    with pytest.raises(ValueError, match="on = 1"):
+        is_snookered(positions, on_table, 1)
+    with pytest.raises(ValueError, match="jaws"):
+        is_snookered(positions, on_table, on, jaws=[[1.0, 2.0]])
+    with pytest.raises(ValueError, match=r"on_table\[0\]"):
+        paths(*table(None, [FAR]))

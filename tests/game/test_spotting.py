@@ -1,0 +1,184 @@
+"""Does every colour come back, to the place that the rule says, touching nothing?"""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from snooker_env.game.balls import (
+    BALL_RADIUS,
+    BLACK,
+    BLUE,
+    BROWN,
+    COLOURS_MASK,
+    GREEN,
+    HALF_LENGTH,
+    HALF_WIDTH,
+    NAMES,
+    PINK,
+    SPOTS,
+    YELLOW,
+    mask_of,
+)
+from snooker_env.game.spotting import CLEARANCE, spot_colours
+from tests.game.geometry_cases import misplaced
+
+SIX = range(YELLOW, BLACK + 1)
+
+
+def table(*places):
+    """A table with a red at each place."""
+    positions, on_table = SPOTS.copy(), np.zeros(22, dtype=bool)
+    for red, place in enumerate(places, start=1):
+        positions[red], on_table[red] = place, True
+    return positions, on_table
+
+
+def spotted(ball, *places):
+    positions, on_table = spot_colours(*table(*places), 1 << ball)
+    assert on_table[ball]
+    return positions[ball]
+
+
+@pytest.mark.parametrize("ball", SIX)
+def test_own_spot(ball):
+    assert np.array_equal(spotted(ball), SPOTS[ball])
+
+
+@pytest.mark.parametrize("ball", SIX)
+@pytest.mark.parametrize("distance", [0.0, 0.03, 2 * BALL_RADIUS])
+def test_occupied_spot_sends_it_to_the_highest_free_one(ball, distance):
+    at = SPOTS[ball] - [0.0, distance]
+    highest = BLACK if ball != BLACK else PINK
+    assert np.array_equal(spotted(ball, at), SPOTS[highest])
+    assert np.array_equal(spotted(ball, at, SPOTS[highest]), SPOTS[max(set(SIX) - {ball, highest})])
+
+
+@pytest.mark.parametrize("ball", SIX)
+def test_a_ball_that_just_does_not_touch_leaves_the_spot_free(ball):
+    assert np.array_equal(spotted(ball, SPOTS[ball] - [2 * BALL_RADIUS + CLEARANCE, 0.0]), SPOTS[ball])
+
+
+@pytest.mark.parametrize("ball", SIX)
+def test_all_occupied_goes_up_from_its_own_spot(ball):
+    x, y = spotted(ball, *SPOTS[16:])
+    assert x == SPOTS[ball, 0]
+    assert y - SPOTS[ball, 1] == pytest.approx(2 * BALL_RADIUS + CLEARANCE, abs=1e-12)
+
+
+def test_the_way_up_passes_over_a_second_ball_beside_the_line():
+    beside = SPOTS[BLUE] + [0.04, 0.08]  # bars 0.08 +- sqrt(0.0525^2 - 0.04^2)
+    y = spotted(BLUE, *SPOTS[16:], beside)[1]
+    assert y == pytest.approx(0.08 + np.sqrt((2 * BALL_RADIUS + CLEARANCE) ** 2 - 0.04**2), abs=1e-12)
+
+
+@pytest.mark.parametrize(("ball", "reds"), [(BLACK, [1.56, 1.66, 1.752]), (PINK, [0.99, 1.09, 1.19, 1.29, 1.38, 1.56, 1.66, 1.752])])
+def test_no_room_above_goes_below_on_the_centre_line(ball, reds):
+    x, y = spotted(ball, *SPOTS[16:], *((0.0, y) for y in reds))
+    assert x == 0.0
+    assert y - SPOTS[ball, 1] == pytest.approx(-2 * BALL_RADIUS - CLEARANCE, abs=1e-12)
+
+
+def test_the_last_room_above_must_clear_the_cushion():
+    top = HALF_LENGTH - BALL_RADIUS
+    reds = [(0.0, 1.55), (0.0, 1.65)]
+    for last, above in ((top - 2 * BALL_RADIUS - 3 * CLEARANCE, True), (top - 2 * BALL_RADIUS, False)):
+        y = spotted(BLACK, *SPOTS[16:], *reds, (0.0, last))[1]
+        assert (y > SPOTS[BLACK, 1]) == above
+        assert y + BALL_RADIUS < HALF_LENGTH
+
+
+def test_several_go_highest_first():
+    positions, _ = spot_colours(*table(SPOTS[BLACK], SPOTS[PINK]), mask_of([PINK, BLACK]))
+    assert np.array_equal(positions[BLACK], SPOTS[BLUE])
+    assert np.array_equal(positions[PINK], SPOTS[BROWN])
+
+
+def test_a_colour_whose_own_spot_is_free_is_not_robbed_of_it():
+    positions, _ = spot_colours(*table(SPOTS[BLACK]), mask_of([PINK, BLACK]))
+    assert np.array_equal(positions[PINK], SPOTS[PINK])
+    assert np.array_equal(positions[BLACK], SPOTS[BLUE])
+
+
+def test_the_cue_ball_occupies_a_spot_unless_it_is_in_hand():
+    positions, on_table = table()
+    positions[0] = SPOTS[GREEN]
+    assert np.array_equal(spot_colours(positions, on_table, 1 << GREEN)[0][GREEN], SPOTS[GREEN])
+    on_table[0] = True
+    assert np.array_equal(spot_colours(positions, on_table, 1 << GREEN)[0][GREEN], SPOTS[BLACK])
+
+
+def test_the_arrays_given_are_not_changed():
+    positions, on_table = table(SPOTS[BLACK])
+    spot_colours(positions, on_table, COLOURS_MASK)
+    assert not on_table[16:].any() and np.array_equal(positions[16:], SPOTS[16:])
+
+
+@pytest.mark.parametrize("mask", [1, 2, 1 << 22, -1, 1.0])
+def test_only_colours_can_be_spotted(mask):
+    with pytest.raises(ValueError, match="mask"):
+        spot_colours(*table(), mask)
+
+
+def test_wrong_arrays_are_refused():
+    positions, on_table = table()
+    for bad in ((positions[:21], on_table), (positions, on_table[:21]), (positions, on_table.astype(int)), (positions * np.nan, on_table)):
+        with pytest.raises(ValueError):
+            spot_colours(*bad, 1 << BLACK)
+
+
+@st.composite
+def crowded(draw):
+    """A legal table, dense about the spots and the lines above them, and a set of colours to return."""
+    waiting = draw(st.sets(st.integers(YELLOW, BLACK), min_size=1))
+    columns = st.sampled_from([0.0, 0.0, 0.0, SPOTS[YELLOW, 0], SPOTS[GREEN, 0]])
+    near = st.builds(lambda x, dx, y: (x + dx, y), columns, st.floats(-0.05, 0.05), st.floats(-1.1, HALF_LENGTH - BALL_RADIUS))
+    on_spot = st.sampled_from([tuple(SPOTS[i]) for i in SIX])
+    places = []
+    for place in draw(st.lists(st.one_of(near, on_spot), max_size=60)):
+        if all(np.hypot(place[0] - x, place[1] - y) >= 2 * BALL_RADIUS for x, y in places):
+            places.append(place)
+    balls = [0, *range(1, 16), *(i for i in SIX if i not in waiting)]
+    positions, on_table = SPOTS.copy(), np.zeros(22, dtype=bool)
+    for ball, place in zip(balls, places, strict=False):
+        positions[ball], on_table[ball] = place, True
+    return positions, on_table, waiting
+
+
+@settings(max_examples=300, deadline=None)
+@given(crowded())
+def test_every_colour_returns_and_none_overlaps(case):
+    positions, on_table, waiting = case
+    placed, present = spot_colours(positions, on_table, mask_of(waiting))
+    assert all(present[list(waiting)])
+    assert np.array_equal(placed[on_table], positions[on_table]) and np.all(present[on_table])
+    assert present.sum() == on_table.sum() + len(waiting)
+    for ball in waiting:
+        others = present.copy()
+        others[ball] = False
+        assert np.all(np.hypot(*(placed[others] - placed[ball]).T) > 2 * BALL_RADIUS)
+        assert abs(placed[ball, 0]) + BALL_RADIUS < HALF_WIDTH and abs(placed[ball, 1]) + BALL_RADIUS < HALF_LENGTH
+
+
+@settings(max_examples=100, deadline=None)
+@given(crowded())
+def test_one_colour_is_where_a_search_in_small_steps_finds_it(case):
+    positions, on_table, waiting = case
+    ball = max(waiting)
+    assume(not any(on_table[i] for i in waiting))
+    placed, _ = spot_colours(positions, on_table, 1 << ball)
+    others = list(positions[on_table])
+    reach = 2 * BALL_RADIUS
+
+    def free(place):
+        return not others or np.hypot(*(np.array(others) - place).T).min() >= reach + CLEARANCE
+
+    spots = [ball, *range(BLACK, YELLOW - 1, -1)]
+    # Skip tables on which a ball is within rounding of touching a spot: the search and the rule may read it differently.
+    assume(all(abs(np.hypot(*(np.array(others) - SPOTS[i]).T).min() - reach) > 2 * CLEARANCE for i in spots) if others else True)
+    target = next((i for i in spots if free(SPOTS[i])), None)
+    if target is not None:
+        assert np.array_equal(placed[ball], SPOTS[target])
+    else:
+        side = "toward_top" if placed[ball, 1] > SPOTS[ball, 1] else "toward_baulk_on_centre_line"
+        assert misplaced(placed[ball], others, f"near:{NAMES[ball]}:{side}") is None

@@ -1,0 +1,323 @@
+"""Does the referee agree with a file of cases? ``python -m tests.rules_cases FILE`` runs any file of that schema through the real code.
+
+Prints a line a case and last ``N passed, N failed``; the exit status is 1 if any failed. A case is judged by its kind: "shot",
+"option", "claim", "concede", "stalemate", "arithmetic", "spotting" or "snooker_geometry". Every key of ``expect`` is compared with what
+the code answers; a key, a field or a kind that is not understood makes the case fail, so that nothing passes unread.
+"""
+
+import ast
+import json
+import sys
+
+from snooker_env.game.balls import BLACK, CUE, CUE_BIT, N_BALLS, NAMES, YELLOW, BallOn, balls_on, colour, ids_of, mask_of
+from snooker_env.game.frame import Frame
+from snooker_env.game.referee import Stroke
+from snooker_env.game.ruling import AUTO
+from tests.game import geometry_cases
+from tests.game.geometry_cases import unknown
+
+PLAYERS = ("A", "B")
+CHOICES = {"play": "play", "play_again_as_left": "play_again", "replace_and_replay": "replace"}
+
+
+def ball_on_of(name):
+    return BallOn[name.upper()]
+
+
+def name_of(ball_on):
+    return None if ball_on == BallOn.NOTHING else ball_on.name.lower()
+
+
+def colours_in(mask):
+    return [NAMES[i] for i in ids_of(mask) if i >= YELLOW]
+
+
+def reds_in(mask):
+    return sum(1 <= i < YELLOW for i in ids_of(mask))
+
+
+def table(reds, colours):
+    return mask_of([*range(1, 1 + reds), *map(colour, colours)])
+
+
+def by_player(pair):
+    return dict(zip(PLAYERS, pair, strict=True))
+
+
+# Strokes
+
+
+def frame_before(before, miss):
+    """The frame that ``before`` describes."""
+    on_table = table(before.get("reds", 0), before.get("colours", []))
+    scores = before.get("scores", {"A": 0, "B": 0})
+    return Frame(
+        scores=tuple(scores[p] for p in PLAYERS),
+        striker=PLAYERS.index(before.get("striker", "A")),
+        on_table=on_table,
+        ball_on=ball_on_of(before["ball_on"]),
+        in_hand=before.get("in_hand", False),
+        free_ball=before.get("free_ball", False),
+        respotted_black=before.get("respotted_black", False),
+        miss=miss,
+    )
+
+
+def stroke_of(shot, free_ball):
+    """The stroke. Reds have no names in a file: those that leave the table are the first ones, and so are those struck."""
+    reds = iter(range(1, 16))
+
+    def ids(names):
+        return [CUE if n == "cue" else next(reds) if n == "red" else colour(n) for n in names]
+
+    potted, off = ids(shot["potted"]), ids(shot["forced_off"])
+    reds = iter(range(1, 16))
+    first = ids(shot["first_contact"])
+    reds = iter(range(1, 16))
+    touching = mask_of(ids(shot["touching"]))
+    chosen = shot.get("free_ball_nominated") if free_ball else shot.get("nominated")
+    return Stroke(
+        first=mask_of(first),
+        potted=mask_of(potted) | (CUE_BIT if shot["cue_potted"] else 0),
+        off=mask_of(off),
+        touching=touching,
+        moved=touching if shot["touching_ball_moved"] else 0,
+        # A free ball that nobody nominated is declined; a colour after a red is the one evidently played at.
+        nominated=colour(chosen) if chosen else 0 if free_ball else AUTO,
+        jump=shot["jump_shot"],
+        push=shot["push_stroke"],
+        double_hit=shot["double_hit"],
+        outside_d=shot["played_from_outside_D"],
+        snookered=shot["after"]["next_player_snookered"],
+        behind_free_ball=shot["after"]["effective_snookering_ball_is_free_ball"],
+    )
+
+
+SHOT_FIELDS = (
+    *("nominated", "free_ball_nominated", "first_contact", "touching", "touching_ball_moved", "potted", "cue_potted", "forced_off"),
+    *("jump_shot", "push_stroke", "double_hit", "played_from_outside_D", "clear_path_to_ball_on", "clear_full_ball_path", "after"),
+)
+BEFORE_FIELDS = ("reds", "colours", "ball_on", "free_ball", "scores", "striker", "in_hand", "respotted_black")
+
+
+def run_shot(case):
+    before, shot = case["before"], case["shot"]
+    problem = unknown(shot, SHOT_FIELDS) or unknown(before, BEFORE_FIELDS)
+    if problem:
+        return problem
+    frame = frame_before(before, "clear_path" if "foul_and_a_miss" in case["expect"] else "off")
+    paths = {"clear_path": bool(shot["clear_path_to_ball_on"]), "full_ball_path": bool(shot["clear_full_ball_path"])}
+    after, verdict = frame.play(stroke_of(shot, frame.free_ball), **paths)
+    over = after.phase == "over"
+    answers = {
+        "foul": bool(verdict.fouls),
+        "penalty_to_opponent": verdict.penalty,
+        "points_to_striker": verdict.points,
+        "next_striker": None if over or after.phase == "lot" else PLAYERS[after.striker],
+        "next_ball_on": name_of(after.ball_on),
+        "reds_left": reds_in(after.on_table),
+        "colours_left": colours_in(after.on_table),
+        "respotted": colours_in(verdict.respotted),
+        "cue_ball_in_hand": verdict.in_hand,
+        "free_ball_to_next": verdict.free_ball,
+        "frame_over": over,
+        "winner": PLAYERS[after.winner] if over else None,
+        "respotted_black_procedure": after.phase == "lot",
+        "foul_and_a_miss": after.miss_called,
+        "scores": by_player(after.scores),
+    }
+    return compare(case["expect"], answers)
+
+
+def compare(expect, answers):
+    """The first difference as a sentence, or None. The order of names in a list does not matter."""
+    for key, wanted in expect.items():
+        if key not in answers:
+            return f"not understood: expect.{key}"
+        got = answers[key]
+        if (sorted(got) != sorted(wanted)) if isinstance(wanted, list) else (got != wanted):
+            return f"{key}: expected {wanted!r}, got {got!r}"
+    return None
+
+
+# Decisions between strokes
+
+
+def refused(act):
+    """Whether the code refuses an act."""
+    try:
+        act()
+    except ValueError:
+        return True
+    return False
+
+
+def frame_answers(frame):
+    """What a frame says of itself, under every name that a case may use."""
+    over = frame.phase == "over"
+    return {
+        "next_striker": None if over else PLAYERS[frame.striker],
+        "next_ball_on": name_of(frame.ball_on),
+        "scores": by_player(frame.scores),
+        "reds": reds_in(frame.on_table),
+        "reds_left": reds_in(frame.on_table),
+        "cue_ball_in_hand": frame.in_hand,
+        "free_ball": frame.free_ball,
+        "free_ball_to_next": frame.free_ball,
+        "frame_over": over,
+        "winner": PLAYERS[frame.winner] if over else None,
+    }
+
+
+def fouled(before):
+    """A frame just after a foul by hitting nothing, in the state that ``before`` tells: (before the stroke, after it)."""
+    ball_on = ball_on_of(before.get("ball_on_before_foul", before.get("ball_on", "red")))
+    low = max(ball_on, BallOn.YELLOW)
+    on_table = mask_of(range(14 + low, N_BALLS)) | (mask_of(range(1, 16)) if ball_on <= BallOn.RED else 0)
+    offender = PLAYERS.index(before["foul_by"])
+    scores = tuple(before.get("scores", {"A": 0, "B": 0})[p] for p in PLAYERS)
+    miss = bool(before.get("miss"))
+    start = Frame(scores=scores, striker=offender, on_table=on_table, ball_on=ball_on, in_hand=False, miss="clear_path" if miss else "off")
+    # On any colour, the nomination that costs the penalty the case tells.
+    nominated = 14 + max(2, before.get("penalty", 4)) if ball_on == BallOn.ANY_COLOUR else AUTO
+    stroke = Stroke(nominated=nominated, snookered=bool(before.get("free_ball")))
+    return start, start.play(stroke, clear_path=miss, layout=("the position",))[0]
+
+
+def fair_strokes(frame):
+    """Strokes at each ball on, which is potted."""
+    for ball in ids_of(balls_on(frame.ball_on, frame.on_table)):
+        yield Stroke(first=1 << ball, potted=1 << ball, nominated=ball if frame.ball_on == BallOn.ANY_COLOUR else AUTO)
+
+
+def run_option(case):
+    before, what = case["before"], case["action"]["choice"]
+    if what == "miss_again":
+        problem = unknown(before, ["offender", "consecutive_misses_from_same_position_full_ball", "warned"])
+        if problem:
+            return problem
+        failures = before["consecutive_misses_from_same_position_full_ball"]
+        frame = Frame(striker=PLAYERS.index(before["offender"]), miss="clear_path", failures=failures, warned=before["warned"])
+        return compare(case["expect"], frame_answers(frame.play(Stroke(), clear_path=True, full_ball_path=True)[0]))
+    problem = unknown(before, ["foul_by", "ball_on", "ball_on_before_foul", "free_ball", "miss", "scores", "penalty"])
+    if problem or what not in CHOICES:
+        return problem or f"not understood: choice {what}"
+    start, foul = fouled(before)
+    if PLAYERS[foul.striker] != case["action"]["player"]:
+        return f"the choice is {PLAYERS[foul.striker]}'s"
+    if CHOICES[what] not in foul.choices:
+        return f"{what} is not open"
+    after = foul.choose(CHOICES[what])
+    played = [after.play(stroke)[1] for stroke in fair_strokes(after)]
+    free_choice = not any(verdict.fouls for verdict in played)
+    restored = (after.on_table, after.saved.layout) == (start.on_table, ("the position",)) if after.saved else False
+    answers = frame_answers(after) | {
+        "may_change_intended_ball": free_choice,
+        "may_score": all(v.points > 0 for v in played),
+        "revocable": not refused(lambda: after.choose("play")),
+        "position": "as before the stroke (incl. potted balls)" if restored else "as left",
+        "nomination_free": after.ball_on == BallOn.ANY_COLOUR and free_choice,
+    }
+    return compare(case["expect"], answers)
+
+
+def run_end(case):
+    """Kinds "claim" and "concede": an act that the code refuses leaves the frame as it was."""
+    before, action = case["before"], case["action"]
+    problem = unknown(before, BEFORE_FIELDS)
+    if problem:
+        return problem
+    frame = frame_before({"ball_on": "red", "reds": 15, "colours": list(NAMES[YELLOW:])} | before, "off")
+    player = PLAYERS.index(action["player"])
+    if action["choice"] == "claim":
+        can = player == frame.striker and not refused(frame.claim)
+        return compare(case["expect"], frame_answers(frame.claim() if can else frame))
+    if action["choice"] == "concede":
+        return compare(case["expect"], frame_answers(frame if refused(lambda: frame.concede(player)) else frame.concede(player)))
+    return f"not understood: choice {action['choice']}"
+
+
+def run_stalemate(case):
+    before = case["before"]
+    problem = unknown(before, ["scores", "breaker"])
+    if problem or case["action"]["choice"] != "restart":
+        return problem or f"not understood: choice {case['action']['choice']}"
+    breaker = PLAYERS.index(before["breaker"])
+    frame = Frame(scores=tuple(before["scores"][p] for p in PLAYERS), striker=1 - breaker, breaker=breaker, in_hand=False)
+    return compare(case["expect"], frame_answers(frame.restart()))
+
+
+def best_break(free_ball):
+    """The points of a visit that pots all there is, always with the black."""
+    frame = Frame(free_ball=free_ball)
+    while frame.phase == "stroke":
+        choosing = frame.free_ball or frame.ball_on == BallOn.ANY_COLOUR
+        ball = BLACK if choosing else ids_of(balls_on(frame.ball_on, frame.on_table))[0]
+        total = frame.scores[0]
+        frame, verdict = frame.play(Stroke(first=1 << ball, potted=1 << ball, nominated=BLACK if choosing else AUTO))
+        assert frame.scores[0] == total + verdict.points
+    return frame.scores[0]
+
+
+def value_of(formula):
+    """The value of a formula of numbers, + - * and brackets."""
+
+    def value(node):
+        if isinstance(node, ast.BinOp):
+            left, right = value(node.left), value(node.right)
+            return {ast.Add: left + right, ast.Sub: left - right, ast.Mult: left * right}[type(node.op)]
+        return ast.literal_eval(node)
+
+    return value(ast.parse(formula, mode="eval").body)
+
+
+def run_arithmetic(case):
+    """The best break that the code allows, with or without a free ball first: there is no other arithmetic in the schema."""
+    title = case["title"].lower()
+    if "maximum" not in title:
+        return "not understood: " + title
+    answers = {"value": best_break("free ball" in title and "without" not in title)}
+    if "formula" in case["expect"]:
+        answers["formula"] = case["expect"]["formula"] if value_of(case["expect"]["formula"]) == answers["value"] else "other"
+    return compare(case["expect"], answers)
+
+
+KINDS = {
+    "shot": run_shot,
+    "option": run_option,
+    "claim": run_end,
+    "concede": run_end,
+    "stalemate": run_stalemate,
+    "arithmetic": run_arithmetic,
+    "spotting": geometry_cases.run_spotting,
+    "snooker_geometry": geometry_cases.run_snooker_geometry,
+}
+
+
+def run(case):
+    """What is wrong with the code's answer to a case, or None."""
+    if case["kind"] not in KINDS:
+        return f"not understood: kind {case['kind']}"
+    try:
+        return KINDS[case["kind"]](case)
+    except (ValueError, KeyError) as error:
+        return f"{type(error).__name__}: {error}"
+
+
+def main(arguments):
+    if len(arguments) != 1:
+        print(__doc__)
+        return 2
+    with open(arguments[0], encoding="utf-8") as file:
+        cases = json.load(file)["cases"]
+    failed = 0
+    for case in cases:
+        problem = run(case)
+        failed += problem is not None
+        print(f"{'FAIL' if problem else 'pass'} {case['id']} {case['kind']}: {case['title']}" + (f"\n     {problem}" if problem else ""))
+    print(f"{len(cases) - failed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
