@@ -43,43 +43,60 @@ def _meet(ax, ay, a, bx, by, b, sign):
 
 
 @kernel
+def _better(positions, on_table, wish_x, wish_y, px, py, best_x, best_y, best, radius):
+    """The better of a candidate p and the best place so far: its (x, y) and its distance from the wish. A NaN is never better."""
+    far = np.hypot(px - wish_x, py - wish_y)
+    if far < best and in_d(px, py) and not occupied(positions, on_table, px, py, radius):
+        return px, py, far
+    return best_x, best_y, best
+
+
+@kernel
 def nearest_place(positions, on_table, x, y, radius):
     """The free place in the D nearest to (x, y), and whether there is one: (x, y, bool). A place is free if a ball there touches none.
 
-    Each ball bars a disc about it. The nearest point outside them is the wish itself (moved into the D), the nearest point of one
-    circle, or a corner where two of the circles and lines of the D meet: all are tried. The cue ball itself is not asked.
+    Each ball bars a disc about it. The nearest point outside them all is the wish itself (moved into the D), the nearest point of one
+    circle, or a corner where two of the circles and lines of the D meet: all are tried. ``on_table[0]`` must be False.
     """
     x, y = _into_d(x, y)
-    cue, on_table[0] = on_table[0], False
-    best_x, best_y, best, found = x, y, np.inf, False
     reach = 2.0 * radius + CLEARANCE
-    for i in range(-1, N_BALLS):
-        if i >= 0 and not on_table[i]:
+    place = _better(positions, on_table, x, y, x, y, x, y, np.inf, radius)
+    if place[2] == 0.0:
+        return x, y, True
+    for sign in (-1.0, 1.0):
+        place = _better(positions, on_table, x, y, sign * D_RADIUS, BAULK_Y, *place, radius)
+    for i in range(N_BALLS):
+        if not on_table[i]:
             continue
-        # One circle: its point nearest to the wish; of a wish at the centre itself, the point towards the brown side's -y.
-        for j in range(-3, N_BALLS):
-            for sign in (-1.0, 1.0):
-                px, py = x, y
-                if i < 0 and j >= -1:
-                    continue
-                if i < 0:  # the ends of the baulk line's part, and the wish
-                    if j == -2:
-                        px, py = sign * D_RADIUS, BAULK_Y
-                elif j == -3:
-                    away = np.hypot(x - positions[i, 0], y - positions[i, 1])
-                    ux, uy = (0.0, -1.0) if away == 0.0 else ((x - positions[i, 0]) / away, (y - positions[i, 1]) / away)
-                    px, py = positions[i, 0] + reach * ux, positions[i, 1] + reach * uy
-                elif j == -2:
-                    h = np.sqrt(reach * reach - (positions[i, 1] - BAULK_Y) ** 2)
-                    px, py = positions[i, 0] + sign * h, BAULK_Y
-                elif j == -1:
-                    px, py = _meet(0.0, BAULK_Y, D_RADIUS, positions[i, 0], positions[i, 1], reach, sign)
-                elif j > i and on_table[j]:
-                    px, py = _meet(positions[i, 0], positions[i, 1], reach, positions[j, 0], positions[j, 1], reach, sign)
-                else:
-                    continue
-                far = np.hypot(px - x, py - y)
-                if far < best and in_d(px, py) and not occupied(positions, on_table, px, py, radius):
-                    best_x, best_y, best, found = px, py, far, True
-    on_table[0] = cue
-    return best_x, best_y, found
+        bx, by = positions[i, 0], positions[i, 1]
+        away = np.hypot(x - bx, y - by)
+        ux, uy = (0.0, -1.0) if away == 0.0 else ((x - bx) / away, (y - by) / away)
+        place = _better(positions, on_table, x, y, bx + reach * ux, by + reach * uy, *place, radius)
+        for sign in (-1.0, 1.0):
+            half = np.sqrt(reach * reach - (by - BAULK_Y) ** 2)
+            place = _better(positions, on_table, x, y, bx + sign * half, BAULK_Y, *place, radius)
+            px, py = _meet(0.0, BAULK_Y, D_RADIUS, bx, by, reach, sign)
+            place = _better(positions, on_table, x, y, px, py, *place, radius)
+            for j in range(i):
+                if on_table[j]:
+                    px, py = _meet(bx, by, reach, positions[j, 0], positions[j, 1], reach, sign)
+                    place = _better(positions, on_table, x, y, px, py, *place, radius)
+    return place[0], place[1], place[2] < np.inf
+
+
+@entry
+def _nearest_place(positions, on_table, x, y, radius):
+    return nearest_place(positions, on_table, x, y, radius)
+
+
+def place_cue(positions, on_table, x, y, *, radius=BALL_RADIUS):
+    """The free place in the D nearest to (x, y): (x, y). The cue ball may be anywhere; it is not in its own way.
+
+    Raises ``ValueError`` for wrong arrays or numbers, and if the D has no free place (no legal table is that full).
+    """
+    placed, present = check_table(positions, on_table)
+    present[0] = False
+    px, py, found = _nearest_place(placed, present, number("x", x), number("y", y), float(radius))
+    if not found:
+        raise refuse("on_table", int(present.sum()), "must leave a free place in the D")
+    return px, py

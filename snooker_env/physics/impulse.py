@@ -2,22 +2,24 @@
 
 Ball against ball [MJP14] and ball against cushion [MJP10] are the same problem with other constants. In the plane of the impact's
 contact A live its slip ``a = (a1, a2)`` and the friction impulse ``F = (F1, F2)``; under the ball pressed into the cloth live the
-cloth's slip ``b = (b1, b2)`` and friction impulse ``G = (G1, G2)``. With p the accumulated normal impulse per unit mass::
+cloth's slip ``b = (b1, b2)`` and friction impulse ``G = (G1, G2)``. With p the accumulated normal impulse per unit mass and work W::
 
     a1 = a1_0         + k1 F1 + c1 G1                     Everything is linear in F, G, p and the lift Z,
-    a2 = a2_0 + d_a p + k2 F2 + c2 G2 + l_a Z             so those seven numbers (W, the work, is the
-    b1 = b1_0         + c1 F1 + 7/2 G1                    seventh) are the whole state.
+    a2 = a2_0 + d_a p + k2 F2 + c2 G2 + l_a Z             so F, G, p, Z and the integral V below are
+    b1 = b1_0         + c1 F1 + 7/2 G1                    the whole state.
     b2 = b2_0 + d_b p + c2 F2 + 7/2 G2
-    y  = y_0  + d_y p - d_a F2 - d_b G2 + l_y Z           closing speed; dW/dp = y
+    y  = y_0  + d_y p - d_a F2 - d_b G2 + l_y Z           closing speed; dW/dp = y, so that
+    W  = y_0 p + d_y p^2 / 2 + V                          V' = -d_a F2 - d_b G2 + l_y Z
     N' = n0 + n2 F2'  if positive, else Z' = -(n0 + n2 F2') and N' = 0      (the ball lifts)
 
 Coulomb: F' = -mu(|a|) a/|a|, G' = -mu_s N' b/|b|. Where a slip is zero, friction holds it there if it can; if not, slip starts in
 the direction the other forces drive it. Compression ends at y = 0 with W = Wc, the impact at W = (1 - e^2) Wc (energetic
 restitution, Stronge).
 
-Method: the explicit pair of Dormand & Prince 5(4) with its dense output. While A slips the independent variable is t with
-dp = |a| dt: then F' = -mu a is regular and the end of slip, where its direction turns like a power of |a|, is approached
-exponentially instead of as a singularity. All speeds are divided by y_0 first, so tolerances are relative to the impulse.
+Method: the explicit pair of Dormand & Prince 5(4) with its dense output. Where the slip is fast the friction is nearly constant and p
+itself is the best variable: one step spans most impacts. Where the slip may end it is t with dp = |a| dt: F' = -mu a is regular
+there, and the end of slip, where its direction turns like a power of |a|, is approached exponentially instead of as a singularity.
+All speeds are divided by y_0 first, so tolerances are relative to the impulse.
 """
 
 from math import exp, hypot, sqrt
@@ -25,7 +27,8 @@ from math import exp, hypot, sqrt
 from .._jit import kernel
 
 OK, TOO_MANY_STEPS = 0, 1
-_SLIP, _STICK, _CREEP = 0, 1, 2
+_FAST_SLIP, _SLIP, _STICK, _CREEP = 0, 1, 2, 3
+_FAST = 1.5
 _ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _MAX_STEPS = 20_000
 _KB = 3.5  # effective inverse mass of a solid sphere's lowest point, times M
@@ -39,16 +42,22 @@ def friction_coefficient(s, law):
 
 @kernel
 def _slips(x, start, c):
-    """Slips a1, a2 at A, b1, b2 at the cloth, and closing speed y from the state x = (F1, F2, G1, G2, p, W, Z)."""
-    k1, k2, c1, c2, d_a, d_b, d_y, _n0, _n2, l_a, l_y = c
-    f1, f2, g1, g2, p, _w, z = x
+    """Slips a1, a2 at A, b1, b2 at the cloth, and V' from the state x = (F1, F2, G1, G2, p, V, Z)."""
+    k1, k2, c1, c2, d_a, d_b, _dy, _n0, _n2, l_a, l_y = c
+    f1, f2, g1, g2, p, _v, z = x
     return (
         start[0] + k1 * f1 + c1 * g1,
         start[1] + d_a * p + k2 * f2 + c2 * g2 + l_a * z,
         start[2] + c1 * f1 + _KB * g1,
         start[3] + d_b * p + c2 * f2 + _KB * g2,
-        1.0 + d_y * p - d_a * f2 - d_b * g2 + l_y * z,
+        l_y * z - d_a * f2 - d_b * g2,
     )
+
+
+@kernel
+def _work(p, v, c):
+    """W, with y_0 = 1."""
+    return (1.0 + 0.5 * c[6] * p) * p + v
 
 
 @kernel
@@ -69,7 +78,7 @@ def _cloth_friction(b1, b2, drive1, drive2, most, delta):
 def _slip_rates(x, start, c, law, mu_s, delta):
     """dx/dt while A slips, dp = |a| dt."""
     c1, c2, d_b, n0, n2 = c[2], c[3], c[5], c[7], c[8]
-    a1, a2, b1, b2, y = _slips(x, start, c)
+    a1, a2, b1, b2, v = _slips(x, start, c)
     s = sqrt(a1 * a1 + a2 * a2)
     mu = friction_coefficient(s, law)
     f1, f2 = -mu * a1, -mu * a2
@@ -78,7 +87,15 @@ def _slip_rates(x, start, c, law, mu_s, delta):
     if load < 0.0:
         lift, load = -load, 0.0
     g1, g2 = _cloth_friction(b1, b2, c1 * f1, d_b * s + c2 * f2, mu_s * load, delta)
-    return f1, f2, g1, g2, s, y * s, lift
+    return f1, f2, g1, g2, s, v * s, lift
+
+
+@kernel
+def _fast_slip_rates(x, start, c, law, mu_s, delta):
+    """dx/dp while A slips."""
+    f1, f2, g1, g2, s, vs, lift = _slip_rates(x, start, c, law, mu_s, delta)
+    r = 1.0 / s
+    return f1 * r, f2 * r, g1 * r, g2 * r, 1.0, vs * r, lift * r
 
 
 @kernel
@@ -107,9 +124,9 @@ def _stick_forces(b1, b2, c, mu_s, delta):
 @kernel
 def _stick_rates(x, start, c, mu_s, delta):
     """dx/dp while A sticks."""
-    _a1, _a2, b1, b2, y = _slips(x, start, c)
+    _a1, _a2, b1, b2, v = _slips(x, start, c)
     f1, f2, g1, g2, lift = _stick_forces(b1, b2, c, mu_s, delta)
-    return f1, f2, g1, g2, 1.0, y, lift
+    return f1, f2, g1, g2, 1.0, v, lift
 
 
 @kernel
@@ -120,7 +137,7 @@ def _creep_rates(x, start, c, law, mu_s, delta):
     the cloth's friction, which depends on e through the load: iterated.
     """
     k1, k2, c1, c2, d_a, d_b, _dy, n0, n2, l_a, _ly = c
-    _a1, _a2, b1, b2, y = _slips(x, start, c)
+    _a1, _a2, b1, b2, v = _slips(x, start, c)
     mu = friction_coefficient(0.0, law)
     e1, e2 = 0.0, 1.0 if d_a >= 0.0 else -1.0
     g1 = g2 = lift = 0.0
@@ -133,7 +150,7 @@ def _creep_rates(x, start, c, law, mu_s, delta):
         e1, e2 = r1, r2
         if moved < 1e-15:
             break
-    return -mu * e1, -mu * e2, g1, g2, 1.0, y, lift
+    return -mu * e1, -mu * e2, g1, g2, 1.0, v, lift
 
 
 @kernel
@@ -156,6 +173,8 @@ def _direction(q1, q2, m1, m2):
 
 @kernel
 def _rates(x, mode, start, c, law, mu_s, delta):
+    if mode == _FAST_SLIP:
+        return _fast_slip_rates(x, start, c, law, mu_s, delta)
     if mode == _SLIP:
         return _slip_rates(x, start, c, law, mu_s, delta)
     if mode == _STICK:
@@ -166,7 +185,7 @@ def _rates(x, mode, start, c, law, mu_s, delta):
 @kernel
 def _held(x, start, c, law, mu_s, delta):
     """Can friction hold the slip at A at zero?"""
-    _1, _2, b1, b2, _y = _slips(x, start, c)
+    _1, _2, b1, b2, _v = _slips(x, start, c)
     f = _stick_forces(b1, b2, c, mu_s, delta)
     return hypot(f[0], f[1]) <= friction_coefficient(0.0, law)
 
@@ -199,9 +218,14 @@ def _sum5(x, h, a, k, b, m, c, n, d, o, e, q):
 
 @kernel
 def _dense(r, i, s):
-    """Component i of the step's continuous extension at the fraction s (Hairer, Norsett & Wanner, II.6)."""
+    """Component i of the step's continuous extension at the fraction s."""
+    return _at(r[0][i], r[1][i], r[2][i], r[3][i], r[4][i], s)
+
+
+@kernel
+def _at(r0, r1, r2, r3, r4, s):
     q = 1.0 - s
-    return r[0][i] + s * (r[1][i] + q * (r[2][i] + s * (r[3][i] + q * r[4][i])))
+    return r0 + s * (r1 + q * (r2 + s * (r3 + q * r4)))
 
 
 @kernel
@@ -223,36 +247,60 @@ def _continuous_extension(x, new, h, k1, k3, k4, k5, k6, k7):
 
 
 @kernel
-def _closing(r, s, c):
-    """Closing speed at the fraction s of a step."""
-    return 1.0 + c[6] * _dense(r, 4, s) - c[4] * _dense(r, 1, s) - c[5] * _dense(r, 3, s) + c[10] * _dense(r, 6, s)
+def _closing_part(part, c):
+    """The closing speed's linear part, of one coefficient of the continuous extension."""
+    return c[6] * part[4] - c[4] * part[1] - c[5] * part[3] + c[10] * part[6]
 
 
 @kernel
-def _locate(r, c, low, f_low, f_high, work_target, seek_work):
-    """The fraction in [low, 1] where closing speed (or work minus its target) falls through zero: regula falsi, Illinois."""
-    high = 1.0
+def _end_of_compression(r, c, tol):
+    """The fraction of a step at which the closing speed falls to zero."""
+    y0, y1, y2, y3, y4 = (
+        1.0 + _closing_part(r[0], c), _closing_part(r[1], c), _closing_part(r[2], c), _closing_part(r[3], c), _closing_part(r[4], c),
+    )  # fmt: skip
+    low, high = 0.0, 1.0
+    f_low, f_high = y0, y0 + y1
     if f_low <= 0.0:
         return low
-    for _ in range(60):
-        s = (low * f_high - high * f_low) / (f_high - f_low)
-        f = _dense(r, 5, s) - work_target if seek_work else _closing(r, s, c)
-        if abs(f) < 1e-15 or high - low < 1e-15:
-            return s
-        if f > 0.0:
-            if f_low < f:  # not expected on a falling function; keeps the bracket honest
-                f_high *= 0.5
-            low, f_low = s, f
-            f_high *= 0.5
-        else:
-            high, f_high = s, f
-            f_low *= 0.5
-    return 0.5 * (low + high)
+    s = f_low / (f_low - f_high)
+    last, f_last = 1.0, f_high
+    for _ in range(50):
+        f = _at(y0, y1, y2, y3, y4, s)
+        low, high = (s, high) if f > 0.0 else (low, s)
+        if abs(f) <= tol or high - low < 1e-15:
+            break
+        last, f_last, s = s, f, _secant(low, high, s, f, last, f_last)
+    return s
+
+
+@kernel
+def _end_of_restitution(r, c, target, low, tol):
+    """The fraction of a step, past ``low``, at which the work falls to the target."""
+    high = 1.0
+    last, f_last = low, _work(_dense(r, 4, low), _dense(r, 5, low), c) - target
+    if f_last <= 0.0:
+        return low
+    s = high
+    f = _work(r[0][4] + r[1][4], r[0][5] + r[1][5], c) - target
+    for _ in range(50):
+        last, f_last, s = s, f, _secant(low, high, s, f, last, f_last)
+        f = _work(_dense(r, 4, s), _dense(r, 5, s), c) - target
+        low, high = (s, high) if f > 0.0 else (low, s)
+        if abs(f) <= tol or high - low < 1e-15:
+            break
+    return s
+
+
+@kernel
+def _secant(low, high, s, f, last, f_last):
+    """The next guess at a zero between low and high."""
+    step = s - f * (s - last) / (f - f_last) if f != f_last else low
+    return step if low < step < high else 0.5 * (low + high)
 
 
 @kernel
 def solve(start, c, law, mu_s, e, accuracy):
-    """Integrate one impact. Speeds in units of the closing speed (so that is 1); returns (F1, F2, G1, G2, p, W, Z), status.
+    """Integrate one impact. Speeds in units of the closing speed (so that is 1); returns (F1, F2, G1, G2, p, V, Z), status.
 
     start: (a1, a2, b1, b2) before the impact. c: (k1, k2, c1, c2, d_a, d_b, d_y, n0, n2, l_a, l_y), see the module's text.
     accuracy = (tol, delta, creep), in units of the closing speed: tol the local error allowed in a step; slips below delta count as
@@ -261,14 +309,20 @@ def solve(start, c, law, mu_s, e, accuracy):
     tol, delta, creep = accuracy
     x = _ZERO
     p_full = -1.05 * (1.0 + e) / c[6]  # a guess that overshoots a little
-    # past this step the method is unstable on a' = -k mu a, and a slip that should die would hover at the size of the tolerance
-    h_slip = 2.0 / (c[0] * friction_coefficient(0.0, law) + 1e-9)
+    # past three times this step the method is unstable on a' = -k mu a: a slip that should die would hover at the size of the tolerance
+    h_slip = 1.0 / (c[0] * friction_coefficient(0.0, law) + 1e-9)
     s = hypot(start[0], start[1])
-    if s > delta:
-        mode, h = _SLIP, min(p_full / s, 0.2 * h_slip)
+    # slip lost in the whole impact: k mu p; fast if that is a small part of the slip there is
+    mu = friction_coefficient(s, law)
+    fast = _FAST * c[0] * mu * p_full
+    if s > max(fast, delta):
+        mode, h = _FAST_SLIP, p_full
+    elif s > delta:
+        mode, h = _SLIP, min(p_full / s, 0.4 * h_slip)
     else:
         mode, h = _STICK if _held(x, start, c, law, mu_s, delta) else _CREEP, p_full
     k1 = _rates(x, mode, start, c, law, mu_s, delta)
+    b1_old, b2_old = start[2], start[3]
     compressing, target = True, 0.0
     for _ in range(_MAX_STEPS):
         k2 = _rates(_sum2(x, h, 0.2, k1, 0.0, k1), mode, start, c, law, mu_s, delta)
@@ -283,14 +337,27 @@ def solve(start, c, law, mu_s, e, accuracy):
         k7 = _rates(new, mode, start, c, law, mu_s, delta)
         err = _sum5(_ZERO, h, 71 / 57600, k1, -71 / 16695, k3, 71 / 1920, k4, -17253 / 339200, k5, 22 / 525, k6)
         err = _sum2(err, h, -1 / 40, k7, 0.0, k7)
-        worst = max(max(max(abs(err[0]), abs(err[1])), max(abs(err[2]), abs(err[3]))), max(abs(err[4]), abs(err[6])))
+        # an error in p(t) alone is harmless: what counts is each number as a function of p
+        slope = err[4] / k7[4]
+        worst = max(
+            max(max(abs(err[0] - k7[0] * slope), abs(err[1] - k7[1] * slope)), max(abs(err[2] - k7[2] * slope), abs(err[3] - k7[3] * slope))),
+            max(abs(err[5] - k7[5] * slope), abs(err[6] - k7[6] * slope)),
+        )
         if worst > tol and h > 1e-13:
             h *= max(0.2, 0.9 * (tol / worst) ** 0.2)
             continue
-        a1, a2, _b1, _b2, y = _slips(new, start, c)
+        a1, a2, b1, b2, v = _slips(new, start, c)
+        if b1 * b1_old + b2 * b2_old < 0.0 and mu_s * (c[7] + abs(c[8]) * mu) * (new[4] - x[4]) > 20.0 * tol and h > 1e-13:
+            h *= 0.25  # the cloth's slip turned right round inside the step, where the stages may not have looked
+            continue
+        y = 1.0 + c[6] * new[4] + v
+        work = _work(new[4], new[5], c)
         s = sqrt(a1 * a1 + a2 * a2)
         next_mode = mode
-        if mode == _SLIP:
+        if mode == _FAST_SLIP:
+            if s < 0.5 * fast:
+                next_mode = _SLIP
+        elif mode == _SLIP:
             if s <= delta:
                 next_mode = _STICK if _held(new, start, c, law, mu_s, delta) else _CREEP
         elif mode == _STICK:
@@ -306,25 +373,27 @@ def solve(start, c, law, mu_s, e, accuracy):
             next_mode = _SLIP
         elif _held(new, start, c, law, mu_s, delta):
             next_mode = _STICK
-        done = new[5] <= target and not compressing
+        done = work <= target and not compressing
         if done or (compressing and y <= 0.0):
             r = _continuous_extension(x, new, h, k1, k3, k4, k5, k6, k7)
             low = 0.0
             if compressing:
-                low = _locate(r, c, 0.0, _closing(r, 0.0, c), y, 0.0, False)
+                low = _end_of_compression(r, c, 1e-3 * tol)
                 compressing = False
-                target = (1.0 - e * e) * _dense(r, 5, low)
-                done = new[5] <= target
+                target = (1.0 - e * e) * _work(_dense(r, 4, low), _dense(r, 5, low), c)
+                done = work <= target
             if done:
                 if e > 0.0:
-                    low = _locate(r, c, low, _dense(r, 5, low) - target, new[5] - target, target, True)
+                    low = _end_of_restitution(r, c, target, low, 1e-3 * tol)
                 return _dense_all(r, low), OK
-        h *= 5.0 if worst < 1e-4 * tol else min(5.0, 0.9 * (tol / worst) ** 0.2)
-        x, k1 = new, k7
+        h *= 3.0 if worst < 1e-3 * tol else min(3.0, 0.9 * (tol / worst) ** 0.2)
+        x, k1, b1_old, b2_old = new, k7, b1, b2
         if next_mode != mode:
             mode = next_mode
             k1 = _rates(x, mode, start, c, law, mu_s, delta)
-            h = p_full if mode == _STICK else creep if mode == _CREEP else 0.2 * h_slip
+            h = p_full if mode == _STICK else creep if mode == _CREEP else 0.4 * h_slip
         if mode == _SLIP:
             h = min(h, h_slip)
+        elif x[4] < p_full:
+            h = min(h, 1.01 * (p_full - x[4]))
     return x, TOO_MANY_STEPS

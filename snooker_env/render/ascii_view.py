@@ -4,17 +4,20 @@ A ball is a letter in the cell of its centre: W the white cue ball, r a red, Y G
 blue). Reds that share a cell become their number; the cue ball is never hidden, and a line below names what lies under another ball.
 """
 
+from itertools import pairwise
+from textwrap import wrap
+
 import numpy as np
 
 from .._check import integer
-from ..game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, YELLOW
-from .scene import BAULK_LINE, COLOURS, D_ARC, LETTERS, SPOT_MARKS, outline
+from ..game.balls import HALF_LENGTH, HALF_WIDTH
+from .scene import BAULK_LINE, D_ARC, LETTERS, PALE, SPOT_MARKS
 
 WIDTH = 100
 """Characters a line unless told."""
 
-_LEGEND = "W cue  r red (a digit: so many in one cell)  Y yellow  G green  N brown  B blue  P pink  K black"
-_LINE, _ARC, _SPOT, _PATH, _AIM, _GHOST, _POCKET = "│", "·", "+", "∙", "-", "o", "O"
+_LEGEND = "W=cue  r=red (digit: several)  Y=yellow G=green N=brown B=blue P=pink K=black"
+_LINE, _ARC, _SPOT, _PATH, _AIM, _GHOST, _POCKET = "│", "·", "+", ".", "-", "o", "O"
 
 
 class _Grid:
@@ -43,7 +46,7 @@ class _Grid:
     def line(self, points, character, owner=-1):
         """A polyline, by points closer than the cells."""
         step = HALF_LENGTH / self.columns
-        for a, b in zip(points[:-1], points[1:], strict=True):
+        for a, b in pairwise(points):
             for part in np.linspace(0.0, 1.0, 2 + int(np.hypot(*(b - a)) / step)):
                 self.mark(a + part * (b - a), character, owner)
 
@@ -68,7 +71,7 @@ def ansi(scene, width=WIDTH, *, colour=False):
     lines = _framed(grid, scene.table, colour)
     if scene.text:
         lines.append(scene.text)
-    lines.append(_LEGEND)
+    lines += wrap(_LEGEND, width)
     if hidden:
         lines.append("hidden: " + ", ".join(hidden))
     return "\n".join(lines)
@@ -95,19 +98,21 @@ def _balls(grid, scene):
 
 def _framed(grid, table, colour):
     """The grid's lines inside the rails, with the pockets in them."""
-    side, end = ("═", "║") if len(table.noses) else (" ", " ")
+    side, wall = ("═", "║") if len(table.noses) else (" ", " ")
     rails = [[side] * grid.columns, [side] * grid.columns]
     for x, y, _ in table.falls:
         if abs(y) < HALF_LENGTH:
-            rails[int(x > 0)][grid.cell((0.0, y))[1]] = _POCKET
-    corners = "OOOO" if len(table.noses) else "    "
-    rows = ["".join(_paint(c, o) if colour else c for c, o in zip(*row, strict=True)) for row in zip(grid.cells.tolist(), grid.owner.tolist(), strict=True)]
-    middle = [end + row + end for row in rows]
-    return [corners[0] + "".join(rails[0]) + corners[1], *middle, corners[2] + "".join(rails[1]) + corners[3]]
+            for end in (y - 1e-3, y + 1e-3):  # two cells where the middle falls between them
+                rails[int(x > 0)][grid.cell((0.0, end))[1]] = _POCKET
+    corner = _POCKET if len(table.noses) else " "
+    top, bottom = (corner + "".join(rail) + corner for rail in rails)
+    paint = _paint if colour else lambda character, ball: character
+    rows = zip(grid.cells.tolist(), grid.owner.tolist(), strict=True)
+    return [top, *(wall + "".join(map(paint, characters, owners)) + wall for characters, owners in rows), bottom]
 
 
 def _paint(character, ball):
     if ball < 0:
         return character
-    r, g, b = COLOURS[ball]
+    r, g, b = PALE[ball]
     return f"\x1b[38;2;{r};{g};{b}m{character}\x1b[0m"

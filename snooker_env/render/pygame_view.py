@@ -12,7 +12,7 @@ import numpy as np
 
 from .._check import integer
 from ..game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
-from .scene import BAULK_LINE, COLOURS, CUSHION, D_ARC, RAIL, SPOT_MARKS, outline
+from .scene import BAULK_LINE, CUSHION, D_ARC, PALE, RAIL, SPOT_MARKS, outline
 
 HEIGHT = 600
 """Height of a picture [pixels] unless told."""
@@ -122,7 +122,7 @@ class Window:
 def _draw(pygame, scene, view):
     surface = _table(pygame, scene.table, view).copy()
     for ball, points in scene.paths.items():
-        _line(pygame, surface, view, points, _path_colour(ball))
+        _line(pygame, surface, view, points, PALE[ball].tolist())
     if scene.aim is not None:
         _line(pygame, surface, view, scene.aim, _AIM)
     if scene.ghost is not None:
@@ -135,11 +135,6 @@ def _draw(pygame, scene, view):
     _put(pygame, surface, where, [(tuple(colour.tolist()), radius) for colour in scene.colours])
     _text(pygame, surface, view, scene.text)
     return surface
-
-
-def _path_colour(ball):
-    """A ball's colour, lightened to be seen on the cloth."""
-    return tuple(((COLOURS[ball].astype(int) * 2 + 255) // 3).tolist())
 
 
 def _line(pygame, surface, view, points, colour):
@@ -160,7 +155,7 @@ def _put(pygame, surface, where, what):
 
 @lru_cache(maxsize=1024)
 def _sprite(look, radius, fx, fy):
-    """A ball, or its shadow, as RGBA (n, n, 4) around a centre that lies fx / 4, fy / 4 pixels right of and below the middle pixel's corner."""
+    """A ball or its shadow as RGBA (n, n, 4); its centre lies fx / 4, fy / 4 pixels right of and below the middle pixel's corner."""
     half = int(np.ceil(1.6 * radius)) + 2
     x, y = np.meshgrid(np.arange(-half, half + 1) + 0.5 - fx / 4, np.arange(-half, half + 1) + 0.5 - fy / 4)
     d = np.hypot(x, y)
@@ -260,7 +255,8 @@ def _grain(pygame, rail):
 
 def _lit(pygame, picture, view):
     """The table's lamps: bright in the middle, dimmer to the ends, and a little unrest as of nap."""
-    x, y = np.meshgrid((np.arange(view.width) - view.x) / view.scale / HALF_LENGTH, (np.arange(view.height) - view.y) / view.scale / HALF_WIDTH)
+    length, width = view.scale * HALF_LENGTH, view.scale * HALF_WIDTH
+    x, y = np.meshgrid((np.arange(view.width) - view.x) / length, (np.arange(view.height) - view.y) / width)
     nap = np.random.default_rng(0).normal(0.0, 0.012, x.shape)
     _multiply(pygame, picture, 1.0 - 0.10 * x**2 - 0.08 * y**2 + nap)
     return picture

@@ -6,7 +6,6 @@ World frame: origin at the table's centre, +x to the yellow side, +y to the blac
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -25,6 +24,8 @@ COLOURS = np.array(
     dtype=np.uint8,
 )
 """(22, 3) red, green, blue by ball id."""
+PALE = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)
+"""The same, lightened: for a ball's path on the cloth, and for letters on a dark terminal."""
 LETTERS = "W" + "r" * 15 + "YGNBPK"
 """By ball id: W the white cue ball, r a red; N is brown and K black, because B is blue."""
 
@@ -33,7 +34,7 @@ _TURN = np.linspace(np.pi, 2 * np.pi, 65)
 D_ARC = np.stack([D_RADIUS * np.cos(_TURN), BAULK_Y + D_RADIUS * np.sin(_TURN)], axis=1)
 SPOT_MARKS = SPOTS[YELLOW:]
 
-for _constant in (COLOURS, BAULK_LINE, D_ARC):
+for _constant in (COLOURS, PALE, BAULK_LINE, D_ARC):
     _constant.setflags(write=False)
 
 

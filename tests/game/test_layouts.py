@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from snooker_env.game import layouts
 from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKETS, SPOTS, YELLOW
 
-NAMES = [*layouts.LAYOUTS, "random:0", "random:6", "random:15"]
+NAMES = ["break_off", "line_up", "colours", "random:0", "random:6", "random:15"]
 
 
 def gaps(positions, on_table):
@@ -65,7 +65,7 @@ def test_line_up_is_a_line_through_which_a_ball_passes():
     assert abs(on_line).max() < HALF_LENGTH - 3 * BALL_RADIUS
 
 
-@pytest.mark.parametrize("name", ["", "opened", "random", "random:", "random:16", "random:-1", "random:N", None, 3])
+@pytest.mark.parametrize("name", ["", "no such", "random", "random:", "random:16", "random:-1", "random:N", None, 3])
 def test_unknown_names_are_refused(name):
     with pytest.raises(ValueError):
         layouts.layout(name, np.random.default_rng(0))

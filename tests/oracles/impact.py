@@ -10,9 +10,10 @@ direction the other forces drive it. Cloth and ball obey ``N >= 0``, ``v_z >= 0`
 force gives back ``e^2`` of the work it took in.
 
 Method of the first oracle (floats). Twelve (cushion: six) velocities as 3D vectors in the world frame, with cross products. The
-independent variable is ``tau``, ``dP/M = dtau / (1 + 1/s + 1/b)`` with ``s``, ``b`` the slip speeds of the contacts that slip: an approach of
-either to zero is then an exponential and not a singularity, so that an eighth-order Runge-Kutta method (scipy's DOP853, rtol 3e-14) passes
-it in ordinary steps. Each switch of regime is a located event, solved for by integrating again up to the trial point (no interpolation).
+independent variable is ``tau``, ``dP/M = dtau / (1 + 1/s + 1/b)`` with ``s``, ``b`` the slip speeds of the contacts that slip: an
+approach of either to zero is then an exponential and not a singularity, so that an eighth-order Runge-Kutta method (scipy's DOP853,
+rtol 3e-14) passes it in ordinary steps. Each switch of regime is a located event, solved for by integrating again up to the trial point
+(no interpolation). One place needs a stiff method (Radau) instead: a sticking cushion contact that is released, see ``_march_until_event``.
 
 Method of the second (``ball_ball(..., digits=n)``). The paper's scalar equations (3) and (4) in its contact frame, ``P`` itself as the
 independent variable, mpmath arithmetic, extrapolated modified midpoint (Gragg-Bulirsch-Stoer, order 16) with steps graded
@@ -37,8 +38,9 @@ from scipy.optimize import brentq, root
 Friction = float | Callable[[float], float]
 Vector = tuple[float, float, float]
 
-# In units of the largest incoming speed: a slip that falls to ZERO_SLIP has reached zero, and what is within AT_ZERO when a regime is chosen
-# is zero (twice as much, as the state at the event is rounded). Rounding of the velocities is about 1e-16; a slip starts at 10 ZERO_SLIP.
+# In units of the largest incoming speed: a slip that falls to ZERO_SLIP has reached zero, and what is within AT_ZERO when a regime is
+# chosen is zero (twice as much: the state at the event is rounded). Rounding of the velocities is about 1e-16; a slip starts at
+# 10 ZERO_SLIP.
 ZERO_SLIP = 3e-15
 AT_ZERO = 2.0 * ZERO_SLIP
 # A sticking contact is released once the friction that would hold it exceeds the limit by this fraction, not at the very limit, where the
@@ -187,8 +189,11 @@ def _march_until_event(y0, problem, regime, compressing, target, slow_start=None
     y = list(y0)
     if slow:
         y += [ZERO_SLIP, math.atan2(_dot(slow_start, problem.t2), _dot(slow_start, problem.t1))]
-    solver = method(derivative, 0.0, np.array(y), 1e9, max_step=2.0)
+    solver = method(derivative, 0.0, np.array(y), 1e9, max_step=2.0, first_step=1e-7 if slow else None)
     before, g_before = solver.y, gauges(solver.y)
+    for event in ("closing", "work"):  # together with the event before: a ball that slips at neither contact has no closing speed left
+        if g_before.get(event, 1.0) <= 0.0:
+            return list(before[:size]), event
     for _ in range(100_000):
         solver.step()
         if solver.status == "failed":
@@ -205,6 +210,8 @@ def _march_until_event(y0, problem, regime, compressing, target, slow_start=None
 
             tau, event = min((brentq(gauge, tau0, tau1, args=(k,), xtol=1e-16, rtol=1e-15), k) for k in crossed)
             there = start if tau == tau0 else end if tau == tau1 else reach(tau0, start, tau)
+            if slow and abs(_norm(problem.slips(there)[0]) - there[size]) > 1e-11:
+                raise RuntimeError("the slow start of a slip was not resolved in the impact oracle")
             return list(there[:size]), event
         before, g_before = solver.y, g_after
     raise RuntimeError("the impact did not end: 100000 steps")
@@ -256,10 +263,11 @@ class _BallBall:
             return _Regime("slip", "off")
         if _norm(cloth) > AT_ZERO:
             return _Regime("slip", "slip")
-        # Coulomb's law at zero cloth slip: the rate at which the other forces drive it, against the friction there.
+        # Coulomb's law at zero cloth slip: the rate at which the other forces drive it, against the friction there. The rate is at least
+        # 1 + 5/2 |f_z|, so that 7/2 mu_s |f_z| cannot hold it while mu_s <= 5/7 (nor while mu_s mu_bb < 2/7).
         drive = self.slips(self.apply(f, 0.0, (0.0, 0.0, 0.0)))[1]
         if 3.5 * self.mu_s * abs(f[2]) >= _norm(drive):  # a friction impulse changes the cloth slip by 7/2 of itself per unit mass
-            raise ValueError("the cloth contact would stick (mu_s mu_bb >= 2/7): outside this oracle")
+            raise ValueError("the cloth contact would stick (mu_s > 5/7 and more): outside this oracle")
         return _Regime("slip", "slip", None, _direction(drive))
 
     def rates(self, y, regime: _Regime) -> list[float]:
@@ -617,6 +625,8 @@ class _BallCushion:
                 main, nose_start = "slip", self.start_direction(airborne, cloth_slip)
                 f = _scale(-self.mu_w, nose_start)
         law, _reaction, _friction, cloth_start = self.coulomb(f, airborne, cloth_slip)
+        if main == law == "stick":  # no slip at either contact leaves v_y = 0 and nothing that would end the impact
+            raise ValueError("the ball is wedged between cushion and cloth (mu_w, mu_s too high): outside this oracle")
         return _Regime(main, law, nose_start, cloth_start)
 
     def nose_friction(self, y, regime: _Regime, cloth_direction: Vector | None) -> Vector:
@@ -685,19 +695,22 @@ def ball_cushion(v, w, normal, *, R: float, M: float, e: float, mu_w: float, mu_
 
 @dataclass(frozen=True)
 class PaperRow:
-    """One shot of the paper's Tables 1 and 2: speeds [m/s], topspin [rad/s], angles [deg] from the cue ball's incoming direction."""
+    """One shot of the paper's Tables 1 and 2; ``_c`` the cue ball, ``_o`` the object ball, predicted unless ``measured_``.
 
-    V0: float
-    w_T: float
+    Speeds [m/s] and angles [deg, from the cue ball's incoming direction] after the slip; ``w_t`` topspin [rad/s]; ``cut`` angle [deg].
+    """
+
+    v0: float
+    w_t: float
     cut: float
-    v_C: float
-    v_O: float
-    angle_C: float
-    angle_O: float
-    measured_v_C: float
-    measured_v_O: float
-    measured_angle_C: float
-    measured_angle_O: float
+    v_c: float
+    v_o: float
+    angle_c: float
+    angle_o: float
+    measured_v_c: float
+    measured_v_o: float
+    measured_angle_c: float
+    measured_angle_o: float
 
 
 PAPER_PARAMETERS = {"R": 0.02625, "M": 0.1406, "e": 0.89, "mu_bb": 0.05, "mu_s": 0.21}
@@ -716,7 +729,7 @@ def incoming(row: PaperRow):
     """(v1, w1, v2, w2, normal) of a row: cue ball along +x with topspin, the object ball at rest at the cut angle to its left."""
     cut = math.radians(row.cut)
     still = np.zeros(3)
-    return np.array([row.V0, 0.0, 0.0]), np.array([0.0, row.w_T, 0.0]), still, still.copy(), np.array([math.cos(cut), math.sin(cut), 0.0])
+    return np.array([row.v0, 0.0, 0.0]), np.array([0.0, row.w_t, 0.0]), still, still.copy(), np.array([math.cos(cut), math.sin(cut), 0.0])
 
 
 def velocity_after_slip(v, w, *, R: float) -> np.ndarray:
@@ -727,7 +740,7 @@ def velocity_after_slip(v, w, *, R: float) -> np.ndarray:
 
 
 def after_slip(v1, w1, v2, w2, direction, *, R: float) -> tuple[float, float, float, float]:
-    """Speeds [m/s] of balls 1 and 2 after slip, then their angles [deg, >= 0] from ``direction`` (the incoming one): the tables' columns."""
+    """The tables' columns: speeds [m/s] of balls 1 and 2 after slip, their angles [deg, >= 0] from ``direction`` (the incoming one)."""
     speeds, angles = [], []
     dx, dy = float(direction[0]), float(direction[1])
     for v, w in ((v1, w1), (v2, w2)):

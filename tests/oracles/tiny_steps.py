@@ -6,9 +6,10 @@ next step. A step in which a slip, a roll or a spin would reverse is cut there, 
 predicted beyond a step and no collision time is computed from a polynomial: two balls meet when they are found to overlap, or to
 have been closest, within a step, and the moment is bisected.
 
-Forces (``shared/reference/physics.md`` 1.3; the cloth touches at ``-R z``): slip ``u = v + w x (-R z)``; sliding friction ``-mu_s M g u/|u|``
-at that point, which turns the ball with moment of inertia 2/5 M R^2; when rolling (u = 0), a deceleration ``mu_r g`` and ``w`` with ``v``;
-``w_z`` towards 0 at ``spin_decel`` in every state. Balls stay on the cloth: vertical velocities after an impact are dropped.
+Forces (``shared/reference/physics.md`` 1.3; the cloth touches at ``-R z``): slip ``u = v + w x (-R z)``; sliding friction
+``-mu_s M g u/|u|`` at that point, which turns the ball with moment of inertia 2/5 M R^2; when rolling (u = 0), a deceleration ``mu_r g``
+and ``w`` with ``v``; ``w_z`` towards 0 at ``spin_decel`` in every state. Balls stay on the cloth: vertical velocities after an impact are
+dropped.
 
 SI units; world frame, right-handed, z up.
 """

@@ -1,0 +1,105 @@
+"""Is the place found in the D legal, and the nearest? Named cases, and many places drawn at random as the judge."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, BROWN, D_RADIUS, GREEN, SPOTS, YELLOW
+from snooker_env.game.in_hand import in_d, place_cue
+from snooker_env.game.spotting import CLEARANCE
+
+REACH = 2 * BALL_RADIUS + CLEARANCE
+
+
+def table(*places):
+    positions, on_table = SPOTS.copy(), np.zeros(22, dtype=bool)
+    for ball, place in enumerate(places, start=1):
+        positions[ball], on_table[ball] = place, True
+    return positions, on_table
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "inside"),
+    [
+        (0.0, BAULK_Y, True),
+        (D_RADIUS, BAULK_Y, True),
+        (0.0, BAULK_Y - D_RADIUS, True),
+        (0.0, BAULK_Y + 1e-6, False),
+        (D_RADIUS + 1e-6, BAULK_Y, False),
+        (0.8 * D_RADIUS, BAULK_Y - 0.7 * D_RADIUS, False),
+    ],
+)
+def test_the_d(x, y, inside):
+    assert in_d(x, y) == inside
+
+
+@pytest.mark.parametrize(
+    ("wish", "place"),
+    [
+        ((0.1, -1.1), (0.1, -1.1)),
+        ((0.1, 0.5), (0.1, BAULK_Y)),
+        ((0.8, 0.5), (D_RADIUS, BAULK_Y)),
+        ((0.0, -1.7), (0.0, BAULK_Y - D_RADIUS)),
+        ((0.6, BAULK_Y - 0.6), (D_RADIUS * np.sqrt(0.5), BAULK_Y - D_RADIUS * np.sqrt(0.5))),
+    ],
+)
+def test_a_wish_outside_goes_to_the_nearest_point_of_the_d(wish, place):
+    assert place_cue(*table(), *wish) == pytest.approx(place, abs=1e-12)
+
+
+def test_beside_one_ball():
+    assert place_cue(*table((0.0, -1.2)), 0.01, -1.2) == pytest.approx((REACH, -1.2), abs=1e-12)
+    x, y = place_cue(*table((0.0, -1.2)), 0.0, -1.2)
+    assert np.hypot(x, y + 1.2) == pytest.approx(REACH, abs=1e-12)
+
+
+def test_on_the_spots_of_the_d():
+    for ball in (YELLOW, GREEN, BROWN):
+        x, y = place_cue(*table(SPOTS[ball]), *SPOTS[ball])
+        assert in_d(x, y) and np.hypot(*(SPOTS[ball] - [x, y])) == pytest.approx(REACH, abs=1e-12)
+
+
+def test_the_cue_ball_is_not_in_its_own_way():
+    positions, on_table = table()
+    positions[0], on_table[0] = (0.0, -1.1), True
+    assert place_cue(positions, on_table, 0.0, -1.1) == (0.0, -1.1)
+
+
+def test_a_full_d_is_refused():
+    rows = [(x, BAULK_Y - y) for y in (0.02, 0.11, 0.2, 0.28) for x in np.linspace(-0.26, 0.26, 6)[: 6 if y < 0.2 else 5]]
+    with pytest.raises(ValueError, match="free place"):
+        place_cue(*table(*rows[:21]), 0.0, -1.1, radius=0.08)
+
+
+def test_wrong_input_is_refused():
+    with pytest.raises(ValueError, match="x = nan"):
+        place_cue(*table(), np.nan, 0.0)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(0, 21))
+def test_no_place_drawn_at_random_is_nearer(seed, number):
+    rng = np.random.default_rng(seed)
+    balls = []
+    for place in rng.uniform([-0.33, BAULK_Y - 0.33], [0.33, BAULK_Y + 0.05], (400, 2)):
+        if len(balls) < number and all(np.hypot(*(place - ball)) > 2 * BALL_RADIUS for ball in balls):
+            balls.append(place)
+    wish = rng.uniform([-0.3, BAULK_Y - 0.3], [0.3, BAULK_Y])
+    wish = np.array(place_cue(*table(), *wish))
+    try:
+        place = place_cue(*table(*balls), *wish)
+    except ValueError:
+        place = None
+    anywhere = rng.uniform([-D_RADIUS, BAULK_Y - D_RADIUS], [D_RADIUS, BAULK_Y], (4000, 2))
+    tries = np.vstack([anywhere, wish + rng.normal(0, 0.05, (4000, 2))])
+    tries = tries[[in_d(x, y) for x, y in tries]]
+    for ball in balls:
+        tries = tries[np.hypot(*(tries - ball).T) > REACH]
+    if place is None:
+        assert not len(tries)
+        return
+    assert in_d(*place)
+    assert all(np.hypot(*(ball - place)) > 2 * BALL_RADIUS + CLEARANCE / 2 for ball in balls)
+    if len(tries):
+        assert np.hypot(*(tries - wish).T).min() > np.hypot(*(place - wish)) - 1e-9

@@ -1,0 +1,288 @@
+"""Does a drawn table show what lies on it? Pictures, text and films against known places, sizes and balls; no display needed."""
+
+import itertools
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.game.balls import BALL_RADIUS, BLACK, BROWN, CUE, GREEN, N_BALLS, PINK, SPOTS, YELLOW
+from snooker_env.render.ascii_view import ansi
+from snooker_env.render.pygame_view import Window, rgb_array, to_pixels
+from snooker_env.render.scene import COLOURS, ball_paths, outline, scene, shot_scenes
+
+ALL = np.ones(N_BALLS, bool)
+
+
+def without(*balls):
+    here = ALL.copy()
+    here[list(balls)] = False
+    return here
+
+
+def at(picture, point):
+    column, row = np.floor(to_pixels(point, len(picture))).astype(int)
+    return picture[row, column].astype(int)
+
+
+def looks(picture, point, ball):
+    """The pixel is nearer to this ball's colour than to any other ball's, and near it (the shading changes it by a tenth)."""
+    far = np.abs(COLOURS.astype(int) - at(picture, point)).max(axis=1)
+    return far[ball] == far.min() and far[ball] < 40
+
+
+@pytest.fixture(scope="module")
+def pot():
+    """The cue ball from the middle of the table pots the one red in the middle right pocket."""
+    return sn.simulate([(0.2, 0.0), (0.7, 0.0)], [(1.2, 0.0), (0.0, 0.0)], np.zeros((2, 3)))
+
+
+@pytest.fixture
+def dummy_screen(monkeypatch):
+    pygame = pytest.importorskip("pygame")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    assert not pygame.display.get_init()
+    yield pygame
+    pygame.display.quit()
+
+
+@pytest.mark.parametrize("table", ["match", "tight"])
+def test_outline_is_the_table_that_the_balls_meet(table):
+    table = sn.Table.preset(table)
+    parts = outline(table)
+    assert len(parts.cushions) == 6
+    throats = {"match": 0.0860, "tight": 0.08014}[table.name], 0.08457  # snooker.md: the quoted templates
+    assert 2 * parts.throats[:, 4] == pytest.approx([throats[0], throats[0], throats[1]] * 2, abs=2e-5)
+    R = BALL_RADIUS
+    for nose, polygon in zip(parts.noses, parts.cushions, strict=True):
+        assert len(nose) == 50 and len(polygon) == 52
+        middle = nose[24:26].mean(axis=0)
+        inward = -np.sign(middle) * (nose[24] == nose[25])  # the nose runs along the other axis
+        table.check([middle + inward * (R + 2e-6)], R)  # a ball beside what is drawn is free, one nearer is refused
+        with pytest.raises(ValueError, match="cushion"):
+            table.check([middle + inward * (R - 2e-5)], R)
+        for jaw, first in ((nose[:25], 24), (nose[25:], 0)):
+            on_arc = [k for k, (x, y, radius) in enumerate(table.jaws[:, :3]) if np.ptp(np.hypot(*(jaw - (x, y)).T) - radius) < 1e-12]
+            assert len(on_arc) == 1
+            x, y, radius, ux, uy, _ = table.jaws[on_arc[0]]
+            assert jaw[12] == pytest.approx([x + radius * ux, y + radius * uy], abs=1e-12)  # bulges to the arc's middle
+            assert np.argmax(jaw @ inward) == first  # farthest into the table where it leaves the nose
+
+
+def test_picture_shows_every_ball_in_its_place():
+    picture = rgb_array(scene("match", SPOTS, ALL))
+    assert picture.shape[0] == 600 and picture.shape[1] % 2 == 0 and picture.dtype == np.uint8
+    for ball in range(N_BALLS):
+        assert looks(picture, SPOTS[ball], ball), ball
+    # Seen from baulk towards the black the yellow is on the right: black right, yellow below, green above.
+    places = to_pixels(SPOTS)
+    assert places[BLACK, 0] > places[PINK, 0] > places[BROWN, 0] and places[YELLOW, 1] > places[BROWN, 1] > places[GREEN, 1]
+    assert places[BLACK, 1] == places[BROWN, 1]
+
+
+@pytest.mark.parametrize("height", [300, 601])
+def test_a_ball_has_its_true_size_and_centre(height):
+    place = np.array([0.4321, -0.3219])
+    here = np.arange(N_BALLS) == CUE
+    with_ball = rgb_array(scene("match", np.tile(place, (N_BALLS, 1)), here), height).astype(int)
+    white = with_ball.min(axis=2) > 130
+    rows, columns = np.nonzero(white)
+    inside = np.abs(np.stack([columns, rows], axis=1) + 0.5 - to_pixels(place, height)).max(axis=1) < 15
+    rows, columns = rows[inside], columns[inside]
+    assert [columns.mean() + 0.5, rows.mean() + 0.5] == pytest.approx(to_pixels(place, height), abs=0.5)
+    centre, x, y = to_pixels([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)], height)
+    scale = (y - centre)[0]
+    assert x - centre == pytest.approx([0.0, scale]) and y - centre == pytest.approx([scale, 0.0])
+    assert 2 * centre[0] == with_ball.shape[1] and 2 * centre[1] == pytest.approx(2 * scale * (0.889 + 0.155 + 0.02))  # rails and margin
+    assert len(rows) == pytest.approx(np.pi * (BALL_RADIUS * scale) ** 2, rel=0.12)
+
+
+def test_balls_off_the_table_do_not_appear():
+    empty = rgb_array(scene("match", SPOTS, ~ALL))
+    for ball in (CUE, 8, YELLOW, BLACK):
+        gone = rgb_array(scene("match", SPOTS, without(ball)))
+        assert not looks(gone, SPOTS[ball], ball)
+    alone = rgb_array(scene("match", SPOTS, without(*range(N_BALLS - 1))))
+    changed = np.argwhere(np.any(alone != empty, axis=2))
+    assert len(changed) and np.abs(changed[:, ::-1] - to_pixels(SPOTS[BLACK])).max() < 20
+
+
+def test_picture_of_the_table():
+    picture = rgb_array(scene("match", SPOTS, ~ALL))
+    for x, y, radius in sn.Table.preset("match").falls:
+        inner = np.array([x, y]) - 0.6 * radius * np.sign([x, y])  # over the fall, on the way into the table
+        assert at(picture, inner).max() < 25
+    red, green, blue = at(picture, (0.3, 0.5))
+    assert green > red + 40 and green > blue + 20
+    assert at(picture, (0.6, SPOTS[BROWN, 1])).min() > at(picture, (0.6, SPOTS[BROWN, 1] + 0.03)).min() + 40  # the baulk line
+    assert at(picture, (0.0, SPOTS[BROWN, 1] - 0.292)).min() > at(picture, (0.0, SPOTS[BROWN, 1] - 0.27)).min() + 40  # the D
+    unbounded = rgb_array(scene(None, SPOTS, ALL))
+    assert unbounded.shape == picture.shape and looks(unbounded, SPOTS[BLACK], BLACK)
+    assert at(unbounded, (0.889, 1.7845))[1] > 60  # no pocket
+
+
+def test_overlays_and_text_change_only_where_they_are():
+    plain = rgb_array(scene("match", SPOTS, ~ALL))
+    path = np.array([(-0.5, 0.5), (0.5, 0.5)])
+    drawn = rgb_array(scene("match", SPOTS, ~ALL, paths={CUE: path}))
+    assert at(drawn, (0.1, 0.5)).min() > 200 and np.array_equal(at(drawn, (0.1, 0.55)), at(plain, (0.1, 0.55)))
+    assert at(rgb_array(scene("match", SPOTS, ~ALL, aim=path)), (0.1, 0.5))[:2].min() > 200
+    ghost = rgb_array(scene("match", SPOTS, ~ALL, ghost=(0.3, 0.5)))
+    assert np.array_equal(at(ghost, (0.3, 0.5)), at(plain, (0.3, 0.5))) and np.any(ghost != plain)
+    for text in ("break 12", "long " * 100):
+        said = rgb_array(scene("match", SPOTS, ~ALL, text=text))
+        rows, columns = np.nonzero(np.any(said != plain, axis=2))
+        assert said.shape == plain.shape and rows.min() > to_pixels((0.889 + 0.155, 0.0))[1] and columns.max() < plain.shape[1] - 10
+
+
+def test_pictures_are_fresh_repeatable_and_need_no_display():
+    pygame = pytest.importorskip("pygame")
+    one, two = rgb_array(scene("match", SPOTS)), rgb_array(scene("match", SPOTS))
+    assert np.array_equal(one, two) and one.flags.writeable and one.flags.owndata
+    one[:] = 0
+    assert np.array_equal(two, rgb_array(scene("match", SPOTS)))
+    assert not pygame.display.get_init()
+
+
+def test_scene_copies_and_refuses():
+    r = SPOTS.copy()
+    s = scene("match", r, without(3), paths={CUE: r})
+    r[:] = 0
+    assert np.array_equal(s.positions, SPOTS[without(3)]) and s.labels == tuple("W" + "r" * 14 + "YGNBPK") and 3 not in s.ids
+    assert np.array_equal(s.paths[CUE], SPOTS) and np.array_equal(s.colours[-1], COLOURS[BLACK])
+    for bad, field in [
+        (lambda: scene("match", SPOTS, np.ones(21, bool)), "on_table"),
+        (lambda: scene("match", SPOTS, np.ones(22)), "on_table"),
+        (lambda: scene("match", np.full((22, 2), np.nan)), "positions"),
+        (lambda: scene("match", np.zeros((23, 2))), "positions"),
+        (lambda: scene("pool", SPOTS), "table"),
+        (lambda: scene("match", SPOTS, paths={22: r}), "paths"),
+        (lambda: scene("match", SPOTS, ghost=(1, 2, 3)), "ghost"),
+        (lambda: rgb_array(scene("match", SPOTS), 5), "height"),
+        (lambda: ansi(scene("match", SPOTS), 10), "width"),
+    ]:
+        with pytest.raises(ValueError, match=field):
+            bad()
+
+
+def test_film_of_a_shot(pot):
+    assert pot.potted[1] == sn.POCKETS.index("middle right")
+    film = list(shot_scenes("match", pot, fps=50, speed=2.0, text="pot"))
+    assert len(film) == int(np.ceil(pot.duration * 25)) + 1
+    assert [len(s.ids) for s in film] == sorted([len(s.ids) for s in film], reverse=True)
+    drop = pot.events["time"][pot.events["kind"] == sn.EventKind.POT][0]
+    for k, s in enumerate(film[:-1]):
+        assert s.ids.tolist() == ([CUE, 1] if k * 0.04 < drop else [CUE]) and s.text == "pot"
+        assert np.array_equal(s.positions[0], pot.at(k * 0.04)[0][0])
+        assert not s.paths or np.array_equal(s.paths[CUE][-1], s.positions[0])
+    assert np.array_equal(film[-1].positions[0], pot.positions[0])
+    assert film[0].paths == {} and film[-1].paths.keys() == {CUE}
+    assert all(s.paths == {} for s in itertools.islice(shot_scenes("match", pot, trail=()), 5))
+
+
+def test_paths_run_from_start_to_end(pot):
+    paths = ball_paths(pot, (CUE, 1))
+    assert np.array_equal(paths[CUE][0], (0.2, 0.0)) and paths[CUE][-1] == pytest.approx(pot.positions[0], abs=1e-4)
+    assert paths[1][-1] == pytest.approx(pot.positions[1], abs=1e-9)
+    impact = 0.7 - 2 * BALL_RADIUS
+    assert np.min(np.abs(paths[CUE][:, 0] - impact)) < 1e-6  # the place of the impact itself is on the path
+    assert ball_paths(pot, (CUE, 1), until=0.1).keys() == {CUE}
+
+
+def test_text_shows_the_balls():
+    picture = ansi(scene("match", SPOTS, ALL, text="break 12"))
+    lines = picture.split("\n")
+    table = lines[:27]
+    assert {len(line) for line in table} == {100} and table[0].startswith("O═") and table[0].count("O") == 4 == table[-1].count("O")
+    assert lines[27] == "break 12" and "N=brown" in lines[28] and "\x1b" not in picture
+    rows = {letter: [k for k, line in enumerate(table) if letter in line] for letter in "WYGNBPK"}
+    assert all(len(found) == 1 for found in rows.values())
+    assert rows["G"] < rows["N"] < rows["Y"] and rows["N"] == rows["B"] == rows["P"] == rows["K"] == [13]
+    centre = table[13]
+    assert centre.index("N") < centre.index("B") < centre.index("P") < centre.index("K")
+    assert centre.index("K") == 1 + int((1.4605 + 1.7845) / 3.569 * 98)
+    reds = "".join(table)
+    assert reds.count("r") + sum(int(digit) for digit in re.findall(r"\d", reds)) == 15
+    assert len(ansi(scene("match", SPOTS, ALL), 61).split("\n")[0]) == 61
+    assert "═" not in ansi(scene(None, SPOTS, ALL))
+
+
+def test_text_never_hides_the_cue_ball():
+    for other in (1, YELLOW, BLACK):
+        r = SPOTS.copy()
+        r[other] = r[CUE] + (0.0, 1e-4)
+        for order in (ALL, without(5)):
+            lines = ansi(scene("match", r, order, paths={CUE: r[:2]})).split("\n")
+            assert sum("W" in line for line in lines[:27]) == 1
+            assert lines[-1] == f"hidden: {'r' if other == 1 else 'Y' if other == YELLOW else 'K'} under W"
+    assert "W" not in "".join(ansi(scene("match", SPOTS, without(CUE))).split("\n")[:27])
+
+
+def test_text_overlays_and_colour():
+    aim = np.array([(-0.5, 0.5), (0.5, 0.5)])
+    plain = ansi(scene("match", SPOTS, ALL, aim=aim, ghost=(0.6, 0.5), paths={CUE: aim - (0, 0.2)}))
+    table = "".join(plain.split("\n")[:27])
+    assert table.count("-") >= 13 and table.count("o") == 1 and table.count(".") >= 13
+    coloured = ansi(scene("match", SPOTS, ALL, aim=aim, ghost=(0.6, 0.5), paths={CUE: aim - (0, 0.2)}), colour=True)
+    assert coloured != plain and re.sub(r"\x1b\[[0-9;]*m", "", coloured) == plain
+
+
+def test_without_pygame_the_message_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pygame", None)
+    for draw in (rgb_array, Window().draw):
+        with pytest.raises(ImportError, match=re.escape('pip install "snooker-env[render]"')):
+            draw(scene("match", SPOTS))
+    assert "W" in ansi(scene("match", SPOTS))
+
+
+def test_pygame_is_imported_only_to_draw():
+    code = "import sys, snooker_env.render.pygame_view, snooker_env.render.ascii_view; sys.exit('pygame' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}).returncode == 0
+
+
+def test_window_opens_lazily_plays_and_closes(dummy_screen, pot):
+    window = Window(height=300)
+    assert not window.is_open and not dummy_screen.display.get_init()
+    window.close()
+    film = list(shot_scenes("match", pot, fps=10))
+    assert window.play(film, fps=1000) and window.is_open
+    shown = dummy_screen.surfarray.array3d(dummy_screen.display.get_surface()).transpose(1, 0, 2)
+    assert np.array_equal(shown, rgb_array(film[-1], 300))
+    window.close()
+    window.close()
+    assert not window.is_open and not dummy_screen.display.get_init()
+    assert window.draw(film[0]) and window.is_open
+    window.close()
+
+
+def test_window_heeds_its_close_button(dummy_screen, pot):
+    window = Window(height=300)
+    assert window.draw(scene("match", SPOTS))
+    dummy_screen.event.post(dummy_screen.event.Event(dummy_screen.QUIT))
+    assert not window.play(shot_scenes("match", pot), fps=1000)
+    assert not window.is_open and not window.draw(scene("match", SPOTS)) and not dummy_screen.display.get_init()
+    window.close()
+    assert window.draw(scene("match", SPOTS))
+    window.close()
+
+
+def test_demo_break_off(tmp_path):
+    """A break-off with the cue ball's path; the picture is kept for the eye where SNOOKER_RENDER_OUT names a folder."""
+    pygame = pytest.importorskip("pygame")
+    target = SPOTS[15] + (0.052, -0.01)
+    start = np.array([0.2, SPOTS[BROWN, 1]])
+    v, w = sn.strike(4.6, np.arctan2(*(target - start)[::-1]), side=0.35)
+    r, V, W = SPOTS.copy(), np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
+    r[CUE], V[CUE], W[CUE] = start, v[:2], w
+    shot = sn.simulate(r, V, W)
+    overlays = {"paths": ball_paths(shot), "aim": [start, target], "text": "Break-off at 4.6 m/s"}
+    picture = rgb_array(scene("match", shot.positions, shot.on_table, **overlays))
+    folder = os.environ.get("SNOOKER_RENDER_OUT", tmp_path)
+    pygame.image.save(pygame.image.frombuffer(picture, picture.shape[1::-1], "RGB"), os.path.join(folder, "x.png"))
+    for ball in np.flatnonzero(shot.on_table):
+        assert looks(picture, shot.positions[ball], ball), ball
+    assert at(picture, start).min() > 150  # where the path and the line of aim begin
