@@ -46,7 +46,7 @@ class Noise:
     @property
     def silent(self):
         """No noise at all: nothing is drawn then."""
-        return not any(asdict(self).values())
+        return not (self.aim_deg or self.speed_rel or self.speed_abs or self.offset_mm or self.elevation_deg)
 
     def draw(self, rng, speed, side, top, aim, elevation, R):
         """The shot as executed: (speed, side, top, aim, elevation). Five numbers are drawn from ``rng`` unless silent."""

@@ -29,6 +29,14 @@ _TOUCHING = 1e-6  # m; balls nearer than this touch
 _AT_ONCE = 1e-9  # s; contacts nearer than this are simultaneous
 
 
+_BITS = 1 << np.arange(N_BALLS)
+
+
+def _mask(balls):
+    """The mask of a bool array (22,)."""
+    return int(balls @ _BITS)
+
+
 class SnookerEnv(gymnasium.Env):
     """Snooker shot selection: one step is one whole shot.
 
@@ -133,7 +141,7 @@ class SnookerEnv(gymnasium.Env):
     @property
     def on(self):
         """Mask of the balls on, bit i for ball i."""
-        return balls_on(self.ball_on, mask_of(np.flatnonzero(self.on_table)))
+        return balls_on(self.ball_on, _mask(self.on_table))
 
     def get_state(self):
         """The whole state as JSON types: table, game and random generator. ``set_state`` brings it back exactly."""
@@ -171,7 +179,7 @@ class SnookerEnv(gymnasium.Env):
             self.set_state(options["state"])
         else:
             self.positions, self.on_table = make_layout(self.layout, self.np_random)
-            self.ball_on = BallOn(next_on(mask_of(np.flatnonzero(self.on_table))))
+            self.ball_on = BallOn(next_on(_mask(self.on_table)))
             self.in_hand, self.points, self.over = self.layout == "break_off", 0, False
         if self.render_mode == "human":
             self._show()
@@ -190,7 +198,7 @@ class SnookerEnv(gymnasium.Env):
         shot = self._play(v, w)
         ball_on = self.ball_on
         stroke = self._stroke(shot)
-        situation = Situation(on_table=mask_of(np.flatnonzero(self.on_table)), ball_on=ball_on, lead=self.points)
+        situation = Situation(on_table=_mask(self.on_table), ball_on=ball_on, lead=self.points)
         verdict, self.positions, self.on_table = settle_table(shot.positions, self.on_table, situation, stroke)
         self.ball_on, self.in_hand = verdict.ball_on, verdict.in_hand
         self.points += verdict.points
@@ -246,13 +254,13 @@ class SnookerEnv(gymnasium.Env):
     def _stroke(self, shot):
         """What the referee sees of a shot: first contact, touching balls, pots."""
         gaps = np.hypot(*(self.positions - self.positions[CUE]).T) - 2 * BALL_RADIUS
-        touching = mask_of(i for i in np.flatnonzero(self.on_table & (gaps < _TOUCHING)) if i != CUE)
+        touching = _mask(self.on_table & (gaps < _TOUCHING)) & ~1
         events = shot.events
         hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
         # a touching ball that the cue ball is played away from is not struck; one it is played into is moved at once
-        first = mask_of(set(hits["j"][hits["time"] <= hits["time"][0] + _AT_ONCE].tolist())) if len(hits) else 0
+        first = mask_of(hits["j"][hits["time"] <= hits["time"][0] + _AT_ONCE].tolist()) if len(hits) else 0
         moved = touching & first if len(hits) and hits["time"][0] <= _AT_ONCE else 0
-        return Stroke(first=first, potted=mask_of(np.flatnonzero(shot.potted >= 0)), touching=touching, moved=moved)
+        return Stroke(first=first, potted=_mask(shot.potted >= 0), touching=touching, moved=moved)
 
     def _observe(self):
         return observations.observe(self.observation, self.positions, self.on_table, self.ball_on, self.on, self.in_hand, self.points)
@@ -274,36 +282,23 @@ class SnookerEnv(gymnasium.Env):
 
     # pictures --------------------------------------------------------------------------------------------------------------
 
-    def _scene(self):
-        from ..render.scene import scene
+    def _text(self):
+        reds = (_mask(self.on_table) & REDS_MASK).bit_count()
+        return f"break {self.points}   on: {self.ball_on.name.lower().replace('_', ' ')}   reds: {reds}"
 
-        reds = (mask_of(np.flatnonzero(self.on_table)) & REDS_MASK).bit_count()
-        text = f"break {self.points}   on: {self.ball_on.name.lower().replace('_', ' ')}   reds: {reds}"
-        paths = ()
-        if self.last_shot is not None:
-            times = np.linspace(0.0, max(self.last_shot.duration, 1e-3), 400)
-            paths = (self.last_shot.at(times)[0][:, CUE],)
-        return scene(self.table, self.positions, self.on_table, paths=paths, text=text)
+    def _scene(self):
+        from ..render.scene import ball_paths, scene
+
+        paths = ball_paths(self.last_shot) if self.last_shot is not None else None
+        return scene(self.table, self.positions, self.on_table, paths=paths, text=self._text())
 
     def _show(self, shot=None):
         from ..render.pygame_view import Window
+        from ..render.scene import shot_scenes
 
         if self._window is None:
             self._window = Window()
         if shot is not None:
-            self._window.play(self._frames(shot), self.metadata["render_fps"])
+            fps = self.metadata["render_fps"]
+            self._window.play(shot_scenes(self.table, shot, fps=fps, speed=2.0, text=self._text()), fps)
         self._window.draw(self._scene())
-
-    def _frames(self, shot):
-        """Scenes of a running shot, twice as fast as life."""
-        from ..render.scene import scene
-
-        speed_up, fps = 2.0, self.metadata["render_fps"]
-        gone = {int(e["i"]): e["time"] for e in shot.events if e["kind"] == EventKind.POT}
-        start = shot.at(0.0)[0]
-        alive = ~np.isnan(start[:, 0]) & (shot.on_table | (shot.potted >= 0))
-        for t in np.arange(0.0, shot.duration, speed_up / fps):
-            here = alive.copy()
-            for ball, when in gone.items():
-                here[ball] &= t < when
-            yield scene(self.table, shot.at(t)[0], here)

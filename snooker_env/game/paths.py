@@ -17,7 +17,7 @@ WINDOW = 1e-9
 
 
 @kernel
-def _meets(bx, by, ux, uy, radius):
+def meets(bx, by, ux, uy, radius):
     """How far the cue ball, from the origin along the unit vector u, rolls until it meets the ball at b; inf if it passes."""
     along, across = bx * ux + by * uy, bx * uy - by * ux
     if along <= 0.0 or abs(across) >= 2.0 * radius:
@@ -50,11 +50,11 @@ def _open_direction(positions, on_table, on, target, angle, radius):
     """Does the cue ball, rolling at ``angle``, meet ``target`` before any ball not on?"""
     ux, uy = np.cos(angle), np.sin(angle)
     cx, cy = positions[0, 0], positions[0, 1]
-    run = _meets(positions[target, 0] - cx, positions[target, 1] - cy, ux, uy, radius)
+    run = meets(positions[target, 0] - cx, positions[target, 1] - cy, ux, uy, radius)
     if run == np.inf:
         return False
     for i in range(1, N_BALLS):
-        if on_table[i] and not (on >> i) & 1 and _meets(positions[i, 0] - cx, positions[i, 1] - cy, ux, uy, radius) < run:
+        if on_table[i] and not (on >> i) & 1 and meets(positions[i, 0] - cx, positions[i, 1] - cy, ux, uy, radius) < run:
             return False
     return True
 

@@ -242,10 +242,10 @@ def test_only_the_striker_concedes():
 
 
 def test_a_stalemate_starts_again():
-    frame = played(Frame.start(breaker=1, miss="clear_path"), pot(1), pot(BLACK)).restart()
+    frame = played(Frame.start(breaker=1, miss="clear_path"), pot(1), pot(BLACK), hit(2)).restart()
     assert frame == Frame.start(breaker=1, miss="clear_path")
     with pytest.raises(ValueError, match="over"):
-        frame.concede(1).restart()
+        frame.concede(frame.striker).restart()
 
 
 def test_nothing_more_is_played_when_it_is_over():

@@ -37,6 +37,22 @@ def test_every_layout_is_playable(name, seed):
     assert all(np.hypot(*(POCKETS - place).T).min() >= layouts.POCKET_GAP for place in sprinkled)
 
 
+@pytest.mark.parametrize(
+    ("too_near", "near"),
+    [
+        ((2 * BALL_RADIUS + 0.9 * layouts.GAP, 0.3), (2 * BALL_RADIUS + 1.1 * layouts.GAP, 0.3)),
+        ((HALF_WIDTH - BALL_RADIUS - 0.9 * layouts.CUSHION_GAP, 0.5), (HALF_WIDTH - BALL_RADIUS - 1.1 * layouts.CUSHION_GAP, 0.5)),
+        ((HALF_WIDTH - 0.9 * layouts.POCKET_GAP, 0.0), (HALF_WIDTH - 1.1 * layouts.POCKET_GAP, 0.0)),
+    ],
+)
+def test_a_place_too_near_is_passed_over(too_near, near):
+    positions, on_table = np.full((22, 2), 5.0), np.zeros(22, dtype=bool)
+    positions[1], on_table[1] = (0.0, 0.3), True
+    draws = iter([np.array(too_near), np.array(near)])
+    layouts._put(positions, on_table, 0, lambda: next(draws))
+    assert tuple(positions[0]) == near and on_table[0]
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_the_generator_decides(name):
     first, again, other = (layouts.layout(name, np.random.default_rng(seed))[0] for seed in (5, 5, 6))

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, BLACK, D_RADIUS, PINK, SPOTS, YELLOW, mask_of
-from snooker_env.game.paths import paths
+from snooker_env.game.paths import meets, paths
 from snooker_env.game.snookered import is_snookered
 
 R = BALL_RADIUS
@@ -102,11 +102,18 @@ def test_in_hand_sees_from_any_place():
 
 @pytest.mark.parametrize(("spare", "expected"), [(0.0012, False), (-0.0005, True)])
 def test_in_hand_finds_a_narrow_view(spare, expected):
-    # From the brown spot both edges of FAR need half a way of 2 R (1 + a / b) at the gate, a and b the runs to gate and red. From beside
-    # the spot the way shifts at the gate, so that the view is a few millimetres wide; from behind it needs more.
-    gate = 0.4
-    half = 2 * R * (1 + (gate - BAULK_Y) / (FAR[1] - BAULK_Y)) + spare
-    assert snookered(None, [FAR], [(-half, gate), (half, gate)])[0] == expected
+    # From straight below, on the baulk line, both edges of the red need a gate of half a way 2 R (1 + a / b), a and b the runs to gate and
+    # red. From beside that place the way shifts at the gate, so that the view is some 10 mm wide; from behind it needs more.
+    x, gate, red = 0.12, 0.4, 0.8
+    half = 2 * R * (1 + (gate - BAULK_Y) / (red - BAULK_Y)) + spare
+    assert snookered(None, [(x, red)], [(x - half, gate), (x + half, gate)])[0] == expected
+
+
+def test_in_hand_a_place_on_a_ball_is_no_place():
+    red = np.array([0.0, -1.19])
+    ring = [red + 2.001 * R * np.array([np.cos(a), np.sin(a)]) for a in np.radians(range(0, 360, 60))]
+    assert snookered(None, [red], ring)[0]
+    assert not snookered(None, [red], ring[:3])[0]
 
 
 def test_in_hand_a_ball_in_the_d_takes_its_place_away():
@@ -205,6 +212,17 @@ def test_snookers_agree_with_rolling(scene):
 # Paths by name
 
 
+@pytest.mark.parametrize("across", [-0.05, -0.03, 0.0, 0.01, 0.0524])
+def test_where_a_rolling_ball_meets_another(across):
+    angle = 0.7
+    along, aside = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    ball = 0.9 * along + across * aside
+    run = meets(*ball, *along, R)
+    assert np.hypot(*(run * along - ball)) == pytest.approx(2 * R, abs=1e-12) and run < 0.9
+    assert meets(*-ball, *along, R) == np.inf
+    assert meets(*(ball + 0.11 * aside), *along, R) == np.inf
+
+
 @pytest.mark.parametrize(
     ("reds", "others", "expected"),
     [
@@ -217,6 +235,7 @@ def test_snookers_agree_with_rolling(scene):
         ([FAR, (0.0, 0.3)], [], (True, True)),  # a red behind a red is not obstructed
         ([FAR], [(0.0, 0.9)], (True, True)),
         ([FAR], [(0.05, 0.755)], (True, False)),
+        ([FAR], [(0.05, 0.764)], (True, True)),  # the cue ball meets the red before it would meet this one
     ],
 )
 def test_clear_paths(reds, others, expected):

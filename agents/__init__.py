@@ -1,0 +1,1 @@
+"""Who plays? Agents and what they share; not part of the wheel."""
