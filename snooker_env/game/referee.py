@@ -1,6 +1,6 @@
 """How does Python ask the referee? ``judge(Situation, Stroke) -> Verdict``: checked in, named out, around the kernel ``ruling``."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 from .._check import integer, refuse
 from .._jit import entry
@@ -84,7 +84,7 @@ class Stroke:
     @property
     def flags(self):
         """The true ones among the bool fields, as a ``Flag``."""
-        return Flag(sum(flag for flag in Flag if getattr(self, flag.name.lower())))
+        return Flag(sum(flag for flag in Flag if getattr(self, str(flag.name).lower())))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,9 +127,20 @@ def _ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, 
 
 def verdict_of(result):
     """The kernel's ``Ruling`` as a ``Verdict``."""
-    kinds = {"fouls": Foul, "ball_on": BallOn, "visit_end": VisitEnd, "outcome": Outcome, "in_hand": bool, "free_ball": bool}
-    named = {field.name: kinds.get(field.name, int)(getattr(result, field.name)) for field in fields(Verdict)}
-    return Verdict(**named | {"stays": None if result.stays < 0 else bool(result.stays)})
+    return Verdict(
+        fouls=Foul(result.fouls),
+        penalty=int(result.penalty),
+        points=int(result.points),
+        respotted=int(result.respotted),
+        on_table=int(result.on_table),
+        ball_on=BallOn(result.ball_on),
+        stays=None if result.stays < 0 else bool(result.stays),
+        in_hand=bool(result.in_hand),
+        free_ball=bool(result.free_ball),
+        visit_end=VisitEnd(result.visit_end),
+        outcome=Outcome(result.outcome),
+        nominated=int(result.nominated),
+    )
 
 
 def check(situation, stroke):

@@ -129,5 +129,5 @@ def _mu_bb(value):
 
 PRESETS = {
     "paper": {},
-    "match": {"e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee": 2.0, "e_c_slope": 0.08},
+    "match": {"e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee": 2.068, "e_c_slope": 0.0971},
 }

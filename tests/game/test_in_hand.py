@@ -54,6 +54,15 @@ def test_beside_one_ball():
     assert np.hypot(x, y + 1.2) == pytest.approx(REACH, abs=1e-12)
 
 
+def test_beside_one_ball_on_the_lines_of_the_d():
+    # The nearest point of the circle lies beyond the line; the place is where circle and line meet.
+    half = np.sqrt(REACH**2 - 0.02**2)
+    assert place_cue(*table((0.0, BAULK_Y - 0.02)), 0.01, BAULK_Y) == pytest.approx((half, BAULK_Y), abs=1e-12)
+    x, y = place_cue(*table((0.0, BAULK_Y - D_RADIUS + 0.02)), 0.01, BAULK_Y - D_RADIUS)
+    assert np.hypot(x, y - BAULK_Y) == pytest.approx(D_RADIUS, abs=1e-12)
+    assert np.hypot(x, y - BAULK_Y + D_RADIUS - 0.02) == pytest.approx(REACH, abs=1e-12) and x > 0.0
+
+
 def test_on_the_spots_of_the_d():
     for ball in (YELLOW, GREEN, BROWN):
         x, y = place_cue(*table(SPOTS[ball]), *SPOTS[ball])

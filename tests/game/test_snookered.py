@@ -212,6 +212,14 @@ def test_snookers_agree_with_rolling(scene):
 # Paths by name
 
 
+@pytest.mark.parametrize("side", [-1, 1])
+def test_a_view_that_ends_where_the_cue_ball_would_meet_two_balls_at_once(side):
+    # Open between the edge of the near ball and the direction in which red and neighbour are met together: 0.0300 to 0.0313 rad.
+    red, neighbour, near = (0.0, 1.0), (side * 0.06, 1.0), (-side * 0.03756, 0.49859)
+    assert paths(*table((0.0, 0.0), [red], [neighbour, near])) == (True, False)
+    assert paths(*table((0.0, 0.0), [red], [neighbour, (-side * 0.0355, 0.498)])) == (False, False)  # that edge at 0.034 rad
+
+
 @pytest.mark.parametrize("across", [-0.05, -0.03, 0.0, 0.01, 0.0524])
 def test_where_a_rolling_ball_meets_another(across):
     angle = 0.7

@@ -1,0 +1,99 @@
+"""Is no root missed? Crossings of quadratics and quartics against exact construction, high precision, and dense sampling."""
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from snooker_env.physics.detection import distance_crossing
+from snooker_env.physics.roots import quadratic_crossing, quartic_crossing
+
+
+def exact_crossing(coefficients, T):
+    """Earliest downward crossing in [0, T] with 60 digits; coefficients highest first."""
+    with mpmath.workdps(60):
+        c = [mpmath.mpf(float(x)) for x in coefficients]
+        while c and c[0] == 0:
+            c = c[1:]
+        if len(c) < 2:
+            return np.inf
+        slope = [k * x for k, x in zip(range(len(c) - 1, 0, -1), c[:-1], strict=True)]
+        roots = [mpmath.re(z) for z in mpmath.polyroots(c, maxsteps=500, extraprec=400) if abs(mpmath.im(z)) < mpmath.mpf(10) ** -40]
+        good = [x for x in roots if 0 <= x <= T and mpmath.polyval(slope, x) < 0]
+        return float(min(good)) if good else np.inf
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(st.floats(-3, 3), min_size=4, max_size=4), st.floats(0.1, 5), st.sampled_from([1.0, -1.0]))
+def test_quartic_with_known_real_roots(roots, T, sign):
+    q = sign * np.poly(roots)
+    gaps = np.diff(np.sort(roots))
+    want = exact_crossing(q, T)
+    if gaps.min() < 1e-3 or min(abs(x) for x in [*roots, *(T - x for x in roots)]) < 1e-6:
+        return  # (nearly) double roots and roots at the ends: rounding of the coefficients decides
+    got = quartic_crossing(*q, T)
+    assert got == pytest.approx(want, abs=1e-9)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.tuples(*[st.floats(-10, 10)] * 5), st.floats(0.01, 3))
+def test_quartic_never_misses_a_sign_change(q, T):
+    """If a dense sample sees the value go from above to below zero, a crossing at or before that place is found; and what is found is one."""
+    got = quartic_crossing(*q, T)
+    x = np.linspace(0, T, 2001)
+    f = np.polyval(q, x)
+    size = np.polyval(np.abs(q), T) + 1e-300
+    seen = np.flatnonzero((f[:-1] > 1e-12 * size) & (f[1:] < -1e-12 * size))
+    if len(seen):
+        assert got <= x[seen[0] + 1] * (1 + 1e-12)
+    if np.isfinite(got):
+        assert 0 <= got <= T
+        assert abs(np.polyval(q, got)) <= 1e-9 * size
+
+
+@pytest.mark.parametrize("scale", [10.0**k for k in range(-12, 13, 2)])
+def test_two_precisions_over_many_decades(scale):
+    """The root found in doubles equals the one found in 60 digits, with times stretched over 24 decades."""
+    rng = np.random.default_rng(3)
+    for _ in range(40):
+        c0, c1, c2 = rng.normal(size=2), rng.normal(size=2), rng.normal(size=2) * 0.3
+        c0 *= 3 / np.linalg.norm(c0)
+        q = [c2 @ c2, 2 * c1 @ c2, c1 @ c1 + 2 * c0 @ c2, 2 * c0 @ c1, c0 @ c0 - 1.0]
+        q = [a / scale**k for a, k in zip(q, range(4, -1, -1), strict=True)]
+        want, got = exact_crossing(q, 10 * scale), quartic_crossing(*q, 10 * scale)
+        if np.isfinite(want) or np.isfinite(got):
+            slope = np.polyval(np.polyder(np.array(q)), want) * scale
+            assert got == pytest.approx(want, rel=1e-12 / min(1.0, abs(slope)), abs=0)
+
+
+@given(st.floats(-5, 5), st.floats(-5, 5), st.floats(-5, 5), st.floats(0.01, 4))
+@settings(max_examples=300, deadline=None)
+def test_quadratic(c0, c1, c2, T):
+    got = quadratic_crossing(c0, c1, c2, T)
+    x = np.linspace(0, T, 2001)
+    f = c0 + c1 * x + c2 * x * x
+    seen = np.flatnonzero((f[:-1] > 1e-9) & (f[1:] < -1e-9))
+    if len(seen):
+        assert x[seen[0]] - 1e-6 <= got <= x[seen[0] + 1] + 1e-6
+    if np.isfinite(got):
+        assert abs(c0 + c1 * got + c2 * got * got) < 1e-9
+        assert c1 + 2 * c2 * got < 0
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.tuples(*[st.floats(-2, 2)] * 6), st.floats(0.01, 3))
+def test_rejection_loses_nothing(c, T):
+    """The cheap tests before the quartic never throw away a contact that a dense sample sees."""
+    x0, y0, x1, y1, x2, y2 = c
+    d = 0.3
+    if np.hypot(x0, y0) < d + 1e-6:
+        return
+    got = distance_crossing(x0, y0, x1, y1, x2, y2, d, T)
+    t = np.linspace(0, T, 4001)
+    far = np.hypot(x0 + x1 * t + x2 * t * t, y0 + y1 * t + y2 * t * t)
+    inside = np.flatnonzero(far < d - 1e-9)
+    if len(inside):
+        assert got <= t[inside[0]]
+    if np.isfinite(got):
+        assert np.hypot(x0 + x1 * got + x2 * got**2, y0 + y1 * got + y2 * got**2) == pytest.approx(d, abs=1e-9)

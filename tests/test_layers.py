@@ -1,0 +1,243 @@
+"""Does each part import only what stands above it, and do the layers agree on what they share? Read from the source with ``ast``."""
+
+import ast
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import snooker_env
+from snooker_env import Physics, Table
+from snooker_env.envs import observations
+from snooker_env.envs.actions import Actions
+from snooker_env.game import balls, in_hand, layouts, pots, snookered
+from snooker_env.physics import table
+
+PACKAGE = Path(snooker_env.__file__).resolve().parent
+FILES = sorted(PACKAGE.rglob("*.py"))
+NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
+
+# What a part may import of the package, besides itself. A trailing dot means: only these modules of that part.
+BASE = {"_jit", "_check"}
+ALLOWED = {
+    "_jit": set(),
+    "_check": set(),
+    "physics": BASE,
+    "simulation": BASE | {"physics"},
+    "game": BASE,
+    "envs": BASE | {"physics", "simulation", "game", "render"},
+    "render": {"_check", "physics.table", "physics.engine", "game.balls", "simulation"},
+    "sb3": BASE | {"physics", "simulation", "game", "envs"},
+    "play": BASE | {"physics", "simulation", "game", "envs", "render"},
+    "__init__": {"physics", "simulation", "envs"},
+}
+OUTSIDE = {"gymnasium": {"envs", "__init__", "sb3", "play"}, "pygame": {"render"}, "pettingzoo": {"envs"}, "stable_baselines3": {"sb3"}}
+"""Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
+ALWAYS = {"numpy", "numba"}
+STANDARD = {
+    "__future__", "argparse", "base64", "collections", "concurrent", "contextlib", "dataclasses", "enum", "functools", "hashlib", "html",
+    "importlib", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "time", "typing", "zlib",
+}  # fmt: skip
+
+
+def part_of(name):
+    """Which layer a file belongs to: its folder, or itself at the top."""
+    head = name.split("/")[0]
+    return head.removesuffix(".py")
+
+
+def imports(name):
+    """All imports of a file: (dotted target, is it at the top level of the file?). Targets inside the package start with a dot."""
+    tree = ast.parse((PACKAGE / name).read_text())
+    here = ["snooker_env", *name.split("/")[:-1]]
+    lazy = {id(inner) for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) for inner in ast.walk(node)}
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found += [(alias.name, id(node) not in lazy) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = here[: len(here) - node.level + 1] if node.level else []
+            stem = ".".join([*base, *([node.module] if node.module else [])])
+            folder = PACKAGE.parent / stem.replace(".", "/")
+            # ``from .physics import cue`` names a module, ``from .physics.cue import strike`` a thing in one
+            inside = [f"{stem}.{a.name}" for a in node.names] if folder.is_dir() and stem.startswith("snooker_env") else [stem]
+            found += [(target, id(node) not in lazy) for target in inside]
+    return [("." + t.removeprefix("snooker_env").lstrip(".") if t.split(".")[0] == "snooker_env" else t, top) for t, top in found]
+
+
+def test_the_reader_of_imports_sees_every_kind():
+    seen = dict(imports("envs/snooker.py"))
+    assert seen[".physics.cue"] and seen[".envs.noise"] and seen["gymnasium"]
+    assert seen[".render.pygame_view"] is False
+    assert dict(imports("render/pygame_view.py"))["pygame"] is False
+    assert dict(imports("__init__.py"))[".physics.engine"]
+    assert len(FILES) > 25
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_file_imports_only_what_stands_above_it(name):
+    part = part_of(name)
+    assert part in ALLOWED, f"{name} belongs to no layer of the plan"
+    for target, _ in imports(name):
+        if target.startswith("."):
+            inner = target[1:]
+            allowed = ALLOWED[part]
+            fine = inner.split(".")[0] in allowed | {part} or any(inner == a or inner.startswith(a + ".") for a in allowed)
+            assert fine, f"{name} imports {inner}; {part} may import {sorted(allowed)}"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_file_imports_only_libraries_that_are_its_business(name):
+    part = part_of(name)
+    for target, top in imports(name):
+        if target.startswith("."):
+            continue
+        library = target.split(".")[0]
+        if library in ALWAYS | STANDARD:
+            continue
+        assert part in OUTSIDE.get(library, ()), f"{name} imports {library}"
+        if library == "pygame":
+            assert not top, f"{name} imports pygame when it is imported, not when a picture is wanted"
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if part_of(n) == "envs"])
+def test_environments_load_the_pictures_only_when_asked(name):
+    assert not [t for t, top in imports(name) if top and t.startswith(".render")]
+
+
+def test_no_two_files_of_the_package_import_each_other():
+    """No cycle among the imports that run when the package is imported."""
+    modules = {"." + n.removesuffix(".py").removesuffix("/__init__").replace("/", "."): n for n in NAMES}
+
+    def module_of(target):
+        while target not in modules and "." in target[1:]:
+            target = target.rpartition(".")[0]
+        return modules.get(target)
+
+    graph = {n: {module_of(t) for t, top in imports(n) if top and t.startswith(".")} - {None, n} for n in NAMES}
+    graph = {n: {t for t in targets if not t.endswith("__init__.py")} for n, targets in graph.items()}
+    done = set()
+
+    def visit(name, trail):
+        assert name not in trail, " -> ".join([*trail, name])
+        if name not in done:
+            for target in graph[name]:
+                visit(target, (*trail, name))
+            done.add(name)
+
+    for name in NAMES:
+        visit(name, ())
+    assert "physics/engine.py" in graph["simulation.py"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_file_says_first_which_question_it_answers(name):
+    docstring = ast.get_docstring(ast.parse((PACKAGE / name).read_text()))
+    assert docstring, f"{name} has no docstring"
+    first = docstring.splitlines()[0]
+    if name.endswith("__init__.py"):  # a folder says what it holds
+        assert len(first) > 20
+    else:
+        question, mark, rest = first.partition("?")
+        assert mark and len(question.split()) >= 3, f"{name} starts with {first!r}, not with the question that it answers"
+        assert question[0].isupper() and rest.strip(), f"{name} asks {question!r}? but does not say more on the line"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_file_is_too_long_to_read(name):
+    text = (PACKAGE / name).read_text()
+
+    assert len(text.splitlines()) <= 400
+    assert not {"TODO", "FIXME", "XXX"} & set(text.split())
+
+
+# Constants that two layers hold, each its own: game knows no physics, so nothing but these tests keeps them equal.
+
+
+def test_the_table_of_the_game_is_the_table_of_the_physics():
+    assert (balls.HALF_WIDTH, balls.HALF_LENGTH) == (table.HALF_WIDTH, table.HALF_LENGTH)
+    noses = Table.preset("match").noses
+    assert {(axis, level) for axis, _, level, _, _ in noses.tolist()} == {(0.0, balls.HALF_WIDTH), (1.0, balls.HALF_LENGTH)}
+    size = [2 * balls.HALF_WIDTH, 2 * balls.HALF_LENGTH]
+    assert size == pytest.approx([1.778, 3.569], abs=1e-12)  # WPBSA
+
+
+def test_a_ball_is_as_large_in_the_game_as_in_the_physics():
+    assert Physics().R == Physics.preset("match").R == balls.BALL_RADIUS == 0.02625
+    assert Physics().pack()[0] == balls.BALL_RADIUS
+
+
+@pytest.mark.parametrize("name", ["match", "tight"])
+def test_pockets_are_numbered_alike_in_the_game_and_in_the_physics(name):
+    falls = Table.preset(name).falls
+    assert len(falls) == len(pots.POCKETS) == len(table.POCKETS) == 6
+    side = {"left": -1, "right": 1}
+    end = {"bottom": -1, "middle": 0, "top": 1}
+    for (x, y, radius), (ax, ay, ux, uy, middle), called in zip(falls, pots.POCKETS, table.POCKETS, strict=True):
+        where, which = called.split()
+        assert np.sign((x, y)).tolist() == np.sign((ax, ay)).tolist() == [side[which], end[where]]
+        assert np.hypot(ux, uy) == pytest.approx(1.0, abs=1e-12)
+        assert middle == (where == "middle")
+        # the aim point lies where the fall meets the pocket's axis, and the axis leads on to the fall's centre
+        assert np.hypot(x - ax, y - ay) == pytest.approx(radius, abs=2e-5)
+        assert np.hypot(ax + radius * ux - x, ay + radius * uy - y) < 2e-5
+
+
+def test_nominal_pockets_of_the_game_lie_by_the_falls_of_the_physics():
+    falls = Table.preset("match").falls
+    far = np.hypot(*(balls.POCKETS[:, None, :] - falls[None, :, :2]).transpose(2, 0, 1))
+    assert sorted(far.argmin(axis=1).tolist()) == list(range(6))
+    assert far.min(axis=1).max() < 0.07
+
+
+@pytest.mark.parametrize("name", ["match", "tight"])
+def test_wherever_a_layout_may_put_a_ball_the_table_of_the_physics_has_room(name):
+    x, y = np.meshgrid(np.linspace(-0.9, 0.9, 61), np.linspace(-1.8, 1.8, 121))
+    places = np.column_stack([x.ravel(), y.ravel()])
+    room = np.array([balls.HALF_WIDTH, balls.HALF_LENGTH]) - balls.BALL_RADIUS - layouts.CUSHION_GAP
+    clear = np.all(np.abs(places) <= room, axis=1)
+    clear &= np.all(np.hypot(*(places[:, None] - balls.POCKETS).transpose(2, 0, 1)) >= layouts.POCKET_GAP, axis=1)
+    assert clear.sum() > 5000
+    Table.preset(name).check(places[clear], balls.BALL_RADIUS)
+
+
+def test_touching_and_overlapping_are_measured_alike():
+    assert balls.TOUCH == table.OVERLAP_ALLOWED == snookered.TOUCH == 1e-6
+    assert layouts.GAP > balls.TOUCH and balls.PINK_GAP > balls.TOUCH and in_hand.CLEARANCE > balls.TOUCH
+
+
+def test_actions_reach_to_the_miscue_limit_of_the_physics():
+    """Half a radius at the end of the action's scale is what ``Physics.max_offset`` allows by default."""
+    actions = Actions("absolute", False, False, Physics())
+    assert actions.shot([0, 1, 0, 0], None, None, None)[1] == actions.physics.max_offset == 0.5
+
+
+def test_observations_have_a_row_for_each_ball_and_an_entry_for_each_thing_on():
+    kinds = observations.STATE_ENTRIES[1:9]
+    assert kinds == tuple(b.name.lower() for b in balls.BallOn if b >= 0)
+    assert observations.space("flat").shape == (balls.N_BALLS * len(observations.BALL_COLUMNS) + len(observations.STATE_ENTRIES),)
+    assert balls.NAMES[16:] == balls.COLOUR_NAMES and len(balls.NAMES) == balls.N_BALLS == len(balls.VALUES) == len(balls.SPOTS)
+
+
+def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
+    """Each field changed alone moves exactly its own places of the vector."""
+    from snooker_env.physics import parameters as p
+
+    places = {
+        "R": [p.P_R], "M": [p.P_M], "g": [p.P_G], "mu_s": [p.P_MU_S], "mu_r": [p.P_MU_R], "spin_decel": [p.P_SPIN], "e_b": [p.P_E_B],
+        "e_c": [p.P_E_C], "e_c_knee": [p.P_E_KNEE], "e_c_slope": [p.P_E_SLOPE], "mu_c": [p.P_MU_W], "sin_theta": [p.P_SIN],
+        "end_mass_ratio": [], "max_offset": [],
+    }  # fmt: skip
+    base = Physics().pack()
+    for field in dataclasses.fields(Physics):
+        if field.name == "mu_bb":
+            continue
+        changed = Physics(**{field.name: getattr(Physics(), field.name) + 1e-3}).pack()
+        assert np.flatnonzero(changed != base).tolist() == places[field.name], field.name
+        for k in places[field.name]:
+            assert changed[k] == getattr(Physics(), field.name) + 1e-3
+    law = [p.P_MU_A, p.P_MU_B, p.P_MU_C]
+    assert Physics(mu_bb=(0.01, 0.1, 2.0)).pack()[law].tolist() == [0.01, 0.1, 2.0]
+    assert Physics(mu_bb=0.07).pack()[law].tolist() == [0.07, 0.0, 0.0]
+    assert Physics(mu_bb="marlow").pack()[law].tolist() == list(p.MARLOW)

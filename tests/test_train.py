@@ -1,0 +1,230 @@
+"""Does ``train.py`` learn, say so honestly, and survive whatever stops it?"""
+
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+pytest.importorskip("stable_baselines3")
+pytest.importorskip("rich")
+pytest.importorskip("tensorboard")
+
+import train  # noqa: E402
+
+TINY = ["--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512"]
+
+
+def run(out, *options):
+    """``train.main`` in this process; the exit code."""
+    return train.main([*TINY, "--out", str(out), *options])
+
+
+def weights(out):
+    """Every parameter of the saved model, flat."""
+    model = {"ppo": train.sb3.PPO, "sac": train.sb3.SAC}[results(out)["settings"]["algo"]].load(out / "model.zip", device="cpu")
+    return np.concatenate([p.detach().numpy().ravel() for p in model.policy.parameters()])
+
+
+def results(out):
+    return json.loads((out / "results.json").read_text())
+
+
+def refused(capsys, *arguments):
+    """The one-line error with which these arguments are refused."""
+    with pytest.raises(SystemExit) as stop:
+        train.main([*arguments])
+    assert stop.value.code == 2
+    return capsys.readouterr().err.strip().splitlines()[-1]
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """Folders of one uninterrupted run of each algorithm."""
+    folder = tmp_path_factory.mktemp("runs")
+    for algo in ("ppo", "sac"):
+        assert run(folder / algo, "--algo", algo) == 0
+    return folder
+
+
+@pytest.mark.parametrize("algo", ["ppo", "sac"])
+def test_run_leaves_model_figures_and_curves(finished, algo):
+    out = finished / algo
+    assert {p.name for p in out.iterdir()} == {"checkpoint.pkl", "model.zip", "results.json", "tb"}
+    assert list((out / "tb").rglob("events.out.tfevents.*"))
+    found = results(out)
+    assert set(found) == {
+        "settings", "steps", "seconds", "steps_per_second", "learned", "evaluation", "curve", "versions", "git_commit", "processors",
+    }  # fmt: skip
+    assert found["settings"]["algo"] == algo and found["steps"] == 512
+    assert found["steps_per_second"] == pytest.approx(512 / found["seconds"])
+    assert set(found["evaluation"]["agents"]) == {"trained", "average_shot", "random"}
+    for figures in found["evaluation"]["agents"].values():
+        assert figures["visits"] == 4
+        assert figures["pot_rate"] == pytest.approx(4 * figures["pots_a_visit"] / figures["strokes"])
+        assert all(figures[name + "_se"] >= 0 for name in ("pots_a_visit", "points_a_visit", "fouls_a_visit", "pot_rate"))
+    assert "512 shots" in found["learned"]
+
+
+def test_saved_model_plays_what_make_env_shows(finished):
+    model = train.sb3.PPO.load(finished / "ppo" / "model.zip", device="cpu")
+    env = train.make_env(train.Settings())
+    observation, _ = env.reset(seed=0)
+    assert env.observation_space.contains(observation)
+    observation, _, _, _, _ = env.step(model.predict(observation, deterministic=True)[0])
+    assert env.observation_space.contains(observation)
+
+
+@pytest.mark.parametrize(("algo", "number"), [("ppo", signal.SIGTERM), ("sac", signal.SIGINT)])
+def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, tmp_path, capsys, monkeypatch, algo, number):
+    original = train.Keeper._on_step
+
+    def interrupted(keeper):
+        if keeper.num_timesteps == 300:
+            signal.raise_signal(number)
+        return original(keeper)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(train.Keeper, "_on_step", interrupted)
+        assert run(tmp_path / "run", "--algo", algo) == 128 + number
+    assert f"--resume --out {tmp_path / 'run'}" in capsys.readouterr().out
+    assert not (tmp_path / "run" / "results.json").exists()
+    assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
+    assert np.array_equal(weights(tmp_path / "run"), weights(finished / algo))
+    before, after = results(finished / algo), results(tmp_path / "run")
+    assert after["evaluation"] == before["evaluation"] and after["settings"] == before["settings"] and after["steps"] == 512
+
+
+def launch(out, *options):
+    """``python train.py`` in a session of its own, its tables in processes, once its first checkpoint is there."""
+    command = [sys.executable, str(ROOT / "train.py"), *TINY, "--parallel", "processes", "--out", str(out), *options]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True, cwd=out.parent)
+    deadline = time.monotonic() + 120
+    while not (out / "checkpoint.pkl").exists():
+        assert process.poll() is None, process.stdout.read()
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    return process
+
+
+def steps_of(out):
+    """Shots in a checkpoint, read as a resume reads it."""
+    state = pickle.loads((out / "checkpoint.pkl").read_bytes())
+    return state["curve"][-1]["steps"] if state["curve"] else 0
+
+
+def test_kill_9_leaves_a_run_that_resume_finishes(finished, tmp_path):
+    out = tmp_path / "run"
+    process = launch(out, "--checkpoint-every", "1")
+    try:
+        while steps_of(out) == 0 and process.poll() is None:
+            pass
+    finally:
+        process.kill()
+        process.communicate()
+    assert process.returncode == -signal.SIGKILL and not (out / "results.json").exists()
+    assert run(out, "--resume") == 0  # in one process now: it plays the same shots
+    assert results(out)["steps"] == 512
+    assert np.array_equal(weights(out), weights(finished / "ppo"))
+
+
+def test_ctrl_c_reaches_the_workers_too_and_nothing_breaks(tmp_path):
+    process = launch(tmp_path / "run", "--steps", "100000")
+    os.killpg(process.pid, signal.SIGINT)  # what a terminal does
+    output, _ = process.communicate(timeout=120)
+    assert process.returncode == 130, output
+    assert "--resume" in output and "Traceback" not in output
+
+
+def test_resume_refuses_other_settings(finished, capsys):
+    error = refused(capsys, "--resume", "--out", str(finished / "ppo"), "--noise", "club")
+    assert "--noise is 'club'" in error and "has 'none'" in error
+    assert "--algo is 'sac'" in refused(capsys, "--resume", "--out", str(finished / "ppo"), "--algo", "sac")
+
+
+def test_existing_run_is_not_overwritten(finished, tmp_path, capsys):
+    before = (finished / "ppo" / "checkpoint.pkl").read_bytes()
+    assert "--resume goes on with it" in refused(capsys, "--out", str(finished / "ppo"))
+    assert (finished / "ppo" / "checkpoint.pkl").read_bytes() == before
+    (tmp_path / "thesis.txt").write_text("mine")
+    assert "thesis.txt" in refused(capsys, "--out", str(tmp_path))
+    assert "holds no checkpoint" in refused(capsys, "--resume", "--out", str(tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [("layout", "moon"), ("noise", "drunk"), ("fidelity", "rough"), ("aim", "away"), ("algo", "dqn"), ("envs", "0"), ("steps", "-1"),
+     ("eval-visits", "1"), ("seed", "-1"), ("seed", "x")],
+)  # fmt: skip
+def test_bad_option_gives_one_clear_error(tmp_path, capsys, option, value):
+    error = refused(capsys, "--out", str(tmp_path / "run"), f"--{option}", value)
+    assert option in error and value in error
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("broken", ["fsync", "replace"])
+def test_failed_write_leaves_the_old_file(tmp_path, monkeypatch, broken):
+    path = tmp_path / "file"
+    train.write_atomic(path, b"old")
+
+    def fail(*_):
+        raise OSError("disk full")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, broken, fail)
+        with pytest.raises(OSError, match="disk full"):
+            train.write_atomic(path, b"new, and longer")
+    assert path.read_bytes() == b"old"
+    train.write_atomic(path, b"new")
+    assert path.read_bytes() == b"new" and [p.name for p in tmp_path.iterdir()] == ["file"]
+
+
+def test_evaluation_deals_every_agent_the_same_tables(monkeypatch):
+    settings, seen = train.Settings(noise="professional"), []
+
+    def act(observation):
+        seen.append(observation)
+        return np.full(4, 0.5, np.float32)
+
+    first, second = train.evaluate(settings, act, 3), train.evaluate(settings, act, 3)
+    assert first == second
+    assert all(np.array_equal(a, b) for a, b in zip(seen[: len(seen) // 2], seen[len(seen) // 2 :], strict=True))
+
+
+def test_lesson_claims_only_what_the_figures_show():
+    def agent(points, se):
+        return {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se, "visits": 100}
+
+    def said(trained, average, random):
+        return train.lesson(train.Settings(), 1000, {"agents": {"trained": trained, "average_shot": average, "random": random}})
+
+    assert "learned nothing" in said(agent(1.0, 0.3), agent(0.9, 0.3), agent(0.5, 0.3))
+    assert "learned nothing" in said(agent(0.1, 0.1), agent(0.9, 0.3), agent(2.0, 0.1))
+    assert "not to read the table" in said(agent(3.0, 0.3), agent(2.9, 0.3), agent(0.5, 0.1))
+    assert "and to read the table" in said(agent(9.0, 0.3), agent(2.9, 0.3), agent(0.5, 0.1))
+
+
+@pytest.mark.parametrize("missing", ["stable_baselines3", "torch", "rich", "tensorboard"])
+def test_missing_extra_says_the_pip_line(missing):
+    code = f"import sys, runpy; sys.modules[{missing!r}] = None; runpy.run_path({str(ROOT / 'train.py')!r}, run_name='__main__')"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert done.returncode == 1
+    assert done.stderr.strip().splitlines()[-1].endswith('pip install "snooker-env[train]"')
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("algo", "steps", "least"), [("ppo", "40000", 1.0), ("sac", "15000", 0.3)])
+def test_it_learns(tmp_path, algo, steps, least):
+    assert run(tmp_path / "run", "--algo", algo, "--steps", steps, "--envs", "16", "--eval-visits", "300") == 0
+    agents = results(tmp_path / "run")["evaluation"]["agents"]
+    gain = agents["trained"]["points_a_visit"] - agents["random"]["points_a_visit"]
+    assert gain > least and gain > 3 * agents["trained"]["points_a_visit_se"]
+    assert "learned nothing" not in results(tmp_path / "run")["learned"]
