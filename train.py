@@ -5,8 +5,8 @@
     python train.py --resume --out runs/mine           go on after Ctrl-C, a kill or a power cut, exactly where the last checkpoint was
 
 A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; like every pickle, load only your own), ``model.zip`` (for
-``stable_baselines3``), ``results.json`` (every figure) and ``tb/`` (``tensorboard --logdir runs``). The model sees what ``make_env`` shows:
-use ``from train import make_env`` to play it. It reads top to bottom: settings, environment, recipes, checkpoints, evaluation, the run.
+``stable_baselines3``), ``results.json`` (every figure) and ``tb/`` (``tensorboard --logdir runs``). What an agent sees and how it is judged
+is in ``agents/visits.py``; here follow, top to bottom: settings, the tables, recipes, checkpoints, the run.
 """
 
 import argparse
@@ -24,18 +24,13 @@ from dataclasses import asdict, dataclass, field, fields
 from functools import partial
 from pathlib import Path
 
-import gymnasium
 import numpy as np
 
 import snooker_env
-from agents.pot_view import PotView
-from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
+from agents.visits import evaluate_all, lesson, make_env, show
 
 try:
-    import rich.box
-    import rich.console
     import rich.progress
-    import rich.table
     import stable_baselines3 as sb3
     import tensorboard  # noqa: F401 - stable_baselines3 would miss it only after the tables are set up
     import torch
@@ -96,21 +91,18 @@ def parse(argv):
     return parser, given, argparse.Namespace(**rest)
 
 
-# environment ---------------------------------------------------------------------------------------------------------------------
+# the tables ---------------------------------------------------------------------------------------------------------------------
 
 
-def make_env(settings, layout=None):
-    """One table as the agent sees it."""
-    table = gymnasium.make(
-        "Snooker-v0", layout=layout or settings.layout, aim=settings.aim, noise=settings.noise, fidelity=settings.fidelity
-    )
-    return Monitor(PotView(table))
+def monitored(settings):
+    """One table that reports each visit's points to SB3's log."""
+    return Monitor(make_env(settings))
 
 
-def worker_env(settings):
-    """``make_env`` in a worker. Ctrl-C reaches the whole process group: only the parent acts on it, after the last shot is in."""
+def in_worker(settings):
+    """The same in a process of its own. Ctrl-C reaches the whole process group: only the parent acts on it, after the last shot is in."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    return make_env(settings)
+    return monitored(settings)
 
 
 def make_envs(settings):
@@ -119,10 +111,10 @@ def make_envs(settings):
     With two processors, passing observations between processes costs more than the second processor gives: PPO with 8 tables made
     1,000 to 1,300 shots a second in processes and 1,600 in one, on the same busy machine.
     """
-    one = settings.envs == 1 or (os.cpu_count() or 1) <= 2 if settings.parallel == "auto" else settings.parallel == "one"
-    if one:
-        return DummyVecEnv([partial(make_env, settings)] * settings.envs)
-    envs = SubprocVecEnv([partial(worker_env, settings)] * settings.envs)  # forkserver: this module is imported once for all workers
+    few = settings.envs == 1 or (os.cpu_count() or 1) <= 2
+    if settings.parallel == "one" or (settings.parallel == "auto" and few):
+        return DummyVecEnv([partial(monitored, settings)] * settings.envs)
+    envs = SubprocVecEnv([partial(in_worker, settings)] * settings.envs)  # forkserver: this module is imported once for all workers
     envs.get_attr("spec")  # waits until the last worker is there
     return envs
 
@@ -247,81 +239,6 @@ class Keeper(BaseCallback):
         """Write the checkpoint."""
         save_checkpoint(self.path, self.settings, self.model, self.seconds, self.curve)
         self.saved = self.num_timesteps
-
-
-# evaluation ----------------------------------------------------------------------------------------------------------------------
-
-EVAL_LAYOUT, EVAL_SEED = "held_out", 1_000_000
-
-
-def evaluate(settings, act, visits):
-    """Figures of ``visits`` held-out visits, seeds EVAL_SEED, EVAL_SEED + 1, ...: the same tables for every agent ``act(observation)``."""
-    env = make_env(settings, EVAL_LAYOUT)
-    played = np.zeros((visits, 4))  # strokes, pots, points, fouls
-    for i in range(visits):
-        observation, _ = env.reset(seed=EVAL_SEED + i)
-        over = False
-        while not over:
-            observation, _, over, _, info = env.step(act(observation))
-            played[i] += 1, info["points"] > 0, info["points"], info["foul"]
-    strokes, scoring, points, fouls = played.T
-    rate = scoring.sum() / strokes.sum()
-    error = lambda x: float(np.std(x, ddof=1) / np.sqrt(visits))  # noqa: E731
-    return {
-        "pots_a_visit": float(scoring.mean()), "pots_a_visit_se": error(scoring), "points_a_visit": float(points.mean()),
-        "points_a_visit_se": error(points), "pot_rate": float(rate), "pot_rate_se": error(scoring - rate * strokes) / float(strokes.mean()),
-        "fouls_a_visit": float(fouls.mean()), "fouls_a_visit_se": error(fouls), "longest_break": int(points.max()), "visits": visits,
-        "strokes": int(strokes.sum()),
-    }  # fmt: skip
-
-
-def evaluate_all(settings, model):
-    """The trained agent, its own average shot played every time (has it learned to read the table, or just one good shot?), random play."""
-    shots, rng = [], np.random.default_rng(settings.seed)
-
-    def trained(observation):
-        shots.append(model.predict(observation, deterministic=True)[0])
-        return shots[-1]
-
-    figures = {"trained": evaluate(settings, trained, settings.eval_visits)}
-    average = np.mean(shots, axis=0)
-    figures["average_shot"] = evaluate(settings, lambda _: average, settings.eval_visits)
-    figures["random"] = evaluate(settings, lambda _: rng.uniform(-1.0, 1.0, average.shape).astype(np.float32), settings.eval_visits)
-    style = {"action_mean": average.tolist(), "action_sd": np.std(shots, axis=0).tolist()}
-    style["cue_speed_mean"] = MIN_SPEED + 0.5 * (style["action_mean"][0] + 1.0) * (MAX_SPEED - MIN_SPEED)
-    return {"layout": EVAL_LAYOUT, "first_seed": EVAL_SEED, "agents": figures, "style": style}
-
-
-def lesson(settings, steps, evaluation):
-    """What was learned, in one sentence that follows from the figures: a difference counts from two standard errors on."""
-    trained, average, random = (evaluation["agents"][name] for name in ("trained", "average_shot", "random"))
-
-    def better(a, b):
-        return a["points_a_visit"] - b["points_a_visit"] > 2.0 * np.hypot(a["points_a_visit_se"], b["points_a_visit_se"])
-
-    def made(agent):
-        return f"{agent['pots_a_visit']:.2f} pots and {agent['points_a_visit']:.2f} points a visit"
-
-    start, figures = f"In {steps:,} shots {settings.algo.upper()} learned", f"{made(trained)} against {made(random)} of random play"
-    if not better(trained, random):
-        return f"{start} nothing that {trained['visits']} visits can show: {figures}."
-    if better(trained, average):
-        return f"{start} to pot and to read the table: {figures}, and {made(average)} of its own average shot played every time."
-    return f"{start} one shot that pots, but not to read the table: {figures}, and {made(average)} of its average shot played every time."
-
-
-def show(evaluation):
-    """Print the figures."""
-    visits = evaluation["agents"]["random"]["visits"]
-    table = rich.table.Table(title=f"A visit, over {visits} held-out ones, the same for all (± standard error)", box=rich.box.SIMPLE)
-    table.add_column("agent", no_wrap=True)
-    for name in ("pots", "points", "fouls", "pot rate", "longest"):
-        table.add_column(name, justify="right", no_wrap=True)
-    for name, f in evaluation["agents"].items():
-        cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")]
-        cells += [f"{100 * f['pot_rate']:.0f} ± {100 * f['pot_rate_se']:.0f} %", str(f["longest_break"])]
-        table.add_row(name.replace("_", " "), *cells)
-    rich.console.Console().print(table)
 
 
 # the run -------------------------------------------------------------------------------------------------------------------------

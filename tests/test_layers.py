@@ -147,7 +147,6 @@ def test_each_file_says_first_which_question_it_answers(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_no_file_is_too_long_to_read(name):
     text = (PACKAGE / name).read_text()
-
     assert len(text.splitlines()) <= 400
     assert not {"TODO", "FIXME", "XXX"} & set(text.split())
 

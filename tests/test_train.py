@@ -19,6 +19,8 @@ pytest.importorskip("rich")
 pytest.importorskip("tensorboard")
 
 import train  # noqa: E402
+from agents import visits  # noqa: E402
+from snooker_env.envs.actions import line  # noqa: E402
 
 TINY = ["--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512"]
 
@@ -76,11 +78,24 @@ def test_run_leaves_model_figures_and_curves(finished, algo):
 
 def test_saved_model_plays_what_make_env_shows(finished):
     model = train.sb3.PPO.load(finished / "ppo" / "model.zip", device="cpu")
-    env = train.make_env(train.Settings())
+    env = visits.make_env(train.Settings())
     observation, _ = env.reset(seed=0)
     assert env.observation_space.contains(observation)
     observation, _, _, _, _ = env.step(model.predict(observation, deterministic=True)[0])
     assert env.observation_space.contains(observation)
+
+
+def test_pot_view_shows_the_line_that_the_aim_is_read_against():
+    env = visits.make_env(train.Settings(), "held_out")
+    for seed in range(20):
+        observation, _ = env.reset(seed=seed)
+        table, rows = env.unwrapped, observation[121:].reshape(visits.PotView.MOST, 8)
+        assert np.array_equal(observation[:121], table._observe())
+        direction = line(table.positions, table.on_table, table.on)
+        assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=1e-6)
+        shown = rows[rows[:, 0] == 1]
+        assert np.hypot(shown[:, 3], shown[:, 4]) == pytest.approx(1.0, abs=1e-6)  # sine and cosine of one angle
+        assert np.all(np.diff(shown[:, 7]) <= 0) and not rows[len(shown) :].any()  # widest first, then nothing
 
 
 @pytest.mark.parametrize(("algo", "number"), [("ppo", signal.SIGTERM), ("sac", signal.SIGINT)])
@@ -187,14 +202,14 @@ def test_failed_write_leaves_the_old_file(tmp_path, monkeypatch, broken):
     assert path.read_bytes() == b"new" and [p.name for p in tmp_path.iterdir()] == ["file"]
 
 
-def test_evaluation_deals_every_agent_the_same_tables(monkeypatch):
+def test_evaluation_deals_every_agent_the_same_tables():
     settings, seen = train.Settings(noise="professional"), []
 
     def act(observation):
         seen.append(observation)
         return np.full(4, 0.5, np.float32)
 
-    first, second = train.evaluate(settings, act, 3), train.evaluate(settings, act, 3)
+    first, second = visits.evaluate(settings, act, 3), visits.evaluate(settings, act, 3)
     assert first == second
     assert all(np.array_equal(a, b) for a, b in zip(seen[: len(seen) // 2], seen[len(seen) // 2 :], strict=True))
 
@@ -204,7 +219,7 @@ def test_lesson_claims_only_what_the_figures_show():
         return {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se, "visits": 100}
 
     def said(trained, average, random):
-        return train.lesson(train.Settings(), 1000, {"agents": {"trained": trained, "average_shot": average, "random": random}})
+        return visits.lesson(train.Settings(), 1000, {"agents": {"trained": trained, "average_shot": average, "random": random}})
 
     assert "learned nothing" in said(agent(1.0, 0.3), agent(0.9, 0.3), agent(0.5, 0.3))
     assert "learned nothing" in said(agent(0.1, 0.1), agent(0.9, 0.3), agent(2.0, 0.1))

@@ -10,7 +10,7 @@ cloth's slip ``b = (b1, b2)`` and friction impulse ``G = (G1, G2)``. With p the 
     b2 = b2_0 + d_b p + c2 F2 + 7/2 G2
     y  = y_0  + d_y p - d_a F2 - d_b G2 + l_y Z           closing speed; dW/dp = y, so that
     W  = y_0 p + d_y p^2 / 2 + V                          V' = -d_a F2 - d_b G2 + l_y Z
-    N' = n0 + n2 F2'  if positive, else Z' = -(n0 + n2 F2') and N' = 0      (the ball lifts)
+    N' = n0 + n2 F2'  while that is positive and the ball is down (Z = 0); else N' = 0, Z' = -(n0 + n2 F2')    (it lifts)
 
 Coulomb: F' = -mu(|a|) a/|a|, G' = -mu_s N' b/|b|. Where a slip is zero, friction holds it there if it can; if not, slip starts in
 the direction the other forces drive it. Compression ends at y = 0 with W = Wc, the impact at W = (1 - e^2) Wc (energetic
@@ -64,7 +64,7 @@ def _work(p, v, c):
 def _cloth_friction(b1, b2, drive1, drive2, most, delta):
     """Friction of at most ``most`` against the cloth slip b; at b = 0 against the drive, or holding it."""
     size = sqrt(b1 * b1 + b2 * b2)
-    if size > delta:
+    if size > 10.0 * delta:  # wider than the shortest step, so that a slip which friction stops is caught
         r = -most / size
         return r * b1, r * b2
     size = sqrt(drive1 * drive1 + drive2 * drive2)
@@ -84,7 +84,7 @@ def _slip_rates(x, start, c, law, mu_s, delta):
     f1, f2 = -mu * a1, -mu * a2
     load = n0 * s + n2 * f2
     lift = 0.0
-    if load < 0.0:
+    if load < 0.0 or x[6] > 0.0:
         lift, load = -load, 0.0
     g1, g2 = _cloth_friction(b1, b2, c1 * f1, d_b * s + c2 * f2, mu_s * load, delta)
     return f1, f2, g1, g2, s, v * s, lift
@@ -99,22 +99,22 @@ def _fast_slip_rates(x, start, c, law, mu_s, delta):
 
 
 @kernel
-def _stick_forces(b1, b2, c, mu_s, delta):
+def _stick_forces(b1, b2, z, c, mu_s, delta):
     """Per unit of p, the friction (f1, f2) that holds a = 0, with the cloth's (g1, g2) and the lift it implies."""
     k1, k2, c1, c2, d_a, d_b, _dy, n0, n2, l_a, _ly = c
     size = sqrt(b1 * b1 + b2 * b2)
-    if size > delta:
+    if size > 10.0 * delta:
         e1, e2 = b1 / size, b2 / size
     else:  # with a held, only the second component is driven: the cloth holds as well, or slips along it
         det = k2 * _KB - c2 * c2
         f2, g2 = (c2 * d_b - _KB * d_a) / det, (c2 * d_a - k2 * d_b) / det
-        if abs(g2) <= mu_s * (n0 + n2 * f2):
+        if abs(g2) <= mu_s * (n0 + n2 * f2) and z <= 0.0:
             return 0.0, f2, 0.0, g2, 0.0
         e1, e2 = 0.0, 1.0 if d_b - c2 * d_a / k2 >= 0.0 else -1.0
     # g = -mu_s N e and f = -(d + C g)/k with N = n0 + n2 f2: one linear equation for f2
     f2 = (c2 * mu_s * e2 * n0 - d_a) / (k2 - c2 * mu_s * e2 * n2)
     load = n0 + n2 * f2
-    if load < 0.0:
+    if load < 0.0 or z > 0.0:
         f2 = (l_a * n0 - d_a) / (k2 - l_a * n2)
         return 0.0, f2, 0.0, 0.0, -(n0 + n2 * f2)
     g1, g2 = -mu_s * load * e1, -mu_s * load * e2
@@ -125,7 +125,7 @@ def _stick_forces(b1, b2, c, mu_s, delta):
 def _stick_rates(x, start, c, mu_s, delta):
     """dx/dp while A sticks."""
     _a1, _a2, b1, b2, v = _slips(x, start, c)
-    f1, f2, g1, g2, lift = _stick_forces(b1, b2, c, mu_s, delta)
+    f1, f2, g1, g2, lift = _stick_forces(b1, b2, x[6], c, mu_s, delta)
     return f1, f2, g1, g2, 1.0, v, lift
 
 
@@ -143,8 +143,10 @@ def _creep_rates(x, start, c, law, mu_s, delta):
     g1 = g2 = lift = 0.0
     for _ in range(30):
         load = n0 - n2 * mu * e2
-        lift = max(0.0, -load)
-        g1, g2 = _cloth_friction(b1, b2, -c1 * mu * e1, d_b - c2 * mu * e2, mu_s * max(0.0, load), delta)
+        lift = 0.0
+        if load < 0.0 or x[6] > 0.0:
+            lift, load = -load, 0.0
+        g1, g2 = _cloth_friction(b1, b2, -c1 * mu * e1, d_b - c2 * mu * e2, mu_s * load, delta)
         r1, r2 = _direction(c1 * g1, d_a + c2 * g2 + l_a * lift, mu * k1, mu * k2)
         moved = abs(r1 - e1) + abs(r2 - e2)
         e1, e2 = r1, r2
@@ -186,7 +188,7 @@ def _rates(x, mode, start, c, law, mu_s, delta):
 def _held(x, start, c, law, mu_s, delta):
     """Can friction hold the slip at A at zero?"""
     _1, _2, b1, b2, _v = _slips(x, start, c)
-    f = _stick_forces(b1, b2, c, mu_s, delta)
+    f = _stick_forces(b1, b2, x[6], c, mu_s, delta)
     return hypot(f[0], f[1]) <= friction_coefficient(0.0, law)
 
 
@@ -347,7 +349,7 @@ def solve(start, c, law, mu_s, e, accuracy):
             h *= max(0.2, 0.9 * (tol / worst) ** 0.2)
             continue
         a1, a2, b1, b2, v = _slips(new, start, c)
-        if b1 * b1_old + b2 * b2_old < 0.0 and mu_s * (c[7] + abs(c[8]) * mu) * (new[4] - x[4]) > 20.0 * tol and h > 1e-13:
+        if b1 * b1_old + b2 * b2_old < 0.0 and mu_s * (c[7] + abs(c[8]) * mu) * (new[4] - x[4]) > delta and h > 1e-13:
             h *= 0.25  # the cloth's slip turned right round inside the step, where the stages may not have looked
             continue
         y = 1.0 + c[6] * new[4] + v

@@ -29,7 +29,7 @@ APPROACH = 1e-10  # [m/s] touching balls that approach more slowly than this are
 TOUCH = 1e-12  # [m] balls this close touch: contacts are located to this distance
 
 
-@numba.njit(cache=True)
+@numba.njit
 def _move(ball, h, radius, mu_s_g, mu_r_g, spin_decel):
     """Advance one ball (x, y, vx, vy, wx, wy, wz) by h under the forces of the moment, in place."""
     turn = spin_decel * h
@@ -66,7 +66,7 @@ def _move(ball, h, radius, mu_s_g, mu_r_g, spin_decel):
         left -= t
 
 
-@numba.njit(cache=True)
+@numba.njit
 def _gap_after(a, b, t, diameter, radius, mu_s_g, mu_r_g, spin_decel):
     """Gap [m] between two balls and its rate [m/s] after both have moved by t from the given states."""
     p, q = a.copy(), b.copy()
@@ -78,7 +78,7 @@ def _gap_after(a, b, t, diameter, radius, mu_s_g, mu_r_g, spin_decel):
     return distance - diameter, ((q[2] - p[2]) * dx + (q[3] - p[3]) * dy) / distance
 
 
-@numba.njit(cache=True)
+@numba.njit
 def _contact(a, b, h, diameter, radius, mu_s_g, mu_r_g, spin_decel):
     """When, within h, do two balls meet? Bisection on the motion itself; infinity if they do not."""
     gap0, rate0 = _gap_after(a, b, 0.0, diameter, radius, mu_s_g, mu_r_g, spin_decel)
@@ -123,7 +123,7 @@ def _contact(a, b, h, diameter, radius, mu_s_g, mu_r_g, spin_decel):
     return hi
 
 
-@numba.njit(cache=True)
+@numba.njit
 def _run_to_contact(balls, time, into_step, dt, max_time, diameter, radius, mu_s_g, mu_r_g, spin_decel):
     """Step all balls, in place, until two meet or all are at rest.
 
