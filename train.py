@@ -73,7 +73,7 @@ DEFAULT_STEPS = {"ppo": 400_000, "sac": 60_000}
 
 def parse(argv):
     """(parser, options given on the command line, the rest)."""
-    parser = argparse.ArgumentParser("train.py", "python train.py [options]", __doc__.split("\n")[0])
+    parser = argparse.ArgumentParser("train.py", "python train.py [options]", (__doc__ or "").partition("\n")[0])
     for f in fields(Settings):
         parser.add_argument(
             "--" + f.name.replace("_", "-"), type=type(f.default), choices=f.metadata.get("choices"), default=argparse.SUPPRESS,

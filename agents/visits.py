@@ -114,9 +114,10 @@ def show(evaluation):
     import rich.table
 
     visits = evaluation["agents"]["random"]["visits"]
-    table = rich.table.Table(title=f"A visit, over {visits} held-out ones, the same for all (± standard error)", box=rich.box.SIMPLE)
+    title = f"A visit, over {visits} held-out ones, the same for all (± standard error)"
+    table = rich.table.Table(title=title, box=rich.box.SIMPLE, pad_edge=False)
     table.add_column("agent", no_wrap=True)
-    for name in ("pots", "points", "fouls", "pot rate", "longest"):
+    for name in ("pots", "points", "fouls", "pot rate", "best"):
         table.add_column(name, justify="right", no_wrap=True)
     for name, f in evaluation["agents"].items():
         cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")]

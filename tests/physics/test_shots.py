@@ -228,7 +228,8 @@ def test_a_ball_frozen_to_a_cushion(gap):
     for shot in (into, along, away, pressed):
         check_shot(shot)
         r = shot.at(np.linspace(0, shot.duration, 500))[0][:, 0]
-        assert (r[np.abs(r[:, 1]) > 0.12, 0] <= 0.889 - R + 1e-9).all()  # at a middle pocket the cushion opens
+        along_the_nose = (np.abs(r[:, 1]) > 0.12) & (np.abs(r[:, 1]) < 1.65)  # elsewhere a pocket opens
+        assert (r[along_the_nose, 0] <= 0.889 - R + 1e-9).all()
     between = sn.simulate(np.array([p[0], p[0] - [EXACT, 0]]), [(0, 0), (2.0, 0.0)], np.zeros((2, 3)))  # pinned against the cushion
     check_shot(between)
 

@@ -1,0 +1,53 @@
+"""How is the README's picture made? One pot with side and screw on an opened table, the paths drawn.
+
+    python -m benchmarks.pictures [--out FILE]
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+import snooker_env as sn
+from snooker_env.game.layouts import opened
+from snooker_env.game.pots import pots
+from snooker_env.render.pygame_view import rgb_array
+from snooker_env.render.scene import ball_paths, scene
+
+FILE = Path(__file__).parent / "pictures" / "shot.png"
+
+
+def pot(seed):
+    """The first table from ``seed`` on whose widest red pot goes in with screw and side, and the shot."""
+    while True:
+        positions, on_table = opened(np.random.default_rng(seed))
+        for candidate in pots(positions, on_table, 0xFFFE, most=3):
+            for error in np.radians(np.linspace(-2, 2, 41)):
+                ghost = candidate[2:4] - positions[0]
+                v, w = sn.strike(2.6, np.arctan2(ghost[1], ghost[0]) + error, side=-0.25, top=-0.3)
+                velocities, spins = np.zeros((22, 2)), np.zeros((22, 3))
+                velocities[0], spins[0] = v[:2], w
+                shot = sn.simulate(positions, velocities, spins)
+                if shot.potted[int(candidate[0])] >= 0 and shot.potted[0] < 0 and np.hypot(*ghost) > 0.8:
+                    return positions, int(candidate[0]), shot
+        seed += 1
+
+
+def main():
+    """Command line."""
+    import pygame
+
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=FILE)
+    out = parser.parse_args().out
+
+    positions, ball, shot = pot(6)
+    text = "a red potted with screw and left-hand side: the table as it was, and where the two balls went"
+    picture = rgb_array(scene("match", positions, paths=ball_paths(shot, balls=(0, ball)), text=text))
+    out.parent.mkdir(exist_ok=True)
+    pygame.image.save(pygame.surfarray.make_surface(picture.swapaxes(0, 1)), out)
+    print(out)
+
+
+if __name__ == "__main__":
+    main()

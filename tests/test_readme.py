@@ -1,0 +1,53 @@
+"""Does the README tell the truth? Its Python runs, its commands are known, and what runs them exists."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text()
+BLOCKS = re.findall(r"```python\n(.*?)```", README, re.S)
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=range(len(BLOCKS)))
+def test_python_blocks_run(block):
+    subprocess.run([sys.executable, "-W", "error", "-c", block], cwd=ROOT, check=True, timeout=300)
+
+
+def test_the_two_commands_are_those_that_ci_runs():
+    commands = re.findall(r"^pip install .*$", README, re.M)
+    assert [c.split(" && ")[1] for c in commands] == ["python train.py", "python -m pytest"]
+    ci = (ROOT / ".ci" / "run").read_text()
+    assert all(f"command_of '{c.split(' && ')[1]}'" in ci for c in commands)
+
+
+MODULES = sorted(set(re.findall(r"python -m (benchmarks\.\w+)", README)))
+SHORT = {
+    "benchmarks.speed": ["--shots", "20", "--repeats", "1"],
+    "benchmarks.fit_cushion": [],
+    "benchmarks.make_opened": ["--tables", "2", "--out", "{tmp}/opened.npz"],
+    "benchmarks.pictures": ["--out", "{tmp}/shot.png"],
+}
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_benchmark_commands_run(module, tmp_path):
+    arguments = [a.format(tmp=tmp_path) for a in SHORT[module]]
+    env = os.environ | {"SDL_VIDEODRIVER": "dummy"}
+    done = subprocess.run([sys.executable, "-m", module, *arguments], cwd=ROOT, check=True, timeout=300, capture_output=True, text=True, env=env)
+    assert done.stdout.strip()
+
+
+def test_the_help_command_runs():
+    command = re.search(r'`python -c "(.*?)"`', README)
+    assert command is not None
+    subprocess.run([sys.executable, "-c", command[1]], cwd=ROOT, check=True, capture_output=True)
+
+
+def test_pictures_exist():
+    for name in re.findall(r"!\[.*?\]\((.*?)\)", README):
+        assert (ROOT / name).stat().st_size > 10_000
