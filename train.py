@@ -197,7 +197,7 @@ class Keeper(BaseCallback):
             "[progress.description]{task.description}", rich.progress.BarColumn(), rich.progress.MofNCompleteColumn(),
             rich.progress.TimeElapsedColumn(), rich.progress.TextColumn("left"), rich.progress.TimeRemainingColumn(), disable=not progress,
         )  # fmt: skip
-        self.signal, self.stop = None, False
+        self.signal, self.stop, self.saved = None, False, None
 
     def on_signal(self, number, frame):
         """Only note it: the save comes when the running update is done. A second signal acts at once."""
@@ -211,13 +211,13 @@ class Keeper(BaseCallback):
         return self.seconds_before + time.perf_counter() - self.started
 
     def _on_training_start(self):
-        self.started, self.saved = time.perf_counter(), None
+        self.started = time.perf_counter()
         self.bar.start()
         self.task = self.bar.add_task(self.settings.algo.upper(), total=self.settings.steps, completed=self.num_timesteps)
 
     def _on_rollout_start(self):
         # here, and only here, everything played so far has been learned from: a checkpoint loses nothing
-        recent = [visit["r"] for visit in self.model.ep_info_buffer]
+        recent = [visit["r"] for visit in self.model.ep_info_buffer or ()]
         if recent and self.num_timesteps >= len(self.curve) * self.settings.steps // 20:
             self.curve.append({"steps": self.num_timesteps, "points": round(float(np.mean(recent)), 3)})
         if recent:
@@ -292,7 +292,7 @@ def main(argv=None):
     except ValueError as error:
         parser.error(str(error))
     table.reset(seed=0)
-    table.step(np.zeros(table.action_space.shape, np.float32))
+    table.step(np.zeros(4, np.float32))
 
     torch.set_num_threads(1)  # a network this small gains nothing from more, and the tables need the processors
     envs = make_envs(settings)

@@ -3,10 +3,14 @@
 ``settings`` is any object with the fields of ``train.Settings`` that a function reads.
 """
 
+from typing import cast
+
 import gymnasium
 import numpy as np
+from gymnasium import spaces
 
 from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
+from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import HALF_LENGTH
 from snooker_env.game.pots import POCKETS, pots
 
@@ -24,11 +28,10 @@ class PotView(gymnasium.ObservationWrapper):
 
     def __init__(self, env):
         super().__init__(env)
-        (n,) = env.observation_space.shape
-        self.observation_space = gymnasium.spaces.Box(-1.0, 1.0, (n + 8 * self.MOST,), np.float32)
+        self.observation_space = spaces.Box(-1.0, 1.0, (spaces.flatdim(env.observation_space) + 8 * self.MOST,), np.float32)
 
     def observation(self, observation):
-        table = self.unwrapped
+        table = cast(SnookerEnv, self.unwrapped)
         rows = np.zeros((self.MOST, 8), np.float32)
         for row, (ball, pocket, x, y, cos_cut, tolerance) in zip(
             rows, pots(table.positions, table.on_table, table.on, most=self.MOST), strict=False

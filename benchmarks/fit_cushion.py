@@ -47,7 +47,8 @@ def main():
     )
     print("                 e_c    knee m/s  slope s/m   rms m/s  largest m/s")
     for name, x, r in rows:
-        print("%-14s %6.4f  %8.3f  %9.4f  %8.4f  %11.4f" % (name, *x, np.sqrt(np.mean(np.square(r))), np.abs(r).max()))
+        rms, largest = np.sqrt(np.mean(np.square(r))), np.abs(r).max()
+        print(f"{name:14s} {x[0]:6.4f}  {x[1]:8.3f}  {x[2]:9.4f}  {rms:8.4f}  {largest:11.4f}")
     print("\nspeed  measured  ratio  model  ratio")
     for s, m, r in zip(speed, measured, shipped, strict=True):
         print(f"{s:5.2f}  {m:8.3f}  {m / s:5.3f}  {m + r:5.3f}  {(m + r) / s:5.3f}")

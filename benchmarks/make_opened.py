@@ -29,7 +29,8 @@ def stroke(rng, positions, on_table):
     """One hard stroke at a red; the settled table, or None if a ball other than the cue ball left it."""
     red = positions[rng.integers(1, 1 + N_REDS)]
     aim = atan2(red[1] - positions[CUE, 1], red[0] - positions[CUE, 0]) + rng.normal(0.0, 0.02)
-    v, w = cue.strike(rng.uniform(3.0, 6.5), aim, *rng.uniform(-0.3, 0.3, 2), 0.0, PHYSICS)
+    speed, side, top = rng.uniform([3.0, -0.3, -0.3], [6.5, 0.3, 0.3]).tolist()
+    v, w = cue.strike(speed, aim, side, top, 0.0, PHYSICS)
     velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
     velocities[CUE], spins[CUE] = v[:2], w
     shot = play(positions, velocities, spins, on_table, PHYSICS, TABLE, FIDELITY, path=False)

@@ -33,7 +33,8 @@ def _impacts(x, normals, phys, code, n_steps):
     total = 0.0
     for k in range(len(x)):
         v1, w1 = (x[k, 0], x[k, 1], 0.0), (x[k, 2], x[k, 3], x[k, 4])
-        out = contact.collide_balls(v1, w1, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), normals[k, 0], normals[k, 1], phys, phys[P_E_B], code, n_steps)
+        still = (0.0, 0.0, 0.0)
+        out = contact.collide_balls(v1, w1, still, still, normals[k, 0], normals[k, 1], phys, phys[P_E_B], code, n_steps)
         total += out[0][0]
     return total
 
@@ -102,7 +103,7 @@ def one_by_one(p, v, w, fidelity, repeats):
         for k in range(len(p)):
             state = [a[k : k + 1].copy() for a in (p, v, w, here)]
             t = time.perf_counter()
-            _run(state, physics, table, *code, 100_000, 0, 0)
+            _run(state, physics, table, code, 100_000, 0, 0)
             best[k] = min(best[k], time.perf_counter() - t)
     empty = [np.zeros((1, 1, 2)), np.zeros((1, 1, 2)), np.zeros((1, 1, 3)), np.ones((1, 1), bool)]
     call = min(_call(empty, physics, table, code) for _ in range(200))
@@ -111,7 +112,7 @@ def one_by_one(p, v, w, fidelity, repeats):
 
 def _call(state, physics, table, code):
     t = time.perf_counter()
-    _run([a.copy() for a in state], physics, table, *code, 100_000, 0, 0)
+    _run([a.copy() for a in state], physics, table, code, 100_000, 0, 0)
     return time.perf_counter() - t
 
 

@@ -5,7 +5,8 @@ import gymnasium as _gymnasium
 from .physics.engine import EventKind
 from .physics.parameters import Physics
 from .physics.table import POCKETS, Table
-from .simulation import Shot, ShotBatch, SimulationError, collide_balls, collide_cushion, simulate, simulate_batch, strike, warmup
+from .simulation import Shot, ShotBatch, SimulationError, collide_balls, collide_cushion, simulate, simulate_batch, strike
+from .warm import warmup
 
 __all__ = [
     "POCKETS", "EventKind", "Physics", "Shot", "ShotBatch", "SimulationError", "Table", "collide_balls", "collide_cushion", "simulate",

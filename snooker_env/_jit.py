@@ -12,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 import numba
+from numba.core import config
 
 _PACKAGE = Path(__file__).resolve().parent
 
@@ -56,9 +57,8 @@ def entry(function):
     """Compile a kernel that Python calls: cached on disk under the package's source hash."""
     if CACHE_FOLDER is None:
         return kernel(function)
-    before = numba.config.CACHE_DIR  # pyright: ignore[reportAttributeAccessIssue]
-    numba.config.CACHE_DIR = str(CACHE_FOLDER)  # pyright: ignore[reportAttributeAccessIssue]
+    before, config.CACHE_DIR = config.CACHE_DIR, str(CACHE_FOLDER)
     try:  # numba reads CACHE_DIR while it decorates, so the setting can be ours for just that moment
         return numba.njit(nogil=True, error_model="numpy", cache=True)(function)
     finally:
-        numba.config.CACHE_DIR = before  # pyright: ignore[reportAttributeAccessIssue]
+        config.CACHE_DIR = before

@@ -182,11 +182,11 @@ def simulate(positions, velocities, spins, table="match", physics=None, fidelity
     Returns a ``Shot``. Raises ValueError on bad input (field, value, what is allowed), SimulationError if the shot does not come to rest
     within ``max_events`` events.
     """
-    physics, table, (code, n_steps) = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
+    physics, table, fidelity = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=False)
     _moving_needs(physics)
     _check_layout(r, here, physics.R, table)
-    return play(r, v, w, here, physics, table, (code, n_steps), integer("max_events", max_events, 1, 2**31))
+    return play(r, v, w, here, physics, table, fidelity, integer("max_events", max_events, 1, 2**31))
 
 
 def play(positions, velocities, spins, on_table, physics, table, fidelity, max_events=MAX_EVENTS, *, path=True):
@@ -198,7 +198,7 @@ def play(positions, velocities, spins, on_table, physics, table, fidelity, max_e
     while True:
         state = [a[None].copy() for a in (positions, velocities, spins, on_table)]
         path_size = 2 * capacity + len(positions) + 2 if path else 0
-        out = _run(state, physics, table, *fidelity, max_events, capacity, path_size)
+        out = _run(state, physics, table, fidelity, max_events, capacity, path_size)
         if out.status[0] != Status.LOG_FULL:
             break
         capacity *= 4
@@ -217,7 +217,7 @@ def simulate_batch(
     threads: how many to use, None for one per core; results do not depend on it. events: also return each shot's event log.
     Returns a ``ShotBatch``. Errors as in ``simulate``.
     """
-    physics, table, (code, n_steps) = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
+    physics, table, fidelity = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=True)
     _moving_needs(physics)
     for k in range(len(r)):
@@ -225,13 +225,15 @@ def simulate_batch(
     threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
     max_events = integer("max_events", max_events, 1, 2**31)
     start = r.copy(), v.copy(), w.copy(), here.copy()
-    out = _run((r, v, w, here), physics, table, code, n_steps, max_events, _FIRST_LOG if events else 0, 0, threads)
+    out = _run((r, v, w, here), physics, table, fidelity, max_events, _FIRST_LOG if events else 0, 0, threads)
     logs = [out.log(k) for k in range(len(r))] if events else None
     for k in range(len(r)):
         if out.status[k] == Status.LOG_FULL:  # rare: a log longer than the first guess; played once more with room
-            one = play(*(a[k] for a in start), physics, table, (code, n_steps), max_events, path=False)
+            one = play(start[0][k], start[1][k], start[2][k], start[3][k], physics, table, fidelity, max_events, path=False)
             r[k], here[k], out.potted[k], out.duration[k] = one.positions, one.on_table, one.potted, one.duration
-            out.n_events[k], logs[k] = len(one.events), one.events
+            out.n_events[k] = len(one.events)
+            if logs is not None:
+                logs[k] = one.events
         else:
             _raise_unless_ok(out, k, logs[k] if logs else None)
     return ShotBatch(r, out.potted, here, out.duration, out.n_events, logs)
@@ -257,24 +259,28 @@ class _Run:
         return events[:m]
 
 
-def _run(state, physics, table, code, n_steps, max_events, log_size, path_size, threads=1):
+def _run(state, physics, table, fidelity, max_events, log_size, path_size, threads=1):
     """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place)."""
     b, n = state[0].shape[:2]
     out = _Run(
         np.zeros((b, n), np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b),
         np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.COLUMNS + 2)),
     )  # fmt: skip
-    args = (
-        *state, out.potted, physics.pack(), table.noses, table.jaws, table.falls, code, n_steps, max_events,
-        out.event_time, out.event_what, out.segments, out.status, out.n_events, out.n_segments, out.duration,
-    )  # fmt: skip
+    (r, v, w, here), (code, n_steps), phys = state, fidelity, physics.pack()
+
+    def run(first, last):
+        engine.run_batch(
+            r, v, w, here, out.potted, phys, table.noses, table.jaws, table.falls, code, n_steps, max_events, out.event_time,
+            out.event_what, out.segments, out.status, out.n_events, out.n_segments, out.duration, first, last,
+        )  # fmt: skip
+
     threads = min(threads, b)
     if threads <= 1:
-        engine.run_batch(*args, 0, b)
+        run(0, b)
     else:
         cuts = np.linspace(0, b, 4 * threads + 1).astype(int)  # more slices than threads: shots differ in length
         with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(lambda a, z: engine.run_batch(*args, a, z), cuts[:-1], cuts[1:]))
+            list(pool.map(run, cuts[:-1], cuts[1:]))
     return out
 
 
@@ -288,11 +294,3 @@ def _raise_unless_ok(out, k, events):
         Status.IMPACT_UNSOLVED: "holds an impact that did not end; try another fidelity, or less extreme friction",
     }[Status(status)]
     raise SimulationError(f"shot {k} {why} (after {out.n_events[k]} events{last})")
-
-
-def warmup():
-    """Compile everything a shot needs (or load it from the cache), so that no worker or first step pays for it."""
-    Shot_ = simulate([(0.0, 0.0), (0.3, 0.0)], [(1.0, 0.0), (0.0, 0.0)], np.zeros((2, 3)))
-    Shot_.at(0.1)
-    collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
-    collide_cushion((1, 0, 0), (0, 0, 0), (1, 0, 0))

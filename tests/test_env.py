@@ -17,8 +17,8 @@ from snooker_env.envs.actions import AIMS, MAX_ELEVATION, MAX_SPEED, MIN_SPEED, 
 from snooker_env.envs.noise import LEVELS, Noise
 from snooker_env.envs.rewards import REWARDS
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, BLACK, BLUE, CUE, D_RADIUS, GREEN, N_BALLS, PINK, SPOTS, YELLOW, BallOn
-from snooker_env.game.pots import POCKETS
+from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, BLACK, BLUE, CUE, D_RADIUS, N_BALLS, PINK, SPOTS, YELLOW, BallOn
+from snooker_env.game.pots import POCKETS, pots
 from snooker_env.game.ruling import Foul
 from snooker_env.render import pygame_view
 
@@ -62,17 +62,24 @@ def test_gymnasium_checks_it(name, render_mode, observation, aim, screen, strict
     env = gymnasium.make(name, observation=observation, render_mode=render_mode, aim=aim, layout="random:2").unwrapped
     every_mode = render_mode is None and aim == "absolute"  # this check builds the environment once more for each render mode
     check_env(env, skip_render_check=not every_mode)
-    assert (len(screen) > 0) == (every_mode or render_mode == "human")
+    assert (len(screen) > 0) == (render_mode == "human")
     env.close()
+
+
+ALLOWED = {"flat": set(), "balls": {"Your observation balls has an unconventional shape"}}
+"""The one warning that Stable-Baselines3 gives: a table of balls is neither a vector nor an image. The observation is meant so."""
 
 
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.parametrize("observation", observations.OBSERVATIONS)
 @pytest.mark.parametrize("longer", [{}, {"elevation": True, "placement": True, "layout": "break_off"}])
-def test_stable_baselines_checks_it(name, observation, longer, strict):
+@pytest.mark.parametrize("render_mode", [None, "rgb_array", "ansi"])
+def test_stable_baselines_checks_it(name, observation, longer, render_mode):
     checker = pytest.importorskip("stable_baselines3.common.env_checker")
-    checker.check_env(gymnasium.make(name, observation=observation, **longer), warn=True)
-    checker.check_env(gymnasium.make(name, observation=observation, render_mode="rgb_array", **longer), warn=True)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        checker.check_env(gymnasium.make(name, observation=observation, render_mode=render_mode, **longer), warn=True)
+    assert {str(w.message).partition(" (")[0] for w in caught} == ALLOWED[observation]
 
 
 def test_the_checker_can_fail(strict):
@@ -247,7 +254,8 @@ def describe(env):
     values = [0] + [1] * 15 + [2, 3, 4, 5, 6, 7]
     for ball in range(N_BALLS):
         x, y = env.positions[ball] if env.on_table[ball] else (0.0, 0.0)
-        may = {BallOn.RED: 1 <= ball < 16, BallOn.ANY_COLOUR: ball >= 16}.get(env.ball_on, env.ball_on > 1 and ball == env.ball_on + 14)
+        sequence = env.ball_on > 1 and ball == env.ball_on + 14
+        may = {BallOn.RED: 1 <= ball < 16, BallOn.ANY_COLOUR: ball >= 16}.get(env.ball_on, sequence)
         rows.append([x / 0.889, y / 1.7845, env.on_table[ball], values[ball] / 7, may and env.on_table[ball]])
     state = [env.on_table[1:16].sum() / 15, *(env.ball_on == k for k in range(8)), env.in_hand, env.points / 155]
     return np.array(rows, np.float32), np.array(state, np.float32)
@@ -271,8 +279,8 @@ def test_observations_say_where_the_balls_lie_and_what_is_on(layout):
 
 
 INFO = {
-    "points": float, "break": float, "foul": bool, "penalty": int, "pots": int, "fouls": int, "first_ball": int, "ball_on": int, "events": int,
-    "seconds": float,
+    "points": float, "break": float, "foul": bool, "penalty": int, "pots": int, "fouls": int, "first_ball": int, "ball_on": int,
+    "events": int, "seconds": float,
 }  # fmt: skip
 
 
@@ -282,13 +290,13 @@ def test_infos_have_the_same_keys_and_types_at_all_times():
     for seed in range(25):
         infos = [env.reset(seed=seed)[1]]
         while not env.over:
-            observation, reward, terminated, truncated, info = env.step(np.array([0.3, 0, 0, 0]))
+            _, reward, terminated, truncated, info = env.step(np.array([0.3, 0, 0, 0]))
             assert type(reward) is float and type(terminated) is bool and truncated is False
             infos.append(info)
         for info in infos:
             assert {k: type(v) for k, v in info.items()} == INFO
-        for k, v in info.items():
-            seen.setdefault(k, set()).add(v)
+            for k, v in info.items():
+                seen.setdefault(k, set()).add(v)
     assert all(len(values) > 1 for values in seen.values()), seen  # none of them is a constant
 
 
@@ -440,8 +448,8 @@ def test_speed_is_linear_between_its_ends(a, speed):
 
 @pytest.mark.parametrize(
     ("side", "top", "b", "t"),
-    [(1, 0, 0.5, 0), (0, 1, 0, 0.5), (0, -1, 0, -0.5), (1, 1, math.sqrt(0.125), math.sqrt(0.125)), (-0.6, 0.8, -0.3, 0.4), (0.9, -1, 0.3345, -0.3717),
-     (0.5, 0.25, 0.25, 0.125)],
+    [(1, 0, 0.5, 0), (0, 1, 0, 0.5), (0, -1, 0, -0.5), (1, 1, math.sqrt(0.125), math.sqrt(0.125)), (-0.6, 0.8, -0.3, 0.4),
+     (0.9, -1, 0.45 / math.sqrt(1.81), -0.5 / math.sqrt(1.81)), (0.5, 0.25, 0.25, 0.125)],
 )  # fmt: skip
 def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
     """A pair outside is drawn back along its own direction, one inside is as it is."""
@@ -463,7 +471,7 @@ def test_elevation_lengthens_the_action_and_takes_speed(a, degrees):
     table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
     v, w = after_strike(env, [0.0, 1.0, 0.0, 0.0, a])
     angle = math.radians(degrees)
-    assert MAX_ELEVATION == math.radians(30)
+    assert math.radians(30) == MAX_ELEVATION
     assert np.hypot(*v) == pytest.approx(speed_of(0.0) * math.cos(angle), rel=1e-12)
     assert w[2] == pytest.approx(2.5 * speed_of(0.0) / R * 0.5 * math.cos(angle), rel=1e-12)
     assert w[0] == pytest.approx(2.5 * speed_of(0.0) / R * 0.5 * math.sin(angle), rel=1e-3, abs=1e-9)  # the masse part
@@ -491,8 +499,8 @@ def test_placement_puts_the_ball_in_hand_where_it_says(a, b, elevation):
     want = (D_RADIUS * a, BAULK_Y - depth)
     if np.hypot(*(SPOTS[16:19] - want).T).min() > 2 * R + 1e-5:
         assert placed == pytest.approx(want, abs=1e-12)
-    else:  # the brown's spot is taken: straight back to the nearest place where it is clear of it
-        assert placed == pytest.approx((0.0, BAULK_Y - 2 * R), abs=1e-5) and placed[1] < BAULK_Y - 2 * R
+    else:  # the brown's spot is taken: the nearest place where it is clear of it
+        assert 2 * R < np.hypot(*(placed - SPOTS[18])) < 2 * R + 1e-5
     assert np.hypot(placed[0], placed[1] - BAULK_Y) <= D_RADIUS + 1e-12 and placed[1] <= BAULK_Y
     assert not np.array_equal(placed, before)
 
@@ -513,8 +521,8 @@ def test_placement_is_for_a_ball_in_hand_only():
     assert np.array_equal(plain.last_shot.at(0.0)[0][CUE], here)
 
 
-@pytest.mark.xfail(strict=True, reason="known bug, reported: at the D's ends _place finds nothing straight back and leaves the ball where it is")
-@pytest.mark.parametrize("a", [1.0, -1.0, 0.97, -0.97])
+@pytest.mark.xfail(strict=True, reason="known bug, reported: at the D's ends _place leaves the ball in another")
+@pytest.mark.parametrize("a", [1.0, -1.0, 0.99, -0.99])
 @pytest.mark.parametrize("b", [-1.0, 0.0, 1.0])
 def test_no_placement_overlaps_a_ball(a, b):
     """The yellow and the green stand on the D's corners."""
@@ -542,40 +550,28 @@ def test_target_aim_of_nothing_pots_a_straight_ball():
     """a = 0 is the line of the best pot: any straight pot goes in, 3 degrees off it does not."""
     env = SnookerEnv(aim="target", render_mode="ansi")
     rng = np.random.default_rng(3)
+    tried = astray = 0
     for _ in range(40):
         ball, cue, direction = straight(rng)
         table_state(env, {CUE: cue, 1: ball, BLACK: (0.0, 0.3) if ball[1] * cue[1] > 0.05 else (-0.6, 1.4)}, BallOn.RED)
         if np.hypot(*(env.positions[[CUE, 1]] - env.positions[BLACK]).T).min() < 0.3:
             continue
         before = env.get_state()
-        _, reward, terminated, _, info = env.step([-0.4, 0.0, -0.3, 0.0])
+        info = env.step([-0.4, 0.0, -0.3, 0.0])[4]
         v = env.last_shot.at(0.0)[1][CUE]
         assert math.remainder(math.atan2(v[1], v[0]) - direction, 2 * math.pi) == pytest.approx(0.0, abs=1e-6)
         assert info["pots"] == 1 and info["first_ball"] == 1
         assert env.last_shot.potted[1] >= 0
         for a in (-1.0, 1.0):
             env.set_state(before)
-            info = env.step([-0.4, 0.0, -0.3, a])[4]
+            tried, astray = tried + 1, astray + (env.step([-0.4, 0.0, -0.3, a])[4]["pots"] == 0)
             v = env.last_shot.at(0.0)[1][CUE]
             assert math.remainder(math.atan2(v[1], v[0]) - direction - a * TARGET_SPAN, 2 * math.pi) == pytest.approx(0.0, abs=1e-6)
-            assert info["first_ball"] != 1 or env.last_shot.potted[1] < 0 or info["pots"] == 1
+    assert tried > 50 and astray > 0.8 * tried
 
 
 def test_target_aim_without_a_pot_is_at_the_nearest_ball_on():
-    env = SnookerEnv(aim="target", render_mode="ansi")
-    # both reds lie behind the cue ball as seen from every pocket that they could go to, or behind the black
-    table_state(env, {CUE: (0.0, 1.70), 1: (0.0, 1.2), 2: (0.0, -1.7), 19: (-0.3, 0.0), 20: (0.3, 0.0)}, BallOn.RED)
-    from snooker_env.game.pots import pots
-
-    if len(pots(env.positions, env.on_table, env.on)):
-        env.positions[1] = (0.0, 1.6)
-    places = {CUE: (0.0, 0.0), 1: (0.3, 0.0), BLACK: (0.8, 0.0), 2: (-0.9 + 0.06, 0.4)}
-    table_state(env, places, BallOn.RED)
-    found = pots(env.positions, env.on_table, env.on)
-    direction = env.actions.shot([0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3]
-    if len(found):
-        gx, gy = found[0, 2:4]
-        assert direction == pytest.approx(math.atan2(gy, gx), abs=1e-12)
+    env = SnookerEnv(aim="target")
     table_state(env, {CUE: (0.0, 1.0), 1: (0.0, 1.7), 2: (0.1, 1.74)}, BallOn.RED)  # towards the top cushion: no pot there
     assert len(pots(env.positions, env.on_table, env.on)) == 0
     assert env.actions.shot([0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3] == pytest.approx(math.pi / 2, abs=1e-12)
@@ -606,7 +602,8 @@ def test_each_level_is_as_wide_as_written(name):
     rng = np.random.default_rng(1)
     draws = np.array([LEVELS[name].draw(rng, 3.0, 0, 0, 1.0, 0.2, R) for _ in range(4000)])
     assert np.degrees(draws[:, 3].std()) == pytest.approx(wide, rel=0.05, abs=1e-12)
-    assert draws[:, 0].std() == pytest.approx({"none": 0, "professional": 0.0525, "amateur": 0.075, "club": 0.12, "olympiad": 0.075}[name], rel=0.05)
+    fast = {"none": 0, "professional": 0.0525, "amateur": 0.075, "club": 0.12, "olympiad": 0.075}[name]
+    assert draws[:, 0].std() == pytest.approx(fast, rel=0.05)
 
 
 def test_speed_and_elevation_are_never_negative():
@@ -651,7 +648,7 @@ def test_a_noisy_tip_is_drawn_back_too():
         assert np.hypot(w[2], np.hypot(*w[:2])) <= 2.5 * np.hypot(*v) / R * 0.5 * (1 + 1e-9)
 
 
-@pytest.mark.xfail(strict=True, raises=ValueError, reason="known bug, reported: elevation + noise beyond 1.5 rad raises in the middle of a step")
+@pytest.mark.xfail(strict=True, raises=ValueError, reason="known bug, reported: noise takes the elevation past 1.5 rad and step() raises")
 def test_a_noisy_elevation_stays_playable():
     env = SnookerEnv(layout="random:2", noise={"elevation_deg": 90.0})
     for seed in range(30):
@@ -690,13 +687,13 @@ def test_the_highest_break():
     total = 0
     for red in range(1, 16):
         assert env.ball_on == BallOn.RED
-        obs, reward, terminated, truncated, info = pot(env, red)
+        _, reward, terminated, truncated, info = pot(env, red)
         total += 1
         assert (reward, terminated, truncated) == (1.0, False, False)
         assert (info["points"], info["break"], info["foul"], info["pots"], info["first_ball"]) == (1.0, total, False, 1, red)
         assert info["ball_on"] == BallOn.RED and env.ball_on == BallOn.ANY_COLOUR
         assert not env.on_table[red] and env.on_table[16:].all() and env.on_table[1:16].sum() == 15 - red
-        obs, reward, terminated, truncated, info = pot(env, BLACK)
+        _, reward, terminated, truncated, info = pot(env, BLACK)
         total += 7
         assert (reward, terminated, info["points"], info["break"], info["first_ball"]) == (7.0, False, 7.0, total, BLACK)
         assert info["ball_on"] == BallOn.ANY_COLOUR and info["pots"] == 1
@@ -718,7 +715,7 @@ def test_the_highest_break():
 def test_any_colour_after_a_red_is_worth_its_value_and_comes_back(colour):
     env = racked()
     pot(env, 1)
-    obs, reward, terminated, _, info = pot(env, colour)
+    _, reward, terminated, _, _ = pot(env, colour)
     assert reward == colour - 14 and not terminated and env.ball_on == BallOn.RED
     assert env.on_table[colour] and np.allclose(env.positions[colour], SPOTS[colour], atol=1e-12)
 
@@ -737,7 +734,7 @@ def test_a_miss_ends_the_visit_without_a_foul():
     env = racked()
     pot(env, 1)
     table_state(env, {CUE: (0.0, -0.5), 2: (0.0, 0.6), BLACK: (0.6, 1.0)}, BallOn.RED, points=8)
-    obs, reward, terminated, truncated, info = env.step([-0.8, 0.0, 0.0, 0.5])
+    _, reward, terminated, truncated, info = env.step([-0.8, 0.0, 0.0, 0.5])
     assert (reward, terminated, truncated, info["foul"], info["penalty"], info["first_ball"]) == (0.0, True, False, False, 0, 2)
     assert info["break"] == 8.0 == env.points and info["fouls"] == 0 and env.on_table[[CUE, 2, BLACK]].all()
 
@@ -746,7 +743,7 @@ def test_a_miss_ends_the_visit_without_a_foul():
 def test_a_wrong_ball_first_is_a_foul_of_its_value(ball, penalty):
     env = SnookerEnv(reward="points_and_fouls")
     table_state(env, {CUE: (0.0, -0.5), 2: (0.6, 0.6), ball: (0.0, 0.3)}, BallOn.RED, points=5)
-    obs, reward, terminated, _, info = env.step([-0.6, 0.0, 0.0, 0.5])
+    _, reward, terminated, _, info = env.step([-0.6, 0.0, 0.0, 0.5])
     assert (reward, terminated, info["foul"], info["penalty"], info["first_ball"]) == (-penalty, True, True, penalty, ball)
     assert info["fouls"] == Foul.WRONG_FIRST and info["points"] == 0.0 and info["break"] == 5.0
 
@@ -770,13 +767,12 @@ def test_an_in_off_is_a_foul_though_a_red_went_too():
 
 def test_two_balls_potted():
     """Two reds count two; a colour that goes with a red is a foul and comes back."""
-    pair = {1: (0.75, 0.0), 2: (0.75 - 2 * R, 0.0), CUE: (0.3, 0.0)}
+    pair = {1: (0.83, 0.0), 2: (0.83 - 0.0526, 0.0), CUE: (0.3, 0.0)}
     rest = {3: (-0.6, 0.9)} | {ball: SPOTS[ball] for ball in range(YELLOW, N_BALLS)}
     env = SnookerEnv(reward="points_and_fouls")
     table_state(env, pair | rest, BallOn.RED)
-    _, reward, terminated, _, info = env.step([-0.2, 0.0, 0.6, 0.0])
-    if info["pots"] == 2:
-        assert (reward, terminated, info["points"]) == ((2.0, False, 2.0) if not info["foul"] else (-4.0, True, 0.0))
+    _, reward, terminated, _, info = env.step([0.3, 0.0, 0.0, 0.0])
+    assert (reward, terminated, info["points"], info["pots"]) == (2.0, False, 2.0, 2) and env.ball_on == BallOn.ANY_COLOUR
     table_state(env, {PINK: pair[1], 2: pair[2], CUE: pair[CUE]} | {k: v for k, v in rest.items() if k != PINK}, BallOn.RED)
     _, reward, terminated, _, info = env.step([-0.4, 0.0, 0.0, 0.0])
     assert info["fouls"] & Foul.WRONG_POT and info["penalty"] == 6 and (reward, terminated) == (-6.0, True)

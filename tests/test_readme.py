@@ -37,8 +37,8 @@ SHORT = {
 @pytest.mark.parametrize("module", MODULES)
 def test_benchmark_commands_run(module, tmp_path):
     arguments = [a.format(tmp=tmp_path) for a in SHORT[module]]
-    env = os.environ | {"SDL_VIDEODRIVER": "dummy"}
-    done = subprocess.run([sys.executable, "-m", module, *arguments], cwd=ROOT, check=True, timeout=300, capture_output=True, text=True, env=env)
+    command, env = [sys.executable, "-m", module, *arguments], os.environ | {"SDL_VIDEODRIVER": "dummy"}
+    done = subprocess.run(command, cwd=ROOT, check=True, timeout=300, capture_output=True, env=env)
     assert done.stdout.strip()
 
 

@@ -1,14 +1,12 @@
 """What is ``Snooker-v0``? The Gymnasium environment: composes action, noise, strike, engine, referee, observation and reward."""
 
-from math import hypot
-
 import gymnasium
 import numpy as np
 from gymnasium import spaces
 
 from .._check import choice, refuse
-from ..game import spotting
-from ..game.balls import BALL_RADIUS, BAULK_Y, CUE, D_RADIUS, N_BALLS, REDS_MASK, BallOn, balls_on, mask_of, next_on
+from ..game.balls import BALL_RADIUS, CUE, N_BALLS, REDS_MASK, TOUCH, BallOn, balls_on, mask_of, next_on
+from ..game.in_hand import place_cue
 from ..game.layouts import layout as make_layout
 from ..game.referee import Situation, Stroke
 from ..game.ruling import VisitEnd
@@ -25,7 +23,7 @@ from .noise import Noise
 from .rewards import REWARDS
 
 TASKS = ("visit",)
-_TOUCHING = 1e-6  # m; balls nearer than this touch
+
 _AT_ONCE = 1e-9  # s; contacts nearer than this are simultaneous
 
 
@@ -93,9 +91,10 @@ class SnookerEnv(gymnasium.Env):
     | render_mode | None | "human", "rgb_array", "ansi" |
 
     ## Info
-    Always the same keys: ``points``, ``break`` (float), ``foul`` (bool), ``penalty``, ``pots``, ``fouls`` (bits of
-    ``snooker_env.game.ruling.Foul``), ``first_ball`` (-1: none), ``ball_on`` (what was on, ``BallOn``), ``events`` (int), ``seconds`` (float,
-    duration of the shot). ``reset(options={"state": env.unwrapped.get_state()})`` starts from a saved state.
+    Always the same keys: ``points``, ``break``, ``seconds`` (float; the shot's duration), ``foul`` (bool), ``penalty``, ``pots``,
+    ``fouls`` (bits of ``snooker_env.game.ruling.Foul``), ``first_ball`` (-1: none), ``ball_on`` (what was on, a ``BallOn``),
+    ``events`` (int).
+    ``reset(options={"state": env.unwrapped.get_state()})`` starts from a saved state.
 
     ## Version history
     v0: first version.
@@ -183,7 +182,7 @@ class SnookerEnv(gymnasium.Env):
             self.in_hand, self.points, self.over = self.layout == "break_off", 0, False
         if self.render_mode == "human":
             self._show()
-        return self._observe(), self._info()
+        return self._observe(), self._no_info()
 
     def step(self, action):
         """Play one shot. ValueError if the action is not finite and within [-1, 1]."""
@@ -199,13 +198,13 @@ class SnookerEnv(gymnasium.Env):
         ball_on = self.ball_on
         stroke = self._stroke(shot)
         situation = Situation(on_table=_mask(self.on_table), ball_on=ball_on, lead=self.points)
-        verdict, self.positions, self.on_table = settle_table(shot.positions, self.on_table, situation, stroke)
+        verdict, self.positions, self.on_table = settle_table(shot.positions, self.on_table, situation, stroke, jaws=self.table.jaws[:, :3])
         self.ball_on, self.in_hand = verdict.ball_on, verdict.in_hand
         self.points += verdict.points
         self.over = verdict.visit_end != VisitEnd.CONTINUES
         if self.render_mode == "human":
             self._show(shot)
-        return self._observe(), REWARDS[self.reward](verdict), bool(self.over), False, self._info(ball_on, shot, stroke, verdict)
+        return self._observe(), REWARDS[self.reward](verdict), bool(self.over), False, self._info(shot, stroke, ball_on, verdict)
 
     def render(self):
         """The table with the cue ball's last path: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise."""
@@ -230,18 +229,9 @@ class SnookerEnv(gymnasium.Env):
     # one shot --------------------------------------------------------------------------------------------------------------
 
     def _place(self, a):
-        """Put the cue ball in hand where the action says; if that is taken, straight back to the nearest free place."""
-        x, y = self.actions.place(a)
-        others = self.on_table.copy()
-        others[CUE] = False
-        if spotting.occupied(self.positions, others, x, y, BALL_RADIUS):
-            for direction in (-1.0, 1.0):
-                free = spotting.nearest_free(self.positions, others, x, y, direction, BALL_RADIUS)
-                if hypot(x, free - BAULK_Y) <= D_RADIUS and free <= BAULK_Y:
-                    y = free
-                    break
-        self.positions = self.positions.copy()
-        self.positions[CUE] = x, y
+        """Put the cue ball in hand where the action says; if a ball is in the way, at the nearest free place of the D."""
+        self.on_table[CUE] = False
+        self.positions[CUE] = place_cue(self.positions, self.on_table, *self.actions.place(a))
         self.on_table[CUE] = True
 
     def _play(self, v, w):
@@ -254,7 +244,7 @@ class SnookerEnv(gymnasium.Env):
     def _stroke(self, shot):
         """What the referee sees of a shot: first contact, touching balls, pots."""
         gaps = np.hypot(*(self.positions - self.positions[CUE]).T) - 2 * BALL_RADIUS
-        touching = _mask(self.on_table & (gaps < _TOUCHING)) & ~1
+        touching = _mask(self.on_table & (gaps < TOUCH)) & ~1
         events = shot.events
         hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
         # a touching ball that the cue ball is played away from is not struck; one it is played into is moved at once
@@ -265,20 +255,19 @@ class SnookerEnv(gymnasium.Env):
     def _observe(self):
         return observations.observe(self.observation, self.positions, self.on_table, self.ball_on, self.on, self.in_hand, self.points)
 
-    def _info(self, ball_on=None, shot=None, stroke=None, verdict=None):
-        played = verdict is not None
+    def _info(self, shot, stroke, ball_on, verdict):
         return {
-            "points": float(verdict.points) if played else 0.0,
-            "break": float(self.points),
-            "foul": bool(verdict.fouls) if played else False,
-            "penalty": int(verdict.penalty) if played else 0,
-            "pots": (stroke.potted & ~1).bit_count() if played else 0,
-            "fouls": int(verdict.fouls) if played else 0,
-            "first_ball": (stroke.first & -stroke.first).bit_length() - 1 if played else -1,
-            "ball_on": int(ball_on if played else self.ball_on),
-            "events": len(shot.events) if played else 0,
-            "seconds": shot.duration if played else 0.0,
-        }
+            "points": float(verdict.points), "break": float(self.points), "foul": bool(verdict.fouls), "penalty": int(verdict.penalty),
+            "pots": (stroke.potted & ~1).bit_count(), "fouls": int(verdict.fouls), "ball_on": int(ball_on),
+            "first_ball": (stroke.first & -stroke.first).bit_length() - 1, "events": len(shot.events), "seconds": shot.duration,
+        }  # fmt: skip
+
+    def _no_info(self):
+        """The same keys before any shot."""
+        return {
+            "points": 0.0, "break": float(self.points), "foul": False, "penalty": 0, "pots": 0, "fouls": 0, "ball_on": int(self.ball_on),
+            "first_ball": -1, "events": 0, "seconds": 0.0,
+        }  # fmt: skip
 
     # pictures --------------------------------------------------------------------------------------------------------------
 

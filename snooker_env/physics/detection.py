@@ -10,7 +10,6 @@ closing speed before they meet, instead of meeting without end at speed zero, an
 from math import inf, sqrt
 
 from .._jit import kernel
-from . import cloth
 from .cloth import AX, AY, REST, T0, T_END, VX, VY, X, Y
 from .roots import quadratic_crossing, quartic_crossing
 

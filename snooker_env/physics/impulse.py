@@ -25,11 +25,11 @@ All speeds are divided by y_0 first, so tolerances are relative to the impulse.
 from math import exp, hypot, sqrt
 
 from .._jit import kernel
+from .dormand_prince import ZERO, continuous_extension, dense, dense_all, secant, sum2, sum3, sum4, sum5, value_at
 
 OK, TOO_MANY_STEPS = 0, 1
 _FAST_SLIP, _SLIP, _STICK, _CREEP = 0, 1, 2, 3
-_FAST = 1.5
-_ZERO = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_FAST = 1.5  # slip that is lost in the impact, over slip there is, above which t is the better variable (measured: 1 to 3 are alike)
 _MAX_STEPS = 20_000
 _KB = 3.5  # effective inverse mass of a solid sphere's lowest point, times M
 
@@ -193,62 +193,6 @@ def _held(x, start, c, law, mu_s, delta):
 
 
 @kernel
-def _sum2(x, h, p, k, q, m):
-    """x + h (p k + q m), componentwise; the kin below take more terms."""
-    p *= h
-    q *= h
-    return (
-        x[0] + p * k[0] + q * m[0], x[1] + p * k[1] + q * m[1], x[2] + p * k[2] + q * m[2], x[3] + p * k[3] + q * m[3],
-        x[4] + p * k[4] + q * m[4], x[5] + p * k[5] + q * m[5], x[6] + p * k[6] + q * m[6],
-    )  # fmt: skip
-
-
-@kernel
-def _sum3(x, h, a, k, b, m, c, n):
-    return _sum2(_sum2(x, h, a, k, b, m), h, c, n, 0.0, n)
-
-
-@kernel
-def _sum4(x, h, a, k, b, m, c, n, d, o):
-    return _sum2(_sum2(x, h, a, k, b, m), h, c, n, d, o)
-
-
-@kernel
-def _sum5(x, h, a, k, b, m, c, n, d, o, e, q):
-    return _sum2(_sum4(x, h, a, k, b, m, c, n, d, o), h, e, q, 0.0, q)
-
-
-@kernel
-def _dense(r, i, s):
-    """Component i of the step's continuous extension at the fraction s."""
-    return _at(r[0][i], r[1][i], r[2][i], r[3][i], r[4][i], s)
-
-
-@kernel
-def _at(r0, r1, r2, r3, r4, s):
-    q = 1.0 - s
-    return r0 + s * (r1 + q * (r2 + s * (r3 + q * r4)))
-
-
-@kernel
-def _dense_all(r, s):
-    return (_dense(r, 0, s), _dense(r, 1, s), _dense(r, 2, s), _dense(r, 3, s), _dense(r, 4, s), _dense(r, 5, s), _dense(r, 6, s))
-
-
-@kernel
-def _continuous_extension(x, new, h, k1, k3, k4, k5, k6, k7):
-    """Coefficients of the step's continuous extension, order 4 (Hairer, Norsett & Wanner, II.6)."""
-    dx = _sum2(_ZERO, 1.0, 1.0, new, -1.0, x)
-    bend = _sum2(_ZERO, 1.0, h, k1, -1.0, dx)
-    twist = _sum3(dx, 1.0, -h, k7, -1.0, bend, 0.0, bend)
-    last = _sum5(
-        _ZERO, h, -12715105075 / 11282082432, k1, 87487479700 / 32700410799, k3, -10690763975 / 1880347072, k4,
-        701980252875 / 199316789632, k5, -1453857185 / 822651844, k6,
-    )  # fmt: skip
-    return x, dx, bend, twist, _sum2(last, h, 69997945 / 29380423, k7, 0.0, k7)
-
-
-@kernel
 def _closing_part(part, c):
     """The closing speed's linear part, of one coefficient of the continuous extension."""
     return c[6] * part[4] - c[4] * part[1] - c[5] * part[3] + c[10] * part[6]
@@ -267,11 +211,11 @@ def _end_of_compression(r, c, tol):
     s = f_low / (f_low - f_high)
     last, f_last = 1.0, f_high
     for _ in range(50):
-        f = _at(y0, y1, y2, y3, y4, s)
+        f = value_at(y0, y1, y2, y3, y4, s)
         low, high = (s, high) if f > 0.0 else (low, s)
         if abs(f) <= tol or high - low < 1e-15:
             break
-        last, f_last, s = s, f, _secant(low, high, s, f, last, f_last)
+        last, f_last, s = s, f, secant(low, high, s, f, last, f_last)
     return s
 
 
@@ -279,25 +223,18 @@ def _end_of_compression(r, c, tol):
 def _end_of_restitution(r, c, target, low, tol):
     """The fraction of a step, past ``low``, at which the work falls to the target."""
     high = 1.0
-    last, f_last = low, _work(_dense(r, 4, low), _dense(r, 5, low), c) - target
+    last, f_last = low, _work(dense(r, 4, low), dense(r, 5, low), c) - target
     if f_last <= 0.0:
         return low
     s = high
     f = _work(r[0][4] + r[1][4], r[0][5] + r[1][5], c) - target
     for _ in range(50):
-        last, f_last, s = s, f, _secant(low, high, s, f, last, f_last)
-        f = _work(_dense(r, 4, s), _dense(r, 5, s), c) - target
+        last, f_last, s = s, f, secant(low, high, s, f, last, f_last)
+        f = _work(dense(r, 4, s), dense(r, 5, s), c) - target
         low, high = (s, high) if f > 0.0 else (low, s)
         if abs(f) <= tol or high - low < 1e-15:
             break
     return s
-
-
-@kernel
-def _secant(low, high, s, f, last, f_last):
-    """The next guess at a zero between low and high."""
-    step = s - f * (s - last) / (f - f_last) if f != f_last else low
-    return step if low < step < high else 0.5 * (low + high)
 
 
 @kernel
@@ -309,7 +246,7 @@ def solve(start, c, law, mu_s, e, accuracy):
     zero; a slip that has broken loose is followed with its limiting direction until it exceeds creep.
     """
     tol, delta, creep = accuracy
-    x = _ZERO
+    x = ZERO
     p_full = -1.05 * (1.0 + e) / c[6]  # a guess that overshoots a little
     # past three times this step the method is unstable on a' = -k mu a: a slip that should die would hover at the size of the tolerance
     h_slip = 1.0 / (c[0] * friction_coefficient(0.0, law) + 1e-9)
@@ -325,28 +262,28 @@ def solve(start, c, law, mu_s, e, accuracy):
         mode, h = _STICK if _held(x, start, c, law, mu_s, delta) else _CREEP, p_full
     k1 = _rates(x, mode, start, c, law, mu_s, delta)
     b1_old, b2_old = start[2], start[3]
+    # the pressed ball starts without slip on the cloth: everything is smooth, and the estimate ten times the true error (measured)
+    calm = b1_old * b1_old + b2_old * b2_old <= 100.0 * delta * delta
     compressing, target = True, 0.0
     for _ in range(_MAX_STEPS):
-        k2 = _rates(_sum2(x, h, 0.2, k1, 0.0, k1), mode, start, c, law, mu_s, delta)
-        k3 = _rates(_sum2(x, h, 3 / 40, k1, 9 / 40, k2), mode, start, c, law, mu_s, delta)
-        k4 = _rates(_sum3(x, h, 44 / 45, k1, -56 / 15, k2, 32 / 9, k3), mode, start, c, law, mu_s, delta)
-        k5 = _rates(_sum4(x, h, 19372 / 6561, k1, -25360 / 2187, k2, 64448 / 6561, k3, -212 / 729, k4), mode, start, c, law, mu_s, delta)
+        k2 = _rates(sum2(x, h, 0.2, k1, 0.0, k1), mode, start, c, law, mu_s, delta)
+        k3 = _rates(sum2(x, h, 3 / 40, k1, 9 / 40, k2), mode, start, c, law, mu_s, delta)
+        k4 = _rates(sum3(x, h, 44 / 45, k1, -56 / 15, k2, 32 / 9, k3), mode, start, c, law, mu_s, delta)
+        k5 = _rates(sum4(x, h, 19372 / 6561, k1, -25360 / 2187, k2, 64448 / 6561, k3, -212 / 729, k4), mode, start, c, law, mu_s, delta)
         k6 = _rates(
-            _sum5(x, h, 9017 / 3168, k1, -355 / 33, k2, 46732 / 5247, k3, 49 / 176, k4, -5103 / 18656, k5),
+            sum5(x, h, 9017 / 3168, k1, -355 / 33, k2, 46732 / 5247, k3, 49 / 176, k4, -5103 / 18656, k5),
             mode, start, c, law, mu_s, delta,
         )  # fmt: skip
-        new = _sum5(x, h, 35 / 384, k1, 500 / 1113, k3, 125 / 192, k4, -2187 / 6784, k5, 11 / 84, k6)
+        new = sum5(x, h, 35 / 384, k1, 500 / 1113, k3, 125 / 192, k4, -2187 / 6784, k5, 11 / 84, k6)
         k7 = _rates(new, mode, start, c, law, mu_s, delta)
-        err = _sum5(_ZERO, h, 71 / 57600, k1, -71 / 16695, k3, 71 / 1920, k4, -17253 / 339200, k5, 22 / 525, k6)
-        err = _sum2(err, h, -1 / 40, k7, 0.0, k7)
+        err = sum5(ZERO, h, 71 / 57600, k1, -71 / 16695, k3, 71 / 1920, k4, -17253 / 339200, k5, 22 / 525, k6)
+        err = sum2(err, h, -1 / 40, k7, 0.0, k7)
         # an error in p(t) alone is harmless: what counts is each number as a function of p
-        slope = err[4] / k7[4]
-        worst = max(
-            max(max(abs(err[0] - k7[0] * slope), abs(err[1] - k7[1] * slope)), max(abs(err[2] - k7[2] * slope), abs(err[3] - k7[3] * slope))),
-            max(abs(err[5] - k7[5] * slope), abs(err[6] - k7[6] * slope)),
-        )
-        if worst > tol and h > 1e-13:
-            h *= max(0.2, 0.9 * (tol / worst) ** 0.2)
+        off = sum2(err, -err[4] / k7[4], 1.0, k7, 0.0, k7)
+        worst = max(max(max(abs(off[0]), abs(off[1])), max(abs(off[2]), abs(off[3]))), max(abs(off[5]), abs(off[6])))
+        allowed = 4.0 * tol if mode == _FAST_SLIP and calm else tol
+        if worst > allowed and h > 1e-13:
+            h *= max(0.2, 0.9 * (allowed / worst) ** 0.2)
             continue
         a1, a2, b1, b2, v = _slips(new, start, c)
         if b1 * b1_old + b2 * b2_old < 0.0 and mu_s * (c[7] + abs(c[8]) * mu) * (new[4] - x[4]) > delta and h > 1e-13:
@@ -377,18 +314,18 @@ def solve(start, c, law, mu_s, e, accuracy):
             next_mode = _STICK
         done = work <= target and not compressing
         if done or (compressing and y <= 0.0):
-            r = _continuous_extension(x, new, h, k1, k3, k4, k5, k6, k7)
+            r = continuous_extension(x, new, h, k1, k3, k4, k5, k6, k7)
             low = 0.0
             if compressing:
                 low = _end_of_compression(r, c, 1e-3 * tol)
                 compressing = False
-                target = (1.0 - e * e) * _work(_dense(r, 4, low), _dense(r, 5, low), c)
+                target = (1.0 - e * e) * _work(dense(r, 4, low), dense(r, 5, low), c)
                 done = work <= target
             if done:
                 if e > 0.0:
                     low = _end_of_restitution(r, c, target, low, 1e-3 * tol)
-                return _dense_all(r, low), OK
-        h *= 3.0 if worst < 1e-3 * tol else min(3.0, 0.9 * (tol / worst) ** 0.2)
+                return dense_all(r, low), OK
+        h *= 3.0 if worst < 1e-3 * allowed else min(3.0, 0.9 * (allowed / worst) ** 0.2)
         x, k1, b1_old, b2_old = new, k7, b1, b2
         if next_mode != mode:
             mode = next_mode

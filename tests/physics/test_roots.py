@@ -38,7 +38,7 @@ def test_quartic_with_known_real_roots(roots, T, sign):
 @settings(max_examples=300, deadline=None)
 @given(st.tuples(*[st.floats(-10, 10)] * 5), st.floats(0.01, 3))
 def test_quartic_never_misses_a_sign_change(q, T):
-    """If a dense sample sees the value go from above to below zero, a crossing at or before that place is found; and what is found is one."""
+    """Where a dense sample sees the value fall through zero, a crossing there or before is found; and what is found is one."""
     got = quartic_crossing(*q, T)
     x = np.linspace(0, T, 2001)
     f = np.polyval(q, x)

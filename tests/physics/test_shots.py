@@ -101,7 +101,8 @@ def test_random_22_ball_shots(fidelity, physics):
     for _ in range(25):
         p = random_table(rng, 22)
         tip = rng.uniform(-0.35, 0.35, 2)
-        shot = sn.simulate(p, *struck(22, rng.uniform(0.5, 6), rng.uniform(-np.pi, np.pi), side=tip[0], top=tip[1]), "match", physics, fidelity)
+        start = struck(22, rng.uniform(0.5, 6), rng.uniform(-np.pi, np.pi), side=tip[0], top=tip[1])
+        shot = sn.simulate(p, *start, "match", physics, fidelity)
         check_shot(shot)
         assert set(np.flatnonzero(~shot.on_table)) == set(np.flatnonzero(shot.potted >= 0))
         inside = np.abs(shot.positions[shot.on_table]) <= np.array([0.889, 1.7845]) - R + 1e-9
