@@ -1,6 +1,6 @@
 """How were the opened tables made? Plays frames open with the project's own engine and referee and writes ``game/opened.npz``.
 
-    python -m benchmarks.make_opened [--tables 8192] [--seed 0]
+    python -m benchmarks.make_opened [--tables 10240] [--seed 0]
 """
 
 import argparse
@@ -70,7 +70,7 @@ def opened_table(rng):
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--tables", type=int, default=8192)
+    parser.add_argument("--tables", type=int, default=10240)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", default=FILE)
     options = parser.parse_args()

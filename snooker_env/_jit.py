@@ -57,8 +57,8 @@ def entry(function):
     """Compile a kernel that Python calls: cached on disk under the package's source hash."""
     if CACHE_FOLDER is None:
         return kernel(function)
-    before, config.CACHE_DIR = config.CACHE_DIR, str(CACHE_FOLDER)
+    before, config.CACHE_DIR = config.CACHE_DIR, str(CACHE_FOLDER)  # pyright: ignore[reportAttributeAccessIssue]
     try:  # numba reads CACHE_DIR while it decorates, so the setting can be ours for just that moment
         return numba.njit(nogil=True, error_model="numpy", cache=True)(function)
     finally:
-        config.CACHE_DIR = before
+        config.CACHE_DIR = before  # pyright: ignore[reportAttributeAccessIssue]
