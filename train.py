@@ -288,12 +288,9 @@ def main(argv=None):
     print("Compiling ...", flush=True)
     snooker_env.warmup()  # here, once: the workers load what it leaves in the cache
     try:
-        table = make_env(settings)
+        make_env(settings)  # a bad option ends here, with the environment's own words
     except ValueError as error:
         parser.error(str(error))
-    table.reset(seed=0)
-    table.step(np.zeros(4, np.float32))
-
     torch.set_num_threads(1)  # a network this small gains nothing from more, and the tables need the processors
     envs = make_envs(settings)
     try:

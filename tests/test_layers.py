@@ -18,7 +18,7 @@ PACKAGE = Path(snooker_env.__file__).resolve().parent
 FILES = sorted(PACKAGE.rglob("*.py"))
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
-# What a part may import of the package, besides itself. A trailing dot means: only these modules of that part.
+# What a part may import of the package, besides itself; a dotted name means only that module of a part.
 BASE = {"_jit", "_check"}
 ALLOWED = {
     "_jit": set(),
@@ -30,7 +30,8 @@ ALLOWED = {
     "render": {"_check", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "envs"},
     "play": BASE | {"physics", "simulation", "game", "envs", "render"},
-    "__init__": {"physics", "simulation", "envs"},
+    "warm": {"simulation", "envs"},
+    "__init__": {"physics", "simulation", "warm"},
 }
 OUTSIDE = {"gymnasium": {"envs", "__init__", "sb3", "play"}, "pygame": {"render"}, "pettingzoo": {"envs"}, "stable_baselines3": {"sb3"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
@@ -101,9 +102,10 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
             assert not top, f"{name} imports pygame when it is imported, not when a picture is wanted"
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if part_of(n) == "envs"])
-def test_environments_load_the_pictures_only_when_asked(name):
-    assert not [t for t, top in imports(name) if top and t.startswith(".render")]
+@pytest.mark.parametrize("name", [n for n in NAMES if part_of(n) in ("envs", "warm")])
+def test_pictures_and_environments_are_loaded_only_when_asked(name):
+    late = ".render" if part_of(name) == "envs" else ".envs"
+    assert not [t for t, top in imports(name) if top and t.startswith(late)]
 
 
 def test_no_two_files_of_the_package_import_each_other():

@@ -246,7 +246,6 @@ print(repr(shot.positions.tolist()))
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [
-        ("physics/engine.py", "PART = 2e-3", "PART = 4e-1"),
         ("physics/cloth.py", None, None),
         ("physics/contact.py", "phys[P_E_C] - phys[P_E_SLOPE]", "0.5 * phys[P_E_C] - phys[P_E_SLOPE]"),
     ],
