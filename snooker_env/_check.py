@@ -11,11 +11,11 @@ def refuse(field, value, allowed):
 def number(field, value, low=-np.inf, high=np.inf, *, open_low=False):
     """A finite real in [low, high] (or (low, high] with ``open_low``) as float."""
     bounds = f"must be a finite number in {'(' if open_low else '['}{low:g}, {high:g}]"
-    if isinstance(value, (bool, str, bytes)) or value is None:
+    if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
         raise refuse(field, value, bounds)
     try:
         x = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise refuse(field, value, bounds) from None
     if not np.isfinite(x) or x < low or x > high or (open_low and x == low):
         raise refuse(field, value, bounds)
@@ -26,9 +26,12 @@ def array(field, value, shape):
     """A finite float64 array of the given shape (-1: any length); always a fresh C-ordered copy."""
     want = "(" + ", ".join("n" if s == -1 else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
     try:
-        a = np.array(value, dtype=np.float64, order="C")
+        raw = np.asarray(value)
     except (TypeError, ValueError):
         raise refuse(field, value, f"must be real numbers of shape {want}") from None
+    if raw.dtype.kind not in "iuf":
+        raise refuse(field, value, f"must be real numbers of shape {want}")
+    a = np.array(raw, dtype=np.float64, order="C")
     if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
         raise refuse(field, f"array of shape {a.shape}", f"must have shape {want}")
     bad = np.argwhere(~np.isfinite(a))
@@ -50,3 +53,21 @@ def integer(field, value, low, high):
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
         raise refuse(field, value, f"must be an integer in [{low}, {high}]")
     return int(value)
+
+
+def flags(field, value, shape):
+    """A bool array of the given shape, always a fresh copy."""
+    try:
+        a = np.array(value)
+    except (TypeError, ValueError):
+        raise refuse(field, value, f"must be bool of shape {shape}") from None
+    if a.shape != shape or a.dtype != np.bool_:
+        raise refuse(field, f"{a.dtype} array of shape {a.shape}", f"must be bool of shape {shape}")
+    return a
+
+
+def truth(field, value):
+    """A bool."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise refuse(field, value, "must be True or False")
+    return bool(value)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ._check import array, integer, refuse
+from ._check import array, flags, integer, refuse
 from ._jit import entry
 from .physics import cloth, contact, cue, engine, trajectory
 from .physics.engine import EventKind, Status
@@ -116,7 +116,7 @@ class Shot:
 
         t may be an array of shape (m,): then a leading axis m is added to each. At the time of an impact: just after it.
         """
-        times = array("t", np.atleast_1d(t), (-1,))
+        times = array("t", t if np.ndim(t) else [t], (-1,))
         if times.size and times.min() < 0:
             raise refuse("t", float(times.min()), "must not be negative")
         n, m = len(self.positions), len(times)
@@ -137,17 +137,15 @@ class ShotBatch:
     events: list[np.ndarray] | None = None
 
 
-def _check_layout(positions, on_table, R, table, at=""):
-    table.check(positions, R, f"positions{at}", on_table)
+def check_layout(positions, on_table, R, table, field="positions"):
+    """Raise ValueError if a ball is off the table, in a cushion, over a pocket or in another ball; positions (n, 2), on_table (n,)."""
+    table.check(positions, R, field, on_table)
     here = np.flatnonzero(on_table)
     p = positions[here]
-    far = np.hypot(p[:, None, 0] - p[None, :, 0], p[:, None, 1] - p[None, :, 1]) + np.triu(np.full((len(p), len(p)), np.inf)).T
-    bad = np.argwhere(far < 2 * R - OVERLAP_ALLOWED) if len(p) > 1 else []
-    for a, b in bad:
-        i, j = int(here[a]), int(here[b])
-        if i != j:
-            depth = 2 * R - float(np.hypot(*(positions[i] - positions[j])))
-            raise refuse(f"positions{at}", f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
+    far = np.hypot(p[:, None, 0] - p[None, :, 0], p[:, None, 1] - p[None, :, 1])
+    for a, b in np.argwhere(np.triu(far < 2 * R - OVERLAP_ALLOWED, 1)):
+        depth = 2 * R - float(far[a, b])
+        raise refuse(field, f"balls {here[a]} and {here[b]}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
 
 
 def _balls(positions, velocities, spins, on_table, batch):
@@ -157,19 +155,8 @@ def _balls(positions, velocities, spins, on_table, batch):
     v, w = array("velocities", velocities, (*shape, 2)), array("spins", spins, (*shape, 3))
     if shape[-1] == 0:
         raise refuse("positions", f"array of shape {r.shape}", "must hold at least one ball")
-    if on_table is None:
-        here = np.ones(shape, bool)
-    else:
-        here = np.array(on_table)
-        if here.shape != shape or here.dtype != bool:
-            raise refuse("on_table", f"{here.dtype} array of shape {here.shape}", f"must be bool of shape {shape}")
+    here = np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)
     return r, v, w, here
-
-
-def _moving_needs(physics):
-    for name in ("mu_s", "mu_r"):
-        if getattr(physics, name) <= 0:
-            raise refuse(f"physics.{name}", getattr(physics, name), "must be > 0 to simulate a shot: without it no ball comes to rest")
 
 
 def simulate(positions, velocities, spins, table="match", physics=None, fidelity="standard", *, on_table=None, max_events=MAX_EVENTS):
@@ -184,8 +171,8 @@ def simulate(positions, velocities, spins, table="match", physics=None, fidelity
     """
     physics, table, fidelity = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=False)
-    _moving_needs(physics)
-    _check_layout(r, here, physics.R, table)
+    physics.check_stopping()
+    check_layout(r, here, physics.R, table)
     return play(r, v, w, here, physics, table, fidelity, integer("max_events", max_events, 1, 2**31))
 
 
@@ -219,9 +206,9 @@ def simulate_batch(
     """
     physics, table, fidelity = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=True)
-    _moving_needs(physics)
+    physics.check_stopping()
     for k in range(len(r)):
-        _check_layout(r[k], here[k], physics.R, table, f"[{k}]")
+        check_layout(r[k], here[k], physics.R, table, f"positions[{k}]")
     threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
     max_events = integer("max_events", max_events, 1, 2**31)
     start = r.copy(), v.copy(), w.copy(), here.copy()

@@ -91,7 +91,7 @@ VECTORS = [
         ("scalar", 1.0, "shape ()", "must have shape (3,)"),
         ("nan", (1.0, NAN, 0.0), "nan", "must be finite"),
         ("inf", (-INF, 0.0, 0.0), "-inf", "must be finite"),
-        ("none", None, "shape ()", "must have shape (3,)"),
+        ("none", None, "None", "must be real numbers of shape (3,)"),
         ("name", "abc", "'abc'", "must be real numbers of shape (3,)"),
         ("complex", (1j, 0.0, 0.0), "1j", "must be real numbers of shape (3,)"),
         ("ragged", [(1.0, 2.0), 0.0, 0.0], "[(1.0, 2.0), 0.0, 0.0]", "must be real numbers of shape (3,)"),
@@ -150,7 +150,7 @@ LAYOUTS = [
     case(shot(on_table=[1, 0]), "on_table", "int64 array of shape (2,)", "must be bool of shape (2,)"),
     case(shot(on_table=[1.0, 0.0]), "on_table", "float64 array", "must be bool of shape (2,)"),
     case(shot(on_table="yes"), "on_table", "array of shape ()", "must be bool of shape (2,)"),
-    case(shot(on_table=[[True], True]), "on_table", "[[True], True]", "must be bool of shape (2,)", bug="numpy's own message, no field"),
+    case(shot(on_table=[[True], True]), "on_table", "[[True], True]", "must be bool of shape (2,)"),
     *[
         case(shot(max_events=wrong), "max_events", repr(wrong), "must be an integer in [1, 2147483648]", f"max_events={wrong!r}")
         for wrong in (0, -1, 1.5, 100.0, True, "many", None, NAN, 2**31 + 1)
@@ -253,9 +253,9 @@ PHYSICS = [
     case(lambda: sn.Physics.preset("paper", mu=0.1), "physics field", "'mu'", "must be one of 'R', 'M', 'g', 'mu_s'", "preset-unknown"),
     case(lambda: sn.Physics.of({"mu": 0.1}), "physics field", "'mu'", "must be one of 'R'", "of-unknown"),
     case(lambda: SnookerEnv(physics={"mu": 0.1}), "physics field", "'mu'", "must be one of 'R'", "env-unknown"),
-    case(lambda: sn.Physics.of({"name": "match"}), "physics field", "'name'", "must be one of 'R'", bug="TypeError: two values for 'name'"),
-    case(lambda: sn.Physics.of({"cls": 1}), "physics field", "'cls'", "must be one of 'R'", bug="TypeError: two values for 'cls'"),
-    case(lambda: sn.Physics.of({1: 0.1}), "physics field", "1", "must be one of 'R'", bug="TypeError: keywords must be strings"),
+    case(lambda: sn.Physics.of({"name": "match"}), "physics field", "'name'", "must be one of 'R'"),
+    case(lambda: sn.Physics.of({"cls": 1}), "physics field", "'cls'", "must be one of 'R'"),
+    case(lambda: sn.Physics.of({1: 0.1}), "physics field", "1", "must be one of 'R'"),
 ]  # fmt: skip
 
 
@@ -270,20 +270,20 @@ TIMES = [
     case(moved(t=[0.0, INF]), "t[1]", "inf", "must be finite"),
     case(moved(t=[[0.1]]), "t", "shape (1, 1)", "must have shape (n,)"),
     case(moved(t="soon"), "t", "soon", "must be real numbers of shape (n,)"),
-    case(moved(t=1j), "t", "1j", "must be real numbers of shape (n,)", bug="a complex array loses its imaginary part with a mere warning"),
+    case(moved(t=1j), "t", "1j", "must be real numbers of shape (n,)"),
 ]
 
 REAL = "must be real numbers of shape (3,)"
 DTYPES = [
-    case(impact(v1=["1", "0", "0"]), "v1", "'1'", REAL, "numbers as text", bug="text is converted silently"),
-    case(impact(v1=[True, False, False]), "v1", "True", REAL, "truth values", bug="bools are taken as 0 and 1, number() refuses them"),
-    case(impact(v1=np.array([1 + 2j, 0, 0])), "v1", "1.+2.j", REAL, "complex array", bug="the imaginary part is dropped"),
-    case(impact(v1=[10**400, 0, 0]), "v1", "1000", REAL, "int beyond float64", bug="OverflowError"),
-    case(strike(speed=10**400), "speed", "1000", "must be a finite number", "speed beyond float64", bug="OverflowError"),
-    case(strike(speed=np.True_), "speed", "True", "must be a finite number", "numpy bool", bug="np.bool_ slips past the test for bool"),
-    case(shot(fidelity="euler:" + "9" * 5000), "fidelity", "'euler:9999", FIDELITY, "endless N", bug="int()'s own message"),
-    case(shot(table=sn.Table("x", np.zeros((1, 2)), np.zeros((0, 6)), np.zeros((0, 3)))), "table.noses", "shape (1, 2)",
-         "must have shape (n, 5)", "own table of wrong shape", bug="Table's fields are not checked; the kernel reads what it finds"),
+    case(impact(v1=["1", "0", "0"]), "v1", "'1'", REAL, "numbers as text"),
+    case(impact(v1=[True, False, False]), "v1", "True", REAL, "truth values"),
+    case(impact(v1=np.array([1 + 2j, 0, 0])), "v1", "1.+2.j", REAL, "complex array"),
+    case(impact(v1=[10**400, 0, 0]), "v1", "1000", REAL, "int beyond float64"),
+    case(strike(speed=10**400), "speed", "1000", "must be a finite number", "speed beyond float64"),
+    case(strike(speed=np.True_), "speed", "True", "must be a finite number", "numpy bool"),
+    case(shot(fidelity="euler:" + "9" * 5000), "fidelity", "'euler:9999", FIDELITY, "endless N"),
+    case(lambda: sn.Table("x", np.zeros((1, 2)), np.zeros((0, 6)), np.zeros((0, 3))), "table.noses", "shape (1, 2)",
+         "must have shape (n, 5)", "own table of wrong shape"),
 ]  # fmt: skip
 
 
@@ -361,11 +361,11 @@ ENV = [
     ],
     case(make(noise={"aim": 0.1}), "noise field", "'aim'", "must be one of 'aim_deg', 'speed_rel', 'speed_abs', 'offset_mm'"),
     case(make(noise={3: 0.1}), "noise field", "3", "must be one of 'aim_deg'"),
-    *[case(make(noise=w), "noise", repr(w), "must be one of", f"noise={w!r}", bug="TypeError: unhashable") for w in ([], ["none"])],
-    *[case(make(layout=w), "layout", repr(w), "must be one of", f"layout={w!r}", bug="TypeError: unhashable") for w in ([], {})],
-    case(make(layout="random:16"), "layout", "random:16", "with N from 0 to 15", bug="the message names a field n that no user knows"),
-    case(make(layout="random:\u0663"), "layout", "random:", "with N from 0 to 15", "arabic digits", bug="isdecimal() takes any script"),
-    case(make(physics={"mu_s": 0.0}), "physics.mu_s", "0.0", "must be > 0", "env-frictionless", bug="only simulate() refuses it"),
+    *[case(make(noise=w), "noise", repr(w), "must be one of", f"noise={w!r}") for w in ([], ["none"])],
+    *[case(make(layout=w), "layout", repr(w), "must be one of", f"layout={w!r}") for w in ([], {})],
+    case(make(layout="random:16"), "layout", "random:16", "with N from 0 to 15"),
+    case(make(layout="random:\u0663"), "layout", "random:", "with N from 0 to 15", "arabic digits"),
+    case(make(physics={"mu_s": 0.0}), "physics.mu_s", "0.0", "must be > 0", "env-frictionless"),
 ]  # fmt: skip
 
 
@@ -393,14 +393,14 @@ ACTIONS = [
     case([0.0] * 3, "action", "shape (3,)", "must have shape ({size},)", "short"),
     case([0.0] * 8, "action", "shape (8,)", "must have shape ({size},)", "long"),
     case(0.0, "action", "shape ()", "must have shape ({size},)", "scalar"),
-    case(None, "action", "shape ()", "must have shape ({size},)", "none"),
+    case(None, "action", "None", "must have shape ({size},)", "none"),
     case(lambda n: [[0.0] * n], "action", "shape (1, ", "must have shape ({size},)", "row"),
     case(lambda n: [0.0] * (n - 1) + [1.0000001], "action", "1.0000001", "must be finite and within [-1, 1]", "above"),
     case(lambda n: [-1.5] + [0.0] * (n - 1), "action", "-1.5", "must be finite and within [-1, 1]", "below"),
     case(lambda n: [NAN] + [0.0] * (n - 1), "action", "nan", "must be finite and within [-1, 1]", "nan"),
     case(lambda n: [0.0] * (n - 1) + [INF], "action", "inf", "must be finite and within [-1, 1]", "inf"),
-    case(lambda n: ["a"] * n, "action", "'a'", "must have shape", "text", bug="numpy's own message, no field"),
-    case(lambda n: np.zeros(n, complex), "action", "0", "must have shape", "complex", bug="the imaginary part is dropped"),
+    case(lambda n: ["a"] * n, "action", "'a'", "must have shape", "text"),
+    case(lambda n: np.zeros(n, complex), "action", "0", "must have shape", "complex"),
 ]
 
 
@@ -430,28 +430,28 @@ def with_positions(state, **places):
 
 
 STATES = [
-    case(lambda s: {"positions": s["positions"][:21]}, "state.positions", "shape (21, 2)", "(22, 2)", bug="the value is not shown"),
-    case(lambda s: with_positions(s, b3=(NAN, 0.0)), "state.positions[3, 0]", "nan", "must be finite", bug="the value is not shown"),
-    case(lambda s: {"on_table": [1] * 22}, "state.on_table", "int64", "must be bool of shape (22,)", bug="the value is not shown"),
-    case(lambda s: {"on_table": [True] * 21}, "state.on_table", "shape (21,)", "must be bool of shape (22,)", bug="the value is not shown"),
-    case(lambda s: {"positions": "x"}, "state.positions", "'x'", "(22, 2)", bug="numpy's own message"),
+    case(lambda s: {"positions": s["positions"][:21]}, "state.positions", "shape (21, 2)", "(22, 2)"),
+    case(lambda s: with_positions(s, b3=(NAN, 0.0)), "state.positions[3, 0]", "nan", "must be finite"),
+    case(lambda s: {"on_table": [1] * 22}, "state.on_table", "int64", "must be bool of shape (22,)"),
+    case(lambda s: {"on_table": [True] * 21}, "state.on_table", "shape (21,)", "must be bool of shape (22,)"),
+    case(lambda s: {"positions": "x"}, "state.positions", "'x'", "(22, 2)"),
     case(lambda s: with_positions(s, b3=(1.5, 0.0)), "state.positions[3]", "(1.5, 0.0)", "must be on the table"),
     case(lambda s: with_positions(s, b3=(0.889, 0.0)), "state.positions[3]", "(0.889, 0.0)", "is over a pocket"),
     case(lambda s: with_positions(s, b3=(0.88, 0.6)), "state.positions[3]", "(0.88, 0.6)", "overlaps the cushion"),
-    case(lambda s: with_positions(s, b3=s["positions"][2]), "state.positions", "balls 2 and 3", "overlap", bug="not checked"),
-    case(lambda s: {"ball_on": 8}, "state.ball_on", "8", "must be", bug="the enumeration's own message, after half of the state is set"),
-    case(lambda s: {"ball_on": "red"}, "state.ball_on", "'red'", "must be", bug="the enumeration's own message"),
-    case(lambda s: {"ball_on": 7}, "state.ball_on", "BLACK", "while reds are on the table", bug="taken; step() then fails in the referee"),
-    case(lambda s: {"ball_on": -1}, "state.ball_on", "NOTHING", "must", bug="taken; step() then fails"),
-    case(lambda s: {"points": -3}, "state.points", "-3", "must be an integer", bug="taken"),
-    case(lambda s: {"points": 2.7}, "state.points", "2.7", "must be an integer", bug="cut to 2"),
-    case(lambda s: {"points": None}, "state.points", "None", "must be an integer", bug="TypeError"),
-    case(lambda s: {"in_hand": "no"}, "state.in_hand", "'no'", "must be True or False", bug="taken as True"),
-    case(lambda s: {"over": 2}, "state.over", "2", "must be True or False", bug="taken as True"),
-    case(lambda s: {"rng": None}, "state.rng", "None", "must be", bug="TypeError of numpy, after the rest of the state is set"),
-    case(lambda s: {"rng": {}}, "state.rng", "{}", "must be", bug="numpy's own message, after the rest of the state is set"),
-    case(lambda s: {"on_table": [False, *s["on_table"][1:]]}, "state.on_table", "False", "cue ball", bug="taken; a shot without one"),
-    case(lambda s: {"spin": 1}, "state", "'spin'", "must be", "unknown key", bug="ignored"),
+    case(lambda s: with_positions(s, b3=s["positions"][2]), "state.positions", "balls 2 and 3", "overlap"),
+    case(lambda s: {"ball_on": 8}, "state.ball_on", "8", "must be"),
+    case(lambda s: {"ball_on": "red"}, "state.ball_on", "'red'", "must be"),
+    case(lambda s: {"ball_on": 7}, "state.ball_on", "BLACK", "while reds are on the table"),
+    case(lambda s: {"ball_on": -1}, "state.ball_on", "NOTHING", "must"),
+    case(lambda s: {"points": -3}, "state.points", "-3", "must be an integer"),
+    case(lambda s: {"points": 2.7}, "state.points", "2.7", "must be an integer"),
+    case(lambda s: {"points": None}, "state.points", "None", "must be an integer"),
+    case(lambda s: {"in_hand": "no"}, "state.in_hand", "'no'", "must be True or False"),
+    case(lambda s: {"over": 2}, "state.over", "2", "must be True or False"),
+    case(lambda s: {"rng": None}, "state.rng", "None", "must be"),
+    case(lambda s: {"rng": {}}, "state.rng", "{}", "must be"),
+    case(lambda s: {"on_table": [False, *s["on_table"][1:]]}, "state.on_table", "False", "cue ball"),
+    case(lambda s: {"spin": 1}, "state", "'spin'", "must be", "unknown key"),
 ]
 
 
@@ -470,7 +470,6 @@ def test_a_state_with_a_part_missing(saved, key):
     refused(lambda: SnookerEnv().set_state(state), "state", "'rng'" if key != "rng" else "'over'", f"missing ['{key}']")
 
 
-@pytest.mark.xfail(strict=True, reason=GONE_WRONG + "positions and table are taken over before the rest is looked at")
 @pytest.mark.parametrize("change", [{"ball_on": 99}, {"points": "x"}, {"rng": {}}])
 def test_a_refused_state_leaves_the_environment_as_it_was(saved, change):
     env = SnookerEnv(layout="random:5")
@@ -487,9 +486,9 @@ def test_a_refused_state_leaves_the_environment_as_it_was(saved, change):
         case({"sate": 1}, "options", "'sate'", "must be one of 'state'"),
         case({"state": {}}, "state", "[]", "must be a state of get_state(); missing ['ball_on', 'in_hand', 'on_table'", "empty state"),
         case({3: 1}, "options", "3", "must be one of 'state'"),
-        case({"state": None}, "state", "None", "must be a state of get_state()", bug="TypeError"),
-        case({"state": 3}, "state", "3", "must be a state of get_state()", bug="TypeError"),
-        case(["state"], "options", "['state']", "must be", bug="TypeError"),
+        case({"state": None}, "state", "None", "must be a state of get_state()"),
+        case({"state": 3}, "state", "3", "must be a state of get_state()"),
+        case(["state"], "options", "['state']", "must be"),
     ],
 )
 def test_wrong_options(options, field, value, allowed):

@@ -4,7 +4,7 @@ from math import atan2, hypot, pi, radians, sqrt
 
 import numpy as np
 
-from .._check import choice, refuse
+from .._check import choice, refuse, truth
 from ..game.balls import BAULK_Y, D_RADIUS
 from ..game.pots import pots
 from ..physics.cue import squirt
@@ -35,18 +35,21 @@ class Actions:
 
     def __init__(self, aim, elevation, placement, physics):
         self.aim = choice("aim", aim, AIMS)
-        for name, value in (("elevation", elevation), ("placement", placement)):
-            if not isinstance(value, (bool, np.bool_)):
-                raise refuse(name, value, "must be True or False")
-        self.elevation, self.placement = bool(elevation), bool(placement)
+        self.elevation, self.placement = truth("elevation", elevation), truth("placement", placement)
         self.physics = physics
         self.size = 4 + self.elevation + 2 * self.placement
 
     def check(self, action):
         """The action as a list of floats; ValueError unless it is finite, of the right shape and within [-1, 1]."""
-        a = np.asarray(action, dtype=np.float64)
+        allowed = f"must have shape ({self.size},), real numbers"
+        try:
+            a = np.asarray(action)
+        except ValueError:
+            raise refuse("action", action, allowed) from None
+        if a.dtype.kind not in "iuf":
+            raise refuse("action", action, allowed)
         if a.shape != (self.size,):
-            raise refuse("action", f"array of shape {a.shape}", f"must have shape ({self.size},)")
+            raise refuse("action", f"array of shape {a.shape}", allowed)
         if not np.all(np.abs(a) <= 1.0):  # NaN fails too
             raise refuse("action", a.tolist(), "must be finite and within [-1, 1]")
         return a.tolist()

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, fields
 from math import radians
 
 from .._check import choice, number, refuse
+from ..physics.cue import MAX_ELEVATION
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +40,7 @@ class Noise:
             for key in noise:
                 choice("noise field", key, [f.name for f in fields(cls)])
             return cls(**noise)
-        if noise not in LEVELS:
+        if not isinstance(noise, str) or noise not in LEVELS:
             raise refuse("noise", noise, "must be one of " + ", ".join(map(repr, LEVELS)) + " or a dict of " + str(list(asdict(cls()))))
         return LEVELS[noise]
 
@@ -59,7 +60,7 @@ class Noise:
             side + z[1] * tip,
             top + z[2] * tip,
             aim + z[3] * radians(self.aim_deg),
-            max(0.0, elevation + z[4] * radians(self.elevation_deg)),
+            min(MAX_ELEVATION, max(0.0, elevation + z[4] * radians(self.elevation_deg))),
         )
 
 

@@ -21,6 +21,7 @@ from . import observations
 from .actions import Actions
 from .noise import Noise
 from .rewards import REWARDS
+from .state import checked
 
 TASKS = ("visit",)
 
@@ -117,6 +118,7 @@ class SnookerEnv(gymnasium.Env):
         self.physics, self.table = Physics.of(physics), Table.of(table)
         if self.physics.R != BALL_RADIUS:
             raise refuse("physics.R", self.physics.R, f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it")
+        self.physics.check_stopping()
         if self.table.name == "unbounded":
             raise refuse("table", table, 'must be "match", "tight" or a Table')
         self.fidelity = parse_fidelity(fidelity)
@@ -151,17 +153,9 @@ class SnookerEnv(gymnasium.Env):
 
     def set_state(self, state):
         """Take over a state from ``get_state``; the next shot plays on identically. ValueError if it is not sound."""
-        missing = {"positions", "on_table", "ball_on", "in_hand", "points", "over", "rng"} - set(state)
-        if missing:
-            raise refuse("state", sorted(state), f"must be a state of get_state(); missing {sorted(missing)}")
-        positions, on_table = np.array(state["positions"], float), np.array(state["on_table"])
-        if positions.shape != (N_BALLS, 2) or on_table.shape != (N_BALLS,) or on_table.dtype != bool or not np.isfinite(positions).all():
-            raise refuse("state", "positions, on_table", "must be finite (22, 2) and bool (22,)")
-        self.table.check(positions, self.physics.R, "state.positions", on_table)
-        self.positions, self.on_table = positions, on_table
-        self.ball_on, self.in_hand = BallOn(state["ball_on"]), bool(state["in_hand"])
-        self.points, self.over = int(state["points"]), bool(state["over"])
-        self.np_random.bit_generator.state = state["rng"]
+        sound = checked(state, self.table, self.physics.R, self.np_random)
+        self.positions, self.on_table, self.ball_on, self.in_hand, self.points, self.over, rng = sound
+        self.np_random.bit_generator.state = rng
 
     def __getstate__(self):
         return self.__dict__ | {"_window": None}  # a window belongs to one process
@@ -171,6 +165,8 @@ class SnookerEnv(gymnasium.Env):
     def reset(self, *, seed=None, options=None):
         """A new visit. options: None or {"state": a state of ``get_state``}."""
         super().reset(seed=seed)
+        if options is not None and not isinstance(options, dict):
+            raise refuse("options", options, 'must be None or {"state": ...}')
         for key in options or {}:
             choice("options", key, ("state",))
         self.last_shot = None
@@ -196,7 +192,7 @@ class SnookerEnv(gymnasium.Env):
         v, w = cue.strike(speed, aim, *self.actions.tip(side, top), elevation, self.physics)
         shot = self._play(v, w)
         ball_on = self.ball_on
-        stroke = self._stroke(shot)
+        stroke = self._stroke(shot, speed)
         situation = Situation(on_table=_mask(self.on_table), ball_on=ball_on, lead=self.points)
         verdict, self.positions, self.on_table = settle_table(shot.positions, self.on_table, situation, stroke, jaws=self.table.jaws[:, :3])
         self.ball_on, self.in_hand = verdict.ball_on, verdict.in_hand
@@ -241,15 +237,19 @@ class SnookerEnv(gymnasium.Env):
         self.last_shot = play(self.positions, velocities, spins, self.on_table, self.physics, self.table, self.fidelity, path=path)
         return self.last_shot
 
-    def _stroke(self, shot):
+    def _stroke(self, shot, speed):
         """What the referee sees of a shot: first contact, touching balls, pots."""
         gaps = np.hypot(*(self.positions - self.positions[CUE]).T) - 2 * BALL_RADIUS
         touching = _mask(self.on_table & (gaps < TOUCH)) & ~1
         events = shot.events
         hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
-        # a touching ball that the cue ball is played away from is not struck; one it is played into is moved at once
-        first = mask_of(hits["j"][hits["time"] <= hits["time"][0] + _AT_ONCE].tolist()) if len(hits) else 0
-        moved = touching & first if len(hits) and hits["time"][0] <= _AT_ONCE else 0
+        first = moved = 0
+        if len(hits):
+            start = hits["time"][0]
+            first = mask_of(hits["j"][hits["time"] <= start + _AT_ONCE].tolist())
+            # A touching ball that the cue ball is played away from is not struck; one it is played into is struck before the cue ball
+            # has gone ten times the gap that still counts as touching.
+            moved = touching & first if start * speed <= 10 * TOUCH else 0
         return Stroke(first=first, potted=_mask(shot.potted >= 0), touching=touching, moved=moved)
 
     def _observe(self):

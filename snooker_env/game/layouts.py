@@ -112,13 +112,16 @@ def random(rng, n):
     return positions, on_table
 
 
+_COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = {"opened": opened, "held_out": held_out, "break_off": break_off, "line_up": line_up, "colours": colours}
 
 
 def layout(name, rng):
     """The layout of that name: one of ``LAYOUTS``, or ``"random:N"`` with N reds."""
-    if isinstance(name, str) and name.startswith("random:") and name[7:].isdecimal():
-        return random(rng, int(name[7:]))
-    if name not in LAYOUTS:
-        raise refuse("layout", name, "must be one of " + ", ".join(map(repr, LAYOUTS)) + ' or "random:N" with N from 0 to 15')
-    return LAYOUTS[name](rng)
+    if isinstance(name, str):
+        if name in LAYOUTS:
+            return LAYOUTS[name](rng)
+        head, _, n = name.partition(":")
+        if head == "random" and n in _COUNTS:
+            return random(rng, int(n))
+    raise refuse("layout", name, "must be one of " + ", ".join(map(repr, LAYOUTS)) + f' or "random:N" with N from 0 to {N_REDS}')

@@ -34,7 +34,7 @@ def parse_fidelity(fidelity):
         if fidelity in names:
             return names[fidelity], 0
         head, _, n = fidelity.partition(":")
-        if head == "euler" and n.isascii() and n.isdigit() and 1 <= int(n) <= MAX_EULER_STEPS:
+        if head == "euler" and n.isascii() and n.isdigit() and len(n) < 10 and 1 <= int(n) <= MAX_EULER_STEPS:
             return EULER, int(n)
     raise refuse("fidelity", fidelity, f'must be "fast", "standard", "reference" or "euler:N" with N in [1, {MAX_EULER_STEPS}]')
 

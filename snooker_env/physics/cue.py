@@ -4,6 +4,9 @@ from math import atan, cos, hypot, sin, sqrt
 
 from .._check import number, refuse
 
+MAX_ELEVATION = 1.5
+"""Highest elevation of the butt [rad]: just under the vertical."""
+
 
 def squirt(side, end_mass_ratio):
     """Angle [rad] by which the ball leaves the line of aim, anticlockwise for right side: tan a = (5/2) b sqrt(1 - b^2) / (1 + m_r +
@@ -20,7 +23,7 @@ def strike(speed, aim, side, top, elevation, physics):
     speed = number("speed", speed, 0)
     aim = number("aim", aim)
     side, top = number("side", side), number("top", top)
-    elevation = number("elevation", elevation, 0, 1.5)
+    elevation = number("elevation", elevation, 0, MAX_ELEVATION)
     if hypot(side, top) > physics.max_offset * (1 + 1e-12):
         allowed = f"tip offset {hypot(side, top):.4g} R is a miscue, must be within {physics.max_offset} R of the ball's centre"
         raise refuse("(side, top)", (side, top), allowed)

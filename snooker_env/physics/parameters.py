@@ -74,7 +74,7 @@ class Physics:
         ``"paper"``: the constants of [MJP14] and [MJP10]. ``"match"``: measured snooker, that is e_b 0.94, Marlow's mu_bb(s) and a
         cushion whose restitution falls with speed (fitted to Fig. 7a of [MJP10]: ``python -m benchmarks.fit_cushion``).
         """
-        return cls._replaced(dict(PRESETS[choice("physics", name, PRESETS)]), fields)
+        return cls._replaced(PRESETS[choice("physics", name, PRESETS)], fields)
 
     @classmethod
     def of(cls, physics=None):
@@ -86,7 +86,7 @@ class Physics:
             return cls.preset("paper" if physics is None else physics)
         if isinstance(physics, dict):
             rest = dict(physics)
-            return cls.preset(rest.pop("preset", "paper"), **rest)
+            return cls._replaced(PRESETS[choice("physics", rest.pop("preset", "paper"), PRESETS)], rest)
         raise refuse("physics", physics, "must be None, a preset's name, a dict of overrides, or a Physics")
 
     @classmethod
@@ -95,6 +95,12 @@ class Physics:
         for field in fields:
             choice("physics field", field, known)
         return cls(**{**base, **fields})
+
+    def check_stopping(self):
+        """Raise ValueError if balls in this world would never come to rest."""
+        for name in ("mu_s", "mu_r"):
+            if getattr(self, name) <= 0:
+                raise refuse(f"physics.{name}", getattr(self, name), "must be > 0 to simulate a shot: without it no ball comes to rest")
 
     @property
     def friction_law(self):

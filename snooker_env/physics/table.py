@@ -11,7 +11,7 @@ from math import hypot, sqrt
 
 import numpy as np
 
-from .._check import choice, refuse
+from .._check import array, choice, refuse
 
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
@@ -38,6 +38,12 @@ class Table:
     """(k, 6) jaw arcs: centre x, y, radius [m], unit vector to the arc's middle, cosine of its half angle."""
     falls: np.ndarray
     """(k, 3) falls: centre x, y, radius [m]; a ball drops when its centre crosses the circle. Index = pocket, see ``POCKETS``."""
+
+    def __post_init__(self):
+        for name, columns in (("noses", 5), ("jaws", 6), ("falls", 3)):
+            a = array(f"table.{name}", getattr(self, name), (-1, columns))
+            a.setflags(write=False)
+            object.__setattr__(self, name, a)
 
     @classmethod
     def preset(cls, name="match"):
@@ -108,14 +114,8 @@ def _build(name):
                 jaws.append((sx * (X + _MIDDLE_JAW), end * _MIDDLE_ARC, _MIDDLE_JAW, -sx * h, -end * h, h))
             offset, radius = _MIDDLE_FALL
             falls[pocket] = sx * (X + offset), 0.0, radius
-    return Table(name, _frozen(noses), _frozen(np.array(jaws)), _frozen(falls))
-
-
-def _frozen(a):
-    a = np.ascontiguousarray(a, dtype=np.float64)
-    a.setflags(write=False)
-    return a
+    return Table(name, noses, np.array(jaws), falls)
 
 
 _PRESETS = {name: _build(name) for name in _CORNER_ARC}
-UNBOUNDED = Table("unbounded", _frozen(np.zeros((0, 5))), _frozen(np.zeros((0, 6))), _frozen(np.zeros((0, 3))))
+UNBOUNDED = Table("unbounded", np.zeros((0, 5)), np.zeros((0, 6)), np.zeros((0, 3)))

@@ -1,0 +1,57 @@
+"""Is a saved state sound? Checks every part of what ``SnookerEnv.get_state`` returned before any of it is taken over."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._check import array, flags, integer, refuse, truth
+from ..game.balls import CUE, N_BALLS, REDS_MASK, BallOn, balls_on
+from ..simulation import check_layout
+
+
+class State(NamedTuple):
+    """A sound state: what ``SnookerEnv`` is made of between two shots."""
+
+    positions: np.ndarray
+    on_table: np.ndarray
+    ball_on: BallOn
+    in_hand: bool
+    points: int
+    over: bool
+    rng: dict
+
+
+KEYS = State._fields
+
+
+def checked(state, table, R, generator):
+    """The ``State`` that a dict describes; ValueError names the first part that is wrong.
+
+    ``generator``: the numpy Generator that is to take over the part "rng"; it is left as it is.
+    """
+    if not isinstance(state, dict):
+        raise refuse("state", state, "must be a state of get_state(), a dict")
+    if missing := sorted(set(KEYS) - set(state)):
+        raise refuse("state", sorted(state, key=str), f"must be a state of get_state(); missing {missing}")
+    if unknown := [key for key in state if key not in KEYS]:
+        raise refuse("state", unknown, f"must be a state of get_state() with the keys {list(KEYS)} only")
+    positions = array("state.positions", state["positions"], (N_BALLS, 2))
+    on_table = flags("state.on_table", state["on_table"], (N_BALLS,))
+    check_layout(positions, on_table, R, table, "state.positions")
+    over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
+    ball_on = BallOn(integer("state.ball_on", state["ball_on"], BallOn.NOTHING, BallOn.BLACK))
+    mask = int(on_table @ (1 << np.arange(N_BALLS)))
+    if not over:  # then a shot is to be played from here
+        if not on_table[CUE]:
+            raise refuse("state.on_table", on_table.tolist(), "must hold the cue ball while the visit goes on")
+        if not balls_on(ball_on, mask):
+            raise refuse("state.ball_on", ball_on.name, "must name balls of which one is on the table")
+        if ball_on > BallOn.RED and mask & REDS_MASK:
+            raise refuse("state.ball_on", ball_on.name, "must be RED or ANY_COLOUR while reds are on the table")
+    trial = type(generator.bit_generator)()
+    try:
+        trial.state = state["rng"]
+    except (TypeError, ValueError, KeyError):
+        raise refuse("state.rng", state["rng"], f"must be the state of a {type(trial).__name__} generator") from None
+    points = integer("state.points", state["points"], 0, 155)
+    return State(positions, on_table, ball_on, in_hand, points, over, state["rng"])
