@@ -16,13 +16,11 @@ from snooker_env.game import balls
 
 Z = (0.0, 0.0, 0.0)
 NAN, INF = float("nan"), float("inf")
-GONE_WRONG = "known bug, reported: "
 
 
-def case(call, field, value, allowed, name=None, *, bug=None):
-    """One line of the tables below; ``bug``: why it fails today."""
-    marks = [pytest.mark.xfail(strict=True, reason=GONE_WRONG + bug, raises=(Exception, pytest.fail.Exception))] if bug else []
-    return pytest.param(call, field, value, allowed, id=name or f"{field}={value}"[:70], marks=marks)
+def case(call, field, value, allowed, name=None):
+    """One line of the tables below."""
+    return pytest.param(call, field, value, allowed, id=name or f"{field}={value}"[:70])
 
 
 def refused(call, field, value, allowed):
