@@ -18,18 +18,20 @@ FILE = Path(__file__).parent / "pictures" / "shot.png"
 
 
 def pot(seed):
-    """The first table from ``seed`` on whose widest red pot goes in with screw and side, and the shot."""
+    """The first table from ``seed`` on with a red that goes in with screw and side, the cue ball coming back; the ball and the shot."""
     while True:
         positions, on_table = opened(np.random.default_rng(seed))
         for candidate in pots(positions, on_table, 0xFFFE, most=3):
+            ball, ghost = int(candidate[0]), candidate[2:4] - positions[0]
             for error in np.radians(np.linspace(-2, 2, 41)):
-                ghost = candidate[2:4] - positions[0]
-                v, w = sn.strike(2.6, np.arctan2(ghost[1], ghost[0]) + error, side=-0.25, top=-0.3)
+                v, w = sn.strike(2.8, np.arctan2(ghost[1], ghost[0]) + error, side=0.2, top=-0.45)
                 velocities, spins = np.zeros((22, 2)), np.zeros((22, 3))
                 velocities[0], spins[0] = v[:2], w
                 shot = sn.simulate(positions, velocities, spins)
-                if shot.potted[int(candidate[0])] >= 0 and shot.potted[0] < 0 and np.hypot(*ghost) > 0.8:
-                    return positions, int(candidate[0]), shot
+                back = (shot.positions[0] - candidate[2:4]) @ ghost / np.hypot(*ghost)
+                hits = shot.events["kind"] == sn.EventKind.BALL_BALL
+                if shot.potted[ball] >= 0 and shot.potted[0] < 0 and back < -0.5 and hits.sum() == 1 and 0.3 < np.hypot(*ghost) < 1.0:
+                    return positions, ball, shot
         seed += 1
 
 
@@ -42,7 +44,7 @@ def main():
     out = parser.parse_args().out
 
     positions, ball, shot = pot(6)
-    text = "a red potted with screw and left-hand side: the table as it was, and where the two balls went"
+    text = "a red potted with screw and right-hand side: the table before the shot, and where the two balls went"
     picture = rgb_array(scene("match", positions, paths=ball_paths(shot, balls=(0, ball)), text=text))
     out.parent.mkdir(exist_ok=True)
     pygame.image.save(pygame.surfarray.make_surface(picture.swapaxes(0, 1)), out)

@@ -2,7 +2,7 @@
 
     python -m benchmarks.speed [--shots 1000] [--repeats 7] [--json FILE]
 
-Each figure is kernel time: the compiled batch kernel over the whole set, each shot or impact run once; the median, minimum and maximum
+Errors are against ``reference``, in units of the incoming speed. Each time is kernel time: the compiled batch kernel over the whole set, each shot or impact run once; the median, minimum and maximum
 over ``--repeats`` runs of the set, per shot or impact. Where it says median, each is timed alone within the set.
 """
 
@@ -37,6 +37,17 @@ def _impacts(x, normals, phys, code, n_steps):
         out = contact.collide_balls(v1, w1, still, still, normals[k, 0], normals[k, 1], phys, phys[P_E_B], code, n_steps)
         total += out[0][0]
     return total
+
+
+def results(x, normals, fidelity):
+    """(n, 12) velocities and R * spins after each impact."""
+    physics = sn.Physics.preset("paper")
+    out = np.zeros((len(x), 12))
+    for k in range(len(x)):
+        args = (*x[k, :2], 0.0), x[k, 2:], (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (*normals[k], 0.0)
+        v1, w1, v2, w2 = sn.collide_balls(*args, physics, fidelity)
+        out[k] = np.concatenate([v1, w1 * R, v2, w2 * R])
+    return out
 
 
 def impacts(n, seed=0):
@@ -126,12 +137,15 @@ def main():
     figures = {"machine": f"{platform.machine()} {platform.system()}", "python": platform.python_version(), "numba": numba.__version__}
     phys = sn.Physics.preset("paper").pack()
     x, normals = impacts(options.shots)
-    print(f"{options.shots} impacts, one core            us an impact: median (min, max) of {options.repeats} runs")
+    truth = results(x, normals, "reference")
+    print(f"{options.shots} impacts, one core     us an impact: median (min, max) of {options.repeats} runs; error: median, 99 %, worst")
     for fidelity in IMPACT_FIDELITIES:
         code, n_steps = contact.parse_fidelity(fidelity)
         row = timed(lambda c=code, n=n_steps: _impacts(x, normals, phys, c, n), options.repeats, len(x))
-        figures[f"impact {fidelity}"] = row
-        print(f"  {fidelity:12s} {row[0]:10.3f}  ({row[1]:.3f}, {row[2]:.3f})")
+        error = np.abs(results(x, normals, fidelity) - truth).max(1) / x[:, 0]
+        spread = np.quantile(error, [0.5, 0.99, 1.0]).tolist()
+        figures[f"impact {fidelity}"] = {"us": row, "error": spread}
+        print(f"  {fidelity:12s} {row[0]:10.3f}  ({row[1]:.3f}, {row[2]:.3f})    " + "  ".join(f"{e:.1e}" for e in spread))
     print(f"\n{options.shots} shots, one core              us a shot: mean over the set; median and 95 % over shots; events; ball-ball")
     for kind in ("two-ball pot", "random 22 balls", "break-off"):
         p, v, w = shots(kind, options.shots)

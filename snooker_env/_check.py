@@ -8,9 +8,15 @@ def refuse(field, value, allowed):
     return ValueError(f"{field} = {value!r}: {allowed}")
 
 
+def refuse_what(field, what, allowed):
+    """The same where the value is too large to show: ``what`` says in words what was found."""
+    return ValueError(f"{field} = {what}: {allowed}")
+
+
 def number(field, value, low=-np.inf, high=np.inf, *, open_low=False):
     """A finite real in [low, high] (or (low, high] with ``open_low``) as float."""
-    bounds = f"must be a finite number in {'(' if open_low else '['}{low:g}, {high:g}]"
+    left, right = "(" if open_low or low == -np.inf else "[", ")" if high == np.inf else "]"
+    bounds = f"must be a finite number in {left}{low:g}, {high:g}{right}"
     if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
         raise refuse(field, value, bounds)
     try:
@@ -24,7 +30,8 @@ def number(field, value, low=-np.inf, high=np.inf, *, open_low=False):
 
 def array(field, value, shape):
     """A finite float64 array of the given shape (-1: any length); always a fresh C-ordered copy."""
-    want = "(" + ", ".join("n" if s == -1 else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
+    free = iter("bn" if shape.count(-1) == 2 else "n")
+    want = "(" + ", ".join(next(free) if s == -1 else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
     try:
         raw = np.asarray(value)
     except (TypeError, ValueError):
@@ -33,7 +40,7 @@ def array(field, value, shape):
         raise refuse(field, value, f"must be real numbers of shape {want}")
     a = np.array(raw, dtype=np.float64, order="C")
     if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
-        raise refuse(field, f"array of shape {a.shape}", f"must have shape {want}")
+        raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {want}")
     bad = np.argwhere(~np.isfinite(a))
     if len(bad):
         at = tuple(int(k) for k in bad[0])
@@ -62,7 +69,7 @@ def flags(field, value, shape):
     except (TypeError, ValueError):
         raise refuse(field, value, f"must be bool of shape {shape}") from None
     if a.shape != shape or a.dtype != np.bool_:
-        raise refuse(field, f"{a.dtype} array of shape {a.shape}", f"must be bool of shape {shape}")
+        raise refuse_what(field, f"{a.dtype} array of shape {a.shape}", f"must be bool of shape {shape}")
     return a
 
 

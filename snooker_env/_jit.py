@@ -9,6 +9,7 @@
 import hashlib
 import os
 import tempfile
+import warnings
 from pathlib import Path
 
 import numba
@@ -42,7 +43,10 @@ def cache_folder():
     """
     home = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     folder = Path(home) / "snooker_env" / source_hash()
-    return folder if _writable(folder) else None
+    if _writable(folder):
+        return folder
+    warnings.warn(f"{folder} is not writable: every process compiles for itself; set NUMBA_CACHE_DIR", RuntimeWarning, stacklevel=2)
+    return None
 
 
 CACHE_FOLDER = cache_folder()

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ._check import array, flags, integer, refuse
+from ._check import array, flags, integer, refuse, refuse_what
 from ._jit import entry
 from .physics import cloth, contact, cue, engine, trajectory
 from .physics.engine import EventKind, Status
@@ -38,7 +38,8 @@ def _collide_cushion(v, w, nx, ny, phys, fidelity, n_steps):
 def _unit_normal(normal):
     nx, ny, nz = array("normal", normal, (3,)).tolist()
     if abs(nz) > 1e-9 or abs(np.hypot(nx, ny) - 1.0) > 1e-6:
-        raise refuse("normal", (nx, ny, nz), "must be a horizontal unit vector (z = 0, length 1)")
+        length = (nx * nx + ny * ny + nz * nz) ** 0.5
+        raise refuse("normal", (nx, ny, nz), f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {length:.7g})")
     size = float(np.hypot(nx, ny))
     return nx / size, ny / size
 
@@ -96,18 +97,22 @@ def strike(speed, aim, side=0.0, top=0.0, elevation=0.0, physics=None):
 
 @dataclass(frozen=True, eq=False)
 class Shot:
-    """One simulated shot. All arrays are fresh and the caller's own."""
+    """One simulated shot. All arrays are fresh and the caller's own.
+
+    Fields:
+
+    * positions: (n, 2) [m] at rest; of a potted ball: where its centre crossed the fall.
+    * potted: (n,) int: pocket index (``snooker_env.POCKETS``), or -1 if not potted in this shot.
+    * on_table: (n,) bool: still in play.
+    * duration: Time [s] until everything is at rest, spin included.
+    * events: Structured array of ``time`` [s], ``kind`` (EventKind), ``i``, ``j``, in order.
+    """
 
     positions: np.ndarray
-    """(n, 2) [m] at rest; of a potted ball: where its centre crossed the fall."""
     potted: np.ndarray
-    """(n,) int: pocket index (``snooker_env.POCKETS``), or -1 if not potted in this shot."""
     on_table: np.ndarray
-    """(n,) bool: still in play."""
     duration: float
-    """Time [s] until everything is at rest, spin included."""
     events: np.ndarray
-    """Structured array of ``time`` [s], ``kind`` (EventKind), ``i``, ``j``, in order."""
     segments: np.ndarray = field(repr=False)
     physics: Physics = field(repr=False)
 
@@ -145,7 +150,7 @@ def check_layout(positions, on_table, R, table, field="positions"):
     far = np.hypot(p[:, None, 0] - p[None, :, 0], p[:, None, 1] - p[None, :, 1])
     for a, b in np.argwhere(np.triu(far < 2 * R - OVERLAP_ALLOWED, 1)):
         depth = 2 * R - float(far[a, b])
-        raise refuse(field, f"balls {here[a]} and {here[b]}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
+        raise refuse_what(field, f"balls {here[a]} and {here[b]}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
 
 
 def _balls(positions, velocities, spins, on_table, batch):
@@ -154,7 +159,7 @@ def _balls(positions, velocities, spins, on_table, batch):
     shape = r.shape[:-1]
     v, w = array("velocities", velocities, (*shape, 2)), array("spins", spins, (*shape, 3))
     if shape[-1] == 0:
-        raise refuse("positions", f"array of shape {r.shape}", "must hold at least one ball")
+        raise refuse_what("positions", f"array of shape {r.shape}", "must hold at least one ball")
     here = np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)
     return r, v, w, here
 
@@ -275,7 +280,10 @@ def _raise_unless_ok(out, k, events):
     status = out.status[k]
     if status == Status.OK:
         return
-    last = f"; last event {events[-1]} ({EventKind(events[-1]['kind']).name})" if events is not None and len(events) else ""
+    last = ""
+    if events is not None and len(events):
+        time, kind, i, j = events[-1].tolist()
+        last = f"; the last was {EventKind(kind).name} of {i} and {j} at {time:.6f} s"
     why = {
         Status.TOO_MANY_EVENTS: "did not come to rest in time; a ball may be held against another: allow more max_events",
         Status.IMPACT_UNSOLVED: "holds an impact that did not end; try another fidelity, or less extreme friction",

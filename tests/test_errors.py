@@ -164,7 +164,7 @@ LAYOUTS = [
         for wrong in ("", "Match", "loose", "unbounded")
     ],
     case(lambda: sn.Table.preset(None), "table", "None", "must be one of 'match', 'tight'"),
-    case(batch(positions=[(0.0, 0.0), (0.3, 0.0)]), "positions", "shape (2, 2)", "must have shape (n, n, 2)"),
+    case(batch(positions=[(0.0, 0.0), (0.3, 0.0)]), "positions", "shape (2, 2)", "must have shape (b, n, 2)"),
     case(batch(velocities=np.zeros((2, 2, 2))), "velocities", "shape (2, 2, 2)", "must have shape (3, 2, 2)"),
     case(batch(spins=np.zeros((3, 2))), "spins", "shape (3, 2)", "must have shape (3, 2, 3)"),
     case(batch(positions=[put(0.3, 0.0), put(0.3, 0.0), put(0.02, 0.0)]), "positions[2]", "balls 0 and 1", "overlap by 0.0325 m"),
@@ -188,7 +188,7 @@ STRIKES = [
     *[
         case(strike(**{field: wrong}), field, repr(wrong), allowed, f"strike-{field}={wrong!r}")
         for field, allowed, wrongs in [
-            ("speed", "must be a finite number in [0, inf]", (-1.0, -1e-300, NAN, INF)),
+            ("speed", "must be a finite number in [0, inf)", (-1.0, -1e-300, NAN, INF)),
             ("elevation", "must be a finite number in [0, 1.5]", (-0.01, 1.51, NAN, INF)),
             ("aim", "must be a finite number", (NAN, INF)),
             ("side", "must be a finite number", (NAN, -INF)),
@@ -203,10 +203,10 @@ STRIKES = [
 ]
 
 RANGES = {
-    "R": ("(0, 1]", 0, -1, 1.1), "M": ("(0, inf]", 0, -0.1), "g": ("(0, inf]", 0, -9.81), "mu_s": ("[0, 1]", -0.1, 1.1),
-    "mu_r": ("[0, 1]", -0.01, 1.01), "spin_decel": ("[0, inf]", -1), "e_b": ("[0, 1]", -0.1, 1.01), "e_c": ("[0, 1]", -0.1, 1.01),
-    "e_c_knee": ("[0, inf]", -1), "e_c_slope": ("[0, inf]", -1), "mu_c": ("[0, 1]", -0.1, 2), "sin_theta": ("[0, 0.95]", -0.1, 0.96),
-    "end_mass_ratio": ("[0, inf]", -1), "max_offset": ("(0, 0.999]", 0, 1.0),
+    "R": ("(0, 1]", 0, -1, 1.1), "M": ("(0, inf)", 0, -0.1), "g": ("(0, inf)", 0, -9.81), "mu_s": ("[0, 1]", -0.1, 1.1),
+    "mu_r": ("[0, 1]", -0.01, 1.01), "spin_decel": ("[0, inf)", -1), "e_b": ("[0, 1]", -0.1, 1.01), "e_c": ("[0, 1]", -0.1, 1.01),
+    "e_c_knee": ("[0, inf)", -1), "e_c_slope": ("[0, inf)", -1), "mu_c": ("[0, 1]", -0.1, 2), "sin_theta": ("[0, 0.95]", -0.1, 0.96),
+    "end_mass_ratio": ("[0, inf)", -1), "max_offset": ("(0, 0.999]", 0, 1.0),
 }  # fmt: skip
 SHARE = "must be a finite number in [0, 1]"
 MU_BB = 'must be a number in [0, 1], "marlow", or (a, b, c) with a, b, c >= 0 and a + b <= 1'
@@ -231,7 +231,7 @@ PHYSICS = [
             ("Marlow", MU_BB), ((0.1, 0.2), MU_BB), ((0.5, 0.6, 1.0), MU_BB), ([0.1] * 4, MU_BB),
         ]
     ],
-    *[case(lambda v=v: sn.Physics(mu_bb=v), "physics.mu_bb", str(bad), "must be a finite number in [0, inf]", f"mu_bb={v}")
+    *[case(lambda v=v: sn.Physics(mu_bb=v), "physics.mu_bb", str(bad), "must be a finite number in [0, inf)", f"mu_bb={v}")
       for v, bad in [((-0.1, 0.1, 1.0), -0.1), ((0.1, -0.1, 1.0), -0.1), ((0.1, 0.1, -1.0), -1.0), ((0.1, NAN, 1.0), NAN)]],
     *[
         case(call(wrong), "physics", repr(wrong), "must be one of 'paper', 'match'", f"{who}-{wrong!r}")
@@ -353,7 +353,7 @@ ENV = [
     case(make(table=None), "table", "None", 'must be "match", "tight" or a Table'),
     case(make(physics={"R": 0.03}), "physics.R", "0.03", "must be 0.02625 in Snooker-v0"),
     *[
-        case(make(noise={name: wrong}), f"noise.{name}", repr(wrong), "must be a finite number in [0, inf]", f"noise.{name}={wrong!r}")
+        case(make(noise={name: wrong}), f"noise.{name}", repr(wrong), "must be a finite number in [0, inf)", f"noise.{name}={wrong!r}")
         for name in ("aim_deg", "speed_rel", "speed_abs", "offset_mm", "elevation_deg")
         for wrong in (-0.1, NAN, INF, "0.1", None, True)
     ],
@@ -602,7 +602,7 @@ def test_what_is_just_allowed_is_played():
 
 
 def test_too_few_events_are_an_error_of_the_simulation_with_advice():
-    with pytest.raises(sn.SimulationError, match=r"shot 0 did not come to rest.*max_events.*after 1 events; last event .*ROLL"):
+    with pytest.raises(sn.SimulationError, match=r"shot 0 did not come to rest.*max_events.*after 1 events; the last was ROLL of 0 and -1 at 0.138690 s"):
         sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [Z], max_events=1)
     with pytest.raises(sn.SimulationError, match=r"shot 1 did not come to rest.*max_events"):
         sn.simulate_batch([[(0.0, 0.0)]] * 2, [[(0.0, 0.0)], [(1.0, 0.0)]], np.zeros((2, 1, 3)), max_events=1)

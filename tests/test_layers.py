@@ -38,7 +38,8 @@ OUTSIDE = {"gymnasium": {"envs", "__init__", "sb3", "play"}, "pygame": {"render"
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "argparse", "base64", "collections", "concurrent", "contextlib", "dataclasses", "enum", "functools", "hashlib", "html",
-    "importlib", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "time", "typing", "zlib",
+    "importlib", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "time", "typing",
+    "warnings", "zlib",
 }  # fmt: skip
 
 

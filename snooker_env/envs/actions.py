@@ -4,7 +4,7 @@ from math import atan2, hypot, pi, radians, sqrt
 
 import numpy as np
 
-from .._check import choice, refuse, truth
+from .._check import choice, refuse, refuse_what, truth
 from ..game.balls import BAULK_Y, D_RADIUS
 from ..game.pots import pots
 from ..physics.cue import squirt
@@ -49,7 +49,7 @@ class Actions:
         if a.dtype.kind not in "iuf":
             raise refuse("action", action, allowed)
         if a.shape != (self.size,):
-            raise refuse("action", f"array of shape {a.shape}", allowed)
+            raise refuse_what("action", f"array of shape {a.shape}", allowed)
         if not np.all(np.abs(a) <= 1.0):  # NaN fails too
             raise refuse("action", a.tolist(), "must be finite and within [-1, 1]")
         return a.tolist()

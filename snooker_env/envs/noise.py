@@ -14,18 +14,22 @@ from ..physics.cue import MAX_ELEVATION
 
 @dataclass(frozen=True, kw_only=True)
 class Noise:
-    """Standard deviations of one shot's execution, all >= 0."""
+    """Standard deviations of one shot's execution, all >= 0.
+
+    Fields:
+
+    * aim_deg: Aim [deg].
+    * speed_rel: Speed, as a share of the speed.
+    * speed_abs: Speed [m/s], added to the relative part in squares.
+    * offset_mm: Tip offset, each of side and height [mm].
+    * elevation_deg: Elevation [deg].
+    """
 
     aim_deg: float = 0.0
-    """Aim [deg]."""
     speed_rel: float = 0.0
-    """Speed, as a share of the speed."""
     speed_abs: float = 0.0
-    """Speed [m/s], added to the relative part in squares."""
     offset_mm: float = 0.0
-    """Tip offset, each of side and height [mm]."""
     elevation_deg: float = 0.0
-    """Elevation [deg]."""
 
     def __post_init__(self):
         for f in fields(self):

@@ -52,7 +52,7 @@ class SnookerEnv(gymnasium.Env):
 
     ## Observation space
     ``observation="flat"``: ``Box(-1, 1, (121,), float32)``, the 22 rows of five of the table of balls, then eleven state entries.
-    ``observation="balls"``: ``Dict(balls=(22, 5), state=(11,))``, the same numbers.
+    ``observation="balls"``: ``Dict(balls=(22, 5), state=(11,))``, the same numbers (SB3: "MultiInputPolicy").
 
     | balls, one row a ball (0 cue, 1-15 reds, 16-21 yellow to black) | | state | |
     |---|---|---|---|
@@ -172,6 +172,8 @@ class SnookerEnv(gymnasium.Env):
         self.last_shot = None
         if options and "state" in options:
             self.set_state(options["state"])
+            if self.over:
+                raise refuse("state.over", True, "must be False: there is no shot to play from this state")
         else:
             self.positions, self.on_table = make_layout(self.layout, self.np_random)
             self.ball_on = BallOn(next_on(_mask(self.on_table)))
@@ -278,7 +280,8 @@ class SnookerEnv(gymnasium.Env):
     def _scene(self):
         from ..render.scene import ball_paths, scene
 
-        paths = ball_paths(self.last_shot) if self.last_shot is not None else None
+        shot = self.last_shot  # the paths of the cue ball and of what it potted
+        paths = None if shot is None else ball_paths(shot, (CUE, *np.flatnonzero(shot.potted[1:] >= 0) + 1))
         return scene(self.table, self.positions, self.on_table, paths=paths, text=self._text())
 
     def _show(self, shot=None):

@@ -60,9 +60,12 @@ def pair_time(motion, state, i, j, t, d):
 
 
 @kernel
-def _level_crossing(gap, closing, closing2, T):
-    """Earliest time in [0, T] at which gap - closing x - closing2 x^2 falls through contact, or inf."""
-    if gap < TOUCH:
+def _level_crossing(gap, closing, closing2, beside, T):
+    """Earliest time in [0, T] at which gap - closing x - closing2 x^2 falls through contact, or inf.
+
+    beside: the ball is beside the nose itself. In the mouth of a pocket it may be far beyond the nose's line without touching anything.
+    """
+    if beside and gap < TOUCH:
         if closing > CREEP:
             return 0.0
         gap = gap + SKIN if gap > -1.5 * SKIN else SKIN
@@ -84,7 +87,8 @@ def boundary_event(motion, state, i, noses, jaws, falls, R):
             p, p1, p2, q, q1, q2 = x0, x1, x2, y0, y1, y2
         else:
             p, p1, p2, q, q1, q2 = y0, y1, y2, x0, x1, x2
-        s = _level_crossing(level - R - side * p, side * p1, side * p2, min(T, best))
+        beside = noses[k, 3] <= q <= noses[k, 4]
+        s = _level_crossing(level - R - side * p, side * p1, side * p2, beside, min(T, best))
         if s < best:
             along = q + (q1 + q2 * s) * s
             if noses[k, 3] <= along <= noses[k, 4]:

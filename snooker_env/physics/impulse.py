@@ -131,7 +131,8 @@ def _stick_rates(x, start, c, mu_s, delta):
 
 @kernel
 def _creep_rates(x, start, c, law, mu_s, delta):
-    """dx/dp just after A broke loose, while its slip is negligible: the slip grows in the direction e the drive gives it.
+    """dx/dp while the slip at A is negligible and friction hardly outweighs the drive, or the drive it: just after A broke loose, or while
+    its slip all but dies. It then has the direction e that the drive gives it.
 
     There a' = kappa e, so e_i = q_i / (kappa + mu k_i) with q the drive without A's own friction, and |e| = 1 gives kappa; q holds
     the cloth's friction, which depends on e through the load: iterated.
@@ -156,12 +157,25 @@ def _creep_rates(x, start, c, law, mu_s, delta):
 
 
 @kernel
+def _all_but_dies(x, a1, a2, s, start, c, law, mu_s, delta):
+    """Has the small slip at A settled in the direction of the drive, which nearly balances its friction?
+
+    Then dp = |a| dt would hardly move on, and ``_creep_rates`` is right to within the slip.
+    """
+    k1, k2, c1, c2, d_a, l_a = c[0], c[1], c[2], c[3], c[4], c[9]
+    f1, f2, g1, g2, _1, _v, lift = _creep_rates(x, start, c, law, mu_s, delta)
+    limit = 0.1 * friction_coefficient(0.0, law) * k2
+    growing = hypot(k1 * f1 + c1 * g1, d_a + k2 * f2 + c2 * g2 + l_a * lift)
+    return growing < limit and f1 * a1 + f2 * a2 < 0.0 and abs(f1 * a2 - f2 * a1) <= 1e-3 * s * hypot(f1, f2)
+
+
+@kernel
 def _direction(q1, q2, m1, m2):
-    """The unit vector e with e_i = q_i / (kappa + m_i) for some kappa >= 0; that of q if there is none."""
+    """The unit vector e with e_i = q_i / (kappa + m_i), kappa > -min(m1, m2)."""
     size = hypot(q1, q2)
     if q1 == 0.0 or size == 0.0:
         return 0.0, 1.0 if q2 >= 0.0 else -1.0
-    low, high = 0.0, size
+    low, high = -min(m1, m2), size
     for _ in range(60):
         kappa = 0.5 * (low + high)
         if (q1 / (kappa + m1)) ** 2 + (q2 / (kappa + m2)) ** 2 > 1.0:
@@ -299,6 +313,8 @@ def solve(start, c, law, mu_s, e, accuracy):
         elif mode == _SLIP:
             if s <= delta:
                 next_mode = _STICK if _held(new, start, c, law, mu_s, delta) else _CREEP
+            elif s < 0.5 * creep and _all_but_dies(new, a1, a2, s, start, c, law, mu_s, delta):
+                next_mode = _CREEP
         elif mode == _STICK:
             if not _held(new, start, c, law, mu_s, delta):
                 if h > delta:  # it broke loose inside the step: find where
@@ -310,7 +326,12 @@ def solve(start, c, law, mu_s, e, accuracy):
                 h *= 0.5
                 continue
             next_mode = _SLIP
-        elif _held(new, start, c, law, mu_s, delta):
+        elif k7[0] * a1 + k7[1] * a2 >= 0.0 and s > delta:  # friction no longer opposes the slip: it died inside the step
+            if h > delta:
+                h *= 0.5
+                continue
+            next_mode = _STICK if _held(new, start, c, law, mu_s, delta) else _CREEP
+        elif s <= delta and _held(new, start, c, law, mu_s, delta):
             next_mode = _STICK
         done = work <= target and not compressing
         if done or (compressing and y <= 0.0):

@@ -23,38 +23,41 @@ class Physics:
     """The constants and laws of one world (SI units). ``Physics()`` is the ``"paper"`` preset; see ``preset``.
 
     Raises ``ValueError`` (field, value, what is allowed) on anything outside the ranges stated here.
+
+    Fields:
+
+    * R: Ball radius [m], in (0, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3].
+    * M: Ball mass [kg], > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal.
+    * g: Gravity [m/s^2], > 0.
+    * mu_s: Sliding friction ball-cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
+    * mu_r: Rolling resistance, deceleration over g, in [0, 1] (measured 0.124 to 0.126 m/s^2).
+    * spin_decel: Decay of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21].
+    * e_b: Energetic restitution ball-ball, in [0, 1] [MJP14 2.4.2].
+    * mu_bb: Ball-ball friction: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) for mu(s) = a + b exp(-c s), s in m/s.
+    * e_c: Energetic restitution ball-cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
+    * e_c_knee: Normal speed [m/s] above which the cushion's restitution falls, >= 0.
+    * e_c_slope: How fast it falls there [s/m], >= 0: e(v) = max(0, e_c - e_c_slope * max(0, v - e_c_knee)).
+    * mu_c: Sliding friction ball-cushion, in [0, 1] [MJP10].
+    * sin_theta: Height of the nose above the ball's centre over R, in [0, 0.95]; nose height 7R/5 gives 0.4 [MJP10].
+    * end_mass_ratio: Ball mass over the cue's effective end mass, for squirt, >= 0 [TP A.31].
+    * max_offset: Tip offset over R beyond which the tip slips (miscue), in (0, 1) [TP A.30].
     """
 
     R: float = 0.02625
-    """Ball radius [m], in (0, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3]."""
     M: float = 0.1406
-    """Ball mass [kg], > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal."""
     g: float = 9.81
-    """Gravity [m/s^2], > 0."""
     mu_s: float = 0.21
-    """Sliding friction ball-cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245]."""
     mu_r: float = 0.0127
-    """Rolling resistance, deceleration over g, in [0, 1] (measured 0.124 to 0.126 m/s^2)."""
     spin_decel: float = 22.0
-    """Decay of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21]."""
     e_b: float = 0.89
-    """Energetic restitution ball-ball, in [0, 1] [MJP14 2.4.2]."""
     mu_bb: float | str | tuple[float, float, float] = 0.05
-    """Ball-ball friction: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) for mu(s) = a + b exp(-c s), s in m/s."""
     e_c: float = 0.98
-    """Energetic restitution ball-cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s]."""
     e_c_knee: float = 0.0
-    """Normal speed [m/s] above which the cushion's restitution falls, >= 0."""
     e_c_slope: float = 0.0
-    """How fast it falls there [s/m], >= 0: e(v) = max(0, e_c - e_c_slope * max(0, v - e_c_knee))."""
     mu_c: float = 0.14
-    """Sliding friction ball-cushion, in [0, 1] [MJP10]."""
     sin_theta: float = 0.4
-    """Height of the nose above the ball's centre over R, in [0, 0.95]; nose height 7R/5 gives 0.4 [MJP10]."""
     end_mass_ratio: float = 30.0
-    """Ball mass over the cue's effective end mass, for squirt, >= 0 [TP A.31]."""
     max_offset: float = 0.5
-    """Tip offset over R beyond which the tip slips (miscue), in (0, 1) [TP A.30]."""
 
     def __post_init__(self):
         low_high = {

@@ -152,6 +152,14 @@ def test_rolling_ball_straight_into_a_cushion(mu_s, ratio, speed, fidelity):
     assert v[0] == 0.0
 
 
+def test_a_slip_at_the_nose_that_all_but_dies():
+    """Friction and drive nearly balance while the slip is 2e-8 of the speed, then it grows again: this impact once did not end."""
+    v, w = (1.0759713279651137, -1.4959097348741595, 0), (-22.56663782046656, 27.344353647657716, 30.45180306810722)
+    normal = (0.9481813328601938, -0.3177296964645681, 0)
+    reference, standard = (sn.collide_cushion(v, w, normal, "paper", fidelity) for fidelity in ("reference", "standard"))
+    assert worst(standard, reference, np.linalg.norm(v)) < 1e-5
+
+
 def test_match_cushion_follows_the_measured_rebounds():
     """Fig. 7a of Mathavan 2010: 0.89 to 0.95 below 2 m/s, 0.80 at 3.4 m/s."""
     ratio = [-sn.collide_cushion((0, s, 0), (-s / R, 0, 0), (0, 1, 0), "match")[0][1] / s for s in (0.5, 1.5, 3.4)]

@@ -235,6 +235,20 @@ def test_a_ball_frozen_to_a_cushion(gap):
     check_shot(between)
 
 
+MOUTH = (
+    [(0.862749999, 0.109185)], [(4.96568143491017, -0.9211408927790105)], [(544.6435139163872, 685.8299623356976, 140.11961898623017)],
+)  # fmt: skip
+
+
+def test_a_ball_that_comes_out_of_a_middle_pocket_s_mouth_meets_the_nose():
+    """Struck off a jaw beyond the nose's line, then driven back into the cushion by its spin: it once went 17 mm into the nose."""
+    shot = sn.simulate(*MOUTH, physics={"e_b": 0.5, "e_c": 0.0, "mu_bb": 0.0, "spin_decel": 2.0})
+    r = shot.at(np.linspace(0, shot.duration, 3000))[0][:, 0]
+    along_the_nose = (np.abs(r[:, 1]) > 0.12) & (np.abs(r[:, 1]) < 1.65)
+    assert along_the_nose.sum() > 100
+    assert (r[along_the_nose, 0] <= 0.889 - R + 1e-9).all()
+
+
 def jaw_touching_place(jaw):
     cx, cy, radius, ux, uy, _ = jaw
     return np.array([cx, cy]) + (radius + R) * (1 + 1e-15) * np.array([ux, uy])
