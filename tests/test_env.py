@@ -348,7 +348,7 @@ def test_a_finished_visit_can_be_saved_too():
         env.step(np.array([-1, 0, 0, 1.0]))
     state = json.loads(json.dumps(env.get_state()))
     other = SnookerEnv(aim="target", noise="club", layout="random:6")
-    with pytest.raises(ValueError, match="state.over = True"):  # there is no shot to play from it
+    with pytest.raises(ValueError, match=r"state\.over = True"):  # there is no shot to play from it
         other.reset(options={"state": state})
     other.set_state(state)
     assert other.over
