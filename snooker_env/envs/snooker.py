@@ -5,34 +5,28 @@ import numpy as np
 from gymnasium import spaces
 
 from .._check import choice, refuse
-from ..game.balls import BALL_RADIUS, CUE, N_BALLS, REDS_MASK, TOUCH, BallOn, balls_on, mask_of, next_on
+from ..game.balls import BALL_RADIUS, CUE, N_BALLS, REDS_MASK, BallOn, balls_on, next_on
 from ..game.in_hand import place_cue
 from ..game.layouts import layout as make_layout
-from ..game.referee import Situation, Stroke
+from ..game.referee import Situation
 from ..game.ruling import VisitEnd
 from ..game.settle import settle_table
-from ..physics import cue
 from ..physics.contact import parse_fidelity
-from ..physics.engine import EventKind
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..simulation import play
 from . import observations
 from .actions import Actions
+from .frame_task import FrameTask
 from .noise import Noise
+from .pictures import FPS, MODES, Pictures
 from .rewards import REWARDS
+from .shooting import Shooter, mask, stroke_of
 
-TASKS = ("visit",)
-
-_AT_ONCE = 1e-9  # s; contacts nearer than this are simultaneous
-
-
-_BITS = 1 << np.arange(N_BALLS)
-
-
-def _mask(balls):
-    """The mask of a bool array (22,)."""
-    return int(balls @ _BITS)
+TASKS = ("visit", "frame")
+FRAME_ONLY = {"opponent": "none", "miss": "off", "decision": False}
+"""Arguments that mean something in the frame task only, and the values that they must have in a visit."""
+LAYOUTS = {"visit": "opened", "frame": "break_off"}
+"""What layout="default" is in each task."""
 
 
 class SnookerEnv(gymnasium.Env):
@@ -105,13 +99,15 @@ class SnookerEnv(gymnasium.Env):
     May 2022.
     """
 
-    metadata = {"render_modes": ["human", "rgb_array", "ansi"], "render_fps": 30}  # noqa: RUF012 - Gymnasium's own convention
+    metadata = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012 - Gymnasium's own convention
 
     def __init__(
-        self, *, task="visit", layout="opened", aim="absolute", observation="flat", noise="none", reward="points", elevation=False,
-        placement=False, physics="paper", table="match", fidelity="standard", render_mode=None,
+        self, *, task="visit", layout="default", aim="absolute", observation="flat", noise="none", reward="points", elevation=False,
+        placement=False, physics="paper", table="match", fidelity="standard", render_mode=None, opponent="none", miss="off",
+        decision=False,
     ):  # fmt: skip
-        choice("task", task, TASKS)
+        whole = choice("task", task, TASKS) == "frame"
+        layout = LAYOUTS[task] if isinstance(layout, str) and layout == "default" else layout
         make_layout(layout, np.random.default_rng(0))  # an unknown name fails here and not in reset
         self.layout, self.observation, self.reward = layout, observation, reward
         self.physics, self.table = Physics.of(physics), Table.of(table)
@@ -121,14 +117,23 @@ class SnookerEnv(gymnasium.Env):
             raise refuse("table", table, 'must be "match", "tight" or a Table')
         self.fidelity = parse_fidelity(fidelity)
         self.noise = Noise.of(noise)
-        self.actions = Actions(aim, elevation, placement, self.physics)
-        choice("reward", reward, REWARDS)
+        self.actions = Actions(aim, elevation, placement, self.physics, decision)
+        self.shooter = Shooter(self.actions, self.noise, self.physics, self.table, self.fidelity)
         self.action_space = spaces.Box(-1.0, 1.0, (self.actions.size,), np.float32)
-        self.observation_space = observations.space(observation)
+        self.observation_space = observations.space(observation, frame=whole)
+        self.frames = None
+        """The ``FrameTask``; None in a visit."""
+        if whole:
+            self.frames = FrameTask(self.shooter, opponent=opponent, miss=miss, reward=reward, observation=observation)
+        else:
+            choice("reward", reward, REWARDS)
+            for name, value in (("opponent", opponent), ("miss", miss), ("decision", decision)):
+                if value != FRAME_ONLY[name]:
+                    raise refuse(name, value, f'must be {FRAME_ONLY[name]!r} with task="visit"; it belongs to task="frame"')
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
-        self._window = None
+        self._pictures = Pictures(self.table, render_mode)
         self.last_shot = None
         """The ``Shot`` of the last step, with its path when a render mode is set; None before the first."""
         self.positions = np.zeros((N_BALLS, 2))
@@ -140,20 +145,26 @@ class SnookerEnv(gymnasium.Env):
     @property
     def on(self):
         """Mask of the balls on, bit i for ball i."""
-        return balls_on(self.ball_on, _mask(self.on_table))
+        return balls_on(self.ball_on, mask(self.on_table)) if self.frames is None else self.frames.table.on
 
     def get_state(self):
         """The whole state as JSON types: table, game and random generator. ``set_state`` brings it back exactly."""
-        return {
+        state = {
             "positions": self.positions.tolist(), "on_table": self.on_table.tolist(), "ball_on": int(self.ball_on),
             "in_hand": self.in_hand, "points": self.points, "over": self.over, "rng": self.np_random.bit_generator.state,
         }  # fmt: skip
+        return state if self.frames is None else state | {"frame": self.frames.table.frame.to_dict()}
 
     def set_state(self, state):
         """Take over a state from ``get_state``; the next shot plays on identically. ValueError if it is not sound."""
         missing = {"positions", "on_table", "ball_on", "in_hand", "points", "over", "rng"} - set(state)
         if missing:
             raise refuse("state", sorted(state), f"must be a state of get_state(); missing {sorted(missing)}")
+        if self.frames is not None:
+            self.frames.table.set_state(state)
+            self._take_frame()
+            self.np_random.bit_generator.state = state["rng"]
+            return
         positions, on_table = np.array(state["positions"], float), np.array(state["on_table"])
         if positions.shape != (N_BALLS, 2) or on_table.shape != (N_BALLS,) or on_table.dtype != bool or not np.isfinite(positions).all():
             raise refuse("state", "positions, on_table", "must be finite (22, 2) and bool (22,)")
@@ -163,22 +174,28 @@ class SnookerEnv(gymnasium.Env):
         self.points, self.over = int(state["points"]), bool(state["over"])
         self.np_random.bit_generator.state = state["rng"]
 
-    def __getstate__(self):
-        return self.__dict__ | {"_window": None}  # a window belongs to one process
+    def _take_frame(self):
+        """Take over from the frame what a visit keeps by itself."""
+        table = self.frames.table
+        self.positions, self.on_table, self.over = table.positions, table.on_table, table.over
+        self.ball_on, self.in_hand, self.points = table.frame.ball_on, table.frame.in_hand, table.frame.break_points
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
     def reset(self, *, seed=None, options=None):
-        """A new visit. options: None or {"state": a state of ``get_state``}."""
+        """A new visit or frame. options: None or {"state": a state of ``get_state``}."""
         super().reset(seed=seed)
         for key in options or {}:
             choice("options", key, ("state",))
         self.last_shot = None
         if options and "state" in options:
             self.set_state(options["state"])
+        elif self.frames is not None:
+            self.frames.start(self.layout, self.np_random, self._watch if self.render_mode is not None else None)
+            self._take_frame()
         else:
             self.positions, self.on_table = make_layout(self.layout, self.np_random)
-            self.ball_on = BallOn(next_on(_mask(self.on_table)))
+            self.ball_on = BallOn(next_on(mask(self.on_table)))
             self.in_hand, self.points, self.over = self.layout == "break_off", 0, False
         if self.render_mode == "human":
             self._show()
@@ -188,43 +205,51 @@ class SnookerEnv(gymnasium.Env):
         """Play one shot. ValueError if the action is not finite and within [-1, 1]."""
         a = self.actions.check(action)
         if self.over:
-            raise gymnasium.error.ResetNeeded("the visit is over: call reset() before step()")
+            raise gymnasium.error.ResetNeeded(f"the {'visit' if self.frames is None else 'frame'} is over: call reset() before step()")
+        return self._visit_step(a) if self.frames is None else self._frame_step(a)
+
+    def _visit_step(self, a):
         if self.in_hand and self.actions.placement:
             self._place(a)
         intended = self.actions.shot(a, self.positions, self.on_table, self.on)
-        speed, side, top, aim, elevation = self.noise.draw(self.np_random, *intended, self.physics.R)
-        v, w = cue.strike(speed, aim, *self.actions.tip(side, top), elevation, self.physics)
-        shot = self._play(v, w)
+        shot = self.shooter.shoot(intended, self.positions, self.on_table, self.np_random, path=self.render_mode is not None)
+        self.last_shot = shot
         ball_on = self.ball_on
-        stroke = self._stroke(shot)
-        situation = Situation(on_table=_mask(self.on_table), ball_on=ball_on, lead=self.points)
+        stroke = stroke_of(shot, self.positions, self.on_table)
+        situation = Situation(on_table=mask(self.on_table), ball_on=ball_on, lead=self.points)
         verdict, self.positions, self.on_table = settle_table(shot.positions, self.on_table, situation, stroke, jaws=self.table.jaws[:, :3])
         self.ball_on, self.in_hand = verdict.ball_on, verdict.in_hand
         self.points += verdict.points
         self.over = verdict.visit_end != VisitEnd.CONTINUES
         if self.render_mode == "human":
-            self._show(shot)
+            self._show(film=True)
         return self._observe(), REWARDS[self.reward](verdict), bool(self.over), False, self._info(shot, stroke, ball_on, verdict)
+
+    def _frame_step(self, a):
+        assert self.frames is not None
+        reward, played = self.frames.step(a, self.np_random, self._watch if self.render_mode is not None else None)
+        self._take_frame()
+        if played is None:
+            info = self._no_info()
+        else:
+            self.last_shot = played.shot if self.render_mode is None else self.last_shot
+            info = self._info(played.shot, played.stroke, played.ball_on, played.verdict)
+        return self._observe(), reward, self.over, False, info
+
+    def _watch(self, shot):
+        """Called after each stroke of a frame, of either player, when there is something to see."""
+        self.last_shot = shot
+        self._take_frame()
+        if self.render_mode == "human":
+            self._show(film=True)
 
     def render(self):
         """The table with the cue ball's last path: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise."""
-        if self.render_mode is None:
-            gymnasium.logger.warn('render() without render_mode; make the environment with render_mode="rgb_array", "ansi" or "human"')
-        if self.render_mode == "rgb_array":
-            from ..render.pygame_view import rgb_array
-
-            return rgb_array(self._scene())
-        if self.render_mode == "ansi":
-            from ..render.ascii_view import ansi
-
-            return ansi(self._scene())
-        return None
+        return self._pictures.render(self.positions, self.on_table, self.last_shot, self._text())
 
     def close(self):
         """Close the window, if there is one."""
-        if self._window is not None:
-            self._window.close()
-            self._window = None
+        self._pictures.close()
 
     # one shot --------------------------------------------------------------------------------------------------------------
 
@@ -234,60 +259,34 @@ class SnookerEnv(gymnasium.Env):
         self.positions[CUE] = place_cue(self.positions, self.on_table, *self.actions.place(a))
         self.on_table[CUE] = True
 
-    def _play(self, v, w):
-        velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
-        velocities[CUE], spins[CUE] = v[:2], w
-        path = self.render_mode is not None
-        self.last_shot = play(self.positions, velocities, spins, self.on_table, self.physics, self.table, self.fidelity, path=path)
-        return self.last_shot
-
-    def _stroke(self, shot):
-        """What the referee sees of a shot: first contact, touching balls, pots."""
-        gaps = np.hypot(*(self.positions - self.positions[CUE]).T) - 2 * BALL_RADIUS
-        touching = _mask(self.on_table & (gaps < TOUCH)) & ~1
-        events = shot.events
-        hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
-        # a touching ball that the cue ball is played away from is not struck; one it is played into is moved at once
-        first = mask_of(hits["j"][hits["time"] <= hits["time"][0] + _AT_ONCE].tolist()) if len(hits) else 0
-        moved = touching & first if len(hits) and hits["time"][0] <= _AT_ONCE else 0
-        return Stroke(first=first, potted=_mask(shot.potted >= 0), touching=touching, moved=moved)
-
     def _observe(self):
+        if self.frames is not None:
+            return self.frames.observe()
         return observations.observe(self.observation, self.positions, self.on_table, self.ball_on, self.on, self.in_hand, self.points)
 
     def _info(self, shot, stroke, ball_on, verdict):
-        return {
+        info = {
             "points": float(verdict.points), "break": float(self.points), "foul": bool(verdict.fouls), "penalty": int(verdict.penalty),
             "pots": (stroke.potted & ~1).bit_count(), "fouls": int(verdict.fouls), "ball_on": int(ball_on),
             "first_ball": (stroke.first & -stroke.first).bit_length() - 1, "events": len(shot.events), "seconds": shot.duration,
         }  # fmt: skip
+        return info if self.frames is None else info | self.frames.info()
 
     def _no_info(self):
         """The same keys before any shot."""
-        return {
+        info = {
             "points": 0.0, "break": float(self.points), "foul": False, "penalty": 0, "pots": 0, "fouls": 0, "ball_on": int(self.ball_on),
             "first_ball": -1, "events": 0, "seconds": 0.0,
         }  # fmt: skip
+        return info if self.frames is None else info | self.frames.info()
 
     # pictures --------------------------------------------------------------------------------------------------------------
 
     def _text(self):
-        reds = (_mask(self.on_table) & REDS_MASK).bit_count()
+        if self.frames is not None:
+            return self.frames.text()
+        reds = (mask(self.on_table) & REDS_MASK).bit_count()
         return f"break {self.points}   on: {self.ball_on.name.lower().replace('_', ' ')}   reds: {reds}"
 
-    def _scene(self):
-        from ..render.scene import ball_paths, scene
-
-        paths = ball_paths(self.last_shot) if self.last_shot is not None else None
-        return scene(self.table, self.positions, self.on_table, paths=paths, text=self._text())
-
-    def _show(self, shot=None):
-        from ..render.pygame_view import Window
-        from ..render.scene import shot_scenes
-
-        if self._window is None:
-            self._window = Window()
-        if shot is not None:
-            fps = self.metadata["render_fps"]
-            self._window.play(shot_scenes(self.table, shot, fps=fps, speed=2.0, text=self._text()), fps)
-        self._window.draw(self._scene())
+    def _show(self, *, film=False):
+        self._pictures.show(self.positions, self.on_table, self.last_shot, self._text(), film=film)
