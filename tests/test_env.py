@@ -521,7 +521,6 @@ def test_placement_is_for_a_ball_in_hand_only():
     assert np.array_equal(plain.last_shot.at(0.0)[0][CUE], here)
 
 
-@pytest.mark.xfail(strict=True, reason="known bug, reported: at the D's ends _place leaves the ball in another")
 @pytest.mark.parametrize("a", [1.0, -1.0, 0.99, -0.99])
 @pytest.mark.parametrize("b", [-1.0, 0.0, 1.0])
 def test_no_placement_overlaps_a_ball(a, b):

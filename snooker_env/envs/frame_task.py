@@ -84,7 +84,11 @@ class FrameTask:
 
     def text(self):
         """One line for the pictures."""
-        frame = self.table.frame
-        on = frame.ball_on.name.lower().replace("_", " ")
-        ended = "" if frame.winner is None else f"   player {frame.winner} wins"
-        return f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"
+        return frame_text(self.table.frame)
+
+
+def frame_text(frame):
+    """A ``Frame`` in one line."""
+    on = frame.ball_on.name.lower().replace("_", " ")
+    ended = "" if frame.winner is None else f"   player {frame.winner} wins"
+    return f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"

@@ -2,11 +2,17 @@
 
 import numpy as np
 
+from .._check import refuse
 from ..game.balls import BALL_RADIUS, CUE, N_BALLS, TOUCH, mask_of
 from ..game.referee import Stroke
 from ..physics import cue
+from ..physics.contact import parse_fidelity
 from ..physics.engine import EventKind
+from ..physics.parameters import Physics
+from ..physics.table import Table
 from ..simulation import play
+from .actions import Actions
+from .noise import Noise
 
 AT_ONCE = 1e-9
 """Contacts nearer than this [s] are simultaneous."""
@@ -32,6 +38,17 @@ class Shooter:
         velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
         velocities[CUE], spins[CUE] = v[:2], w
         return play(positions, velocities, spins, on_table, self.physics, self.table, self.fidelity, path=path)
+
+
+def shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity):
+    """The ``Shooter`` of an environment's arguments, each as documented in ``SnookerEnv``. Raises ValueError."""
+    world, cloth = Physics.of(physics), Table.of(table)
+    if world.R != BALL_RADIUS:
+        raise refuse("physics.R", world.R, f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it")
+    if cloth.name == "unbounded":
+        raise refuse("table", table, 'must be "match", "tight" or a Table')
+    quality, errors = parse_fidelity(fidelity), Noise.of(noise)
+    return Shooter(Actions(aim, elevation, placement, world, decision), errors, world, cloth, quality)
 
 
 def stroke_of(shot, positions, on_table):

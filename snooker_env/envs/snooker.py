@@ -5,22 +5,17 @@ import numpy as np
 from gymnasium import spaces
 
 from .._check import choice, refuse
-from ..game.balls import BALL_RADIUS, CUE, N_BALLS, REDS_MASK, BallOn, balls_on, next_on
+from ..game.balls import CUE, N_BALLS, REDS_MASK, BallOn, balls_on, next_on
 from ..game.in_hand import place_cue
 from ..game.layouts import layout as make_layout
 from ..game.referee import Situation
 from ..game.ruling import VisitEnd
 from ..game.settle import settle_table
-from ..physics.contact import parse_fidelity
-from ..physics.parameters import Physics
-from ..physics.table import Table
 from . import observations
-from .actions import Actions
 from .frame_task import FrameTask
-from .noise import Noise
 from .pictures import FPS, MODES, Pictures
 from .rewards import REWARDS
-from .shooting import Shooter, mask, stroke_of
+from .shooting import mask, shooter_of, stroke_of
 
 TASKS = ("visit", "frame")
 FRAME_ONLY = {"opponent": "none", "miss": "off", "decision": False}
@@ -110,15 +105,9 @@ class SnookerEnv(gymnasium.Env):
         layout = LAYOUTS[task] if isinstance(layout, str) and layout == "default" else layout
         make_layout(layout, np.random.default_rng(0))  # an unknown name fails here and not in reset
         self.layout, self.observation, self.reward = layout, observation, reward
-        self.physics, self.table = Physics.of(physics), Table.of(table)
-        if self.physics.R != BALL_RADIUS:
-            raise refuse("physics.R", self.physics.R, f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it")
-        if self.table.name == "unbounded":
-            raise refuse("table", table, 'must be "match", "tight" or a Table')
-        self.fidelity = parse_fidelity(fidelity)
-        self.noise = Noise.of(noise)
-        self.actions = Actions(aim, elevation, placement, self.physics, decision)
-        self.shooter = Shooter(self.actions, self.noise, self.physics, self.table, self.fidelity)
+        self.shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity)
+        self.actions, self.noise, self.physics = self.shooter.actions, self.shooter.noise, self.shooter.physics
+        self.table, self.fidelity = self.shooter.table, self.shooter.fidelity
         self.action_space = spaces.Box(-1.0, 1.0, (self.actions.size,), np.float32)
         self.observation_space = observations.space(observation, frame=whole)
         self.frames = None
