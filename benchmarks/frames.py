@@ -165,9 +165,9 @@ def play_frame(seed, kind, miss):
 def row(kind, miss, tallies, seconds):
     """A line of the table."""
     strokes, breaks = [t.strokes for t in tallies], [b for t in tallies for b in t.breaks]
-    ends = Counter(t.ending for t in tallies)
+    ends, fouls = Counter(t.ending for t in tallies), 100 * sum(t.fouls for t in tallies) / sum(strokes)
     return (
-        f"{kind:<11}{miss:<11}{len(tallies):>7}{np.mean(strokes):>9.1f}{max(strokes):>7}{100 * sum(t.fouls for t in tallies) / sum(strokes):>8.1f}"
+        f"{kind:<11}{miss:<11}{len(tallies):>7}{np.mean(strokes):>9.1f}{max(strokes):>7}{fouls:>8.1f}"
         f"{np.mean(breaks):>8.2f}{max(breaks):>6}{seconds:>8.1f}   {', '.join(f'{end} {n}' for end, n in ends.most_common())}"
     )
 

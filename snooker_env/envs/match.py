@@ -28,8 +28,8 @@ class MatchEnv(AECEnv):
     ## Action space
     ``Box(-1, 1, (7,), float32)`` for both: cue speed, side, top, aim, the place in the D (2), the decision; with ``elevation=True`` the
     elevation stands before the place. See ``snooker_env.envs.actions.Actions``. The *place* counts only when the cue ball is in hand (a
-    place that is taken becomes the nearest free one). The *decision* counts only when the other has just fouled: below -1/3 the offender must
-    play again from where the balls lie, above 1/3 the balls are first replaced as they were (if a miss was called), between or without
+    place that is taken becomes the nearest free one). The *decision* counts only when the other has just fouled: below -1/3 the offender
+    must play again from where the balls lie, above 1/3 the balls are first replaced as they were (if a miss was called), between or without
     that option the player plays himself, with the rest of this same action. The first two play no stroke: the step only turns the table
     over to the offender. ``placement=False``, ``decision=False`` leave them out: the cue ball is then played from where it was put, and
     everybody plays after a foul. The colour after a red, and the free ball, is the one first struck. Nobody concedes or claims.

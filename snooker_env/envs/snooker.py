@@ -32,11 +32,19 @@ class SnookerEnv(gymnasium.Env):
     2014 in an exact event-driven engine, cushions of their 2010 model), the referee judges it, colours are respotted, and the agent
     sees the new layout. The aim is a high break: pot a red, then a colour, then a red ..., finally the colours in order.
 
+    ``task="frame"``: a whole frame against ``opponent``, scores, fouls, free balls and all. One step is one stroke of the agent and all
+    that the opponent plays after it. Who breaks is drawn from the seed. ``opponent="none"``: the agent plays alone; what it misses or
+    fouls it plays on from itself, penalties go to the other score. ``"random"``: uniform actions. ``"ghost_ball"``: the plain geometric
+    player. ``opponent(observation, rng) -> action``: any callable, asked in this environment's spaces from its own side of the table.
+    A path to a ``.zip``: a model of Stable-Baselines3 or sb3-contrib, trained on either task with these options.
+
     ## Action space
     ``Box(-1, 1, (4,), float32)``: cue speed, side spin, top/back spin, aim; see ``snooker_env.envs.actions.Actions`` for every component
     and formula. ``aim="absolute"`` reads the aim as an angle of the full circle, ``aim="target"`` as up to 3 degrees left or right of the
     best potting line. ``elevation=True`` appends the cue's elevation, ``placement=True`` two numbers for the place in the D. After a red,
-    the colour first struck is the one nominated.
+    the colour first struck is the one nominated; so is the free ball. In a frame ``decision=True`` appends what to do when the opponent has
+    fouled: play, have him play again, or (after a miss, ``miss="clear_path"``) have the balls replaced; without it the agent always plays.
+    In hand the cue ball stands at its usual place for the break, or near it, until ``placement`` moves it.
 
     ## Observation space
     ``observation="flat"``: ``Box(-1, 1, (121,), float32)``, the 22 rows of five of the table of balls, then eleven state entries.
@@ -49,26 +57,31 @@ class SnookerEnv(gymnasium.Env):
     | value | points / 7 | in_hand | 1 if the cue ball is played from the D |
     | ball_on | 1 if it may be struck first | break | points of the visit / 155 |
 
-    World frame: origin at the table's centre, +x to the yellow side, +y to the black end.
+    World frame: origin at the table's centre, +x to the yellow side, +y to the black end. ``task="frame"`` appends nine entries to the
+    state (so ``(130,)``, ``(20,)``): ``observations.FRAME_ENTRIES``.
 
     ## Rewards
     ``reward="points"`` (default): the points of the stroke, 0 for a miss or a foul, in [0, 15]. ``"points_and_fouls"``: less the
-    penalty of a foul (4 to 7). ``"pots"``: 1 for a scoring stroke.
+    penalty of a foul (4 to 7). ``"pots"``: 1 for a scoring stroke. In a frame: ``"points"`` (default), the agent's points less the
+    opponent's in this step, penalties included; ``"win"``, +1 or -1 when the frame ends.
 
     ## Starting state
     ``layout="opened"`` (default): a table opened by real simulated play, all 22 balls on it, reds on; ``"held_out"``: such tables that
-    ``"opened"`` never gives; ``"break_off"``, ``"line_up"``, ``"colours"`` (the six on their spots), ``"random:N"`` (N reds sprinkled).
+    ``"opened"`` never gives; ``"break_off"`` (default of a frame), ``"line_up"``, ``"colours"`` (the six on their spots), ``"random:N"`` (N
+    reds sprinkled), ``"snookered"`` (on every red), ``"pots:easy"``, ``"pots:medium"``, ``"pots:hard"`` (one red alone).
 
     ## Episode end
-    Terminated by the first stroke that pots nothing, by a foul, or by a clearance. Never truncated by itself.
+    Terminated by the first stroke that pots nothing, by a foul, or by a clearance; in a frame by its end under the rules, nobody concedes.
+    Never truncated by itself (``gymnasium.make(..., max_episode_steps=N)`` does). No ball leaves the table: the physics is planar.
 
     ## Arguments
-    All are JSON types, so that ``EnvSpec.to_json`` round-trips.
+    All are JSON types (but a callable opponent), so that ``EnvSpec.to_json`` round-trips.
 
     | name | default | what |
     |---|---|---|
-    | task | "visit" | build a break until the first miss or foul |
-    | layout | "opened" | see Starting state |
+    | task | "visit" | build a break until the first miss or foul; "frame": see Description |
+    | layout | "default" | see Starting state |
+    | opponent, miss, decision | "none", "off", False | of a frame only; miss: "off" or "clear_path" (``snooker_env.game.frame``) |
     | aim | "absolute" | or "target" |
     | observation | "flat" | or "balls" |
     | noise | "none" | "professional", "amateur", "club", "olympiad", or a dict of ``snooker_env.envs.noise.Noise`` |
@@ -82,7 +95,8 @@ class SnookerEnv(gymnasium.Env):
     ## Info
     Always the same keys: ``points``, ``break``, ``seconds`` (float; the shot's duration), ``foul`` (bool), ``penalty``, ``pots``,
     ``fouls`` (bits of ``snooker_env.game.ruling.Foul``), ``first_ball`` (-1: none), ``ball_on`` (what was on, a ``BallOn``),
-    ``events`` (int).
+    ``events`` (int). In a frame they tell of the agent's own stroke, and there are ``score``, ``opponent_score`` (float),
+    ``opponent_strokes``, ``winner`` (-1, 0 the agent, 1), ``choice``, ``free_ball``, ``needs_snookers``.
     ``reset(options={"state": env.unwrapped.get_state()})`` starts from a saved state.
 
     ## Version history
