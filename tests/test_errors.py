@@ -170,7 +170,7 @@ LAYOUTS = [
     case(batch(velocities=np.zeros((2, 2, 2))), "velocities", "shape (2, 2, 2)", "must have shape (3, 2, 2)"),
     case(batch(spins=np.zeros((3, 2))), "spins", "shape (3, 2)", "must have shape (3, 2, 3)"),
     case(batch(positions=[put(0.3, 0.0), put(0.3, 0.0), put(0.02, 0.0)]), "positions[2]", "balls 0 and 1", "overlap by 0.0325 m"),
-    case(batch(positions=[put(0.3, 0.0), put(0.9, 0.5), put(0.3, 0.0)]), "positions[1][1]", "(0.9, 0.5)", "must be on the table"),
+    case(batch(positions=[put(0.3, 0.0), put(0.905, 0.5), put(0.3, 0.0)]), "positions[1][1]", "(0.905, 0.5)", "must be on the table"),
     case(batch(positions=[put(0.3, 0.0), put(0.3, NAN), put(0.3, 0.0)]), "positions[1, 1, 1]", "nan", "must be finite"),
     case(batch(on_table=[True, True]), "on_table", "bool array of shape (2,)", "must be bool of shape (3, 2)"),
     case(batch(**{k: np.zeros((2, 0, n)) for k, n in WIDTHS.items()}), "positions", "shape (2, 0, 2)", "at least one ball", "empty tables"),

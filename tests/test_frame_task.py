@@ -161,6 +161,10 @@ def test_infos_have_the_same_keys_and_types_at_all_times():
 # Turns
 
 
+PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}
+"""Red 1 can be potted along the target line, red 2 is out of the way."""
+
+
 def test_a_step_ends_when_the_agent_is_to_play_or_the_frame_is_over():
     env = frame_env(opponent="random", layout="random:3")
     for seed in range(10):
@@ -175,7 +179,7 @@ def test_a_step_ends_when_the_agent_is_to_play_or_the_frame_is_over():
 
 
 def test_the_agent_stays_while_it_scores_and_the_opponent_comes_after_a_miss():
-    env = put(frame_env(opponent="ghost_ball"), {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}, {})
+    env = put(frame_env(opponent="ghost_ball"), PLACES, {})
     _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
     assert (reward, info["points"], info["opponent_strokes"], env.ball_on) == (1.0, 1.0, 0, BallOn.ANY_COLOUR)
     _, _, _, _, info = env.step([-0.9, 0, 0, 1.0, 0, 0, 0])
@@ -207,7 +211,6 @@ def test_a_cue_ball_in_hand_stands_in_the_d_and_is_played_from_where_it_is_place
 
 
 FOULED = {"phase": "choice", "striker": 0, "scores": (0, 4)}
-PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}
 
 
 @pytest.mark.parametrize(("decision", "own"), [(0.0, True), (-0.33, True), (1.0, True), (-0.34, False), (-1.0, False)])
@@ -352,7 +355,7 @@ def test_a_model_of_another_environment_is_refused(tmp_path):
     sb3 = pytest.importorskip("stable_baselines3")
     sb3.PPO("MlpPolicy", "CartPole-v1", device="cpu").save(tmp_path / "cart.zip")
     env = frame_env(opponent=str(tmp_path / "cart.zip"), layout="random:2")
-    with pytest.raises(ValueError, match="opponent = .*must be a model for observation"):
+    with pytest.raises(ValueError, match=r"opponent = .*must be a model for observation"):
         [env.reset(seed=seed) for seed in range(10)]
 
 
@@ -366,7 +369,7 @@ def test_a_saved_state_plays_on_bit_for_bit(opponent):
     play(env, 5, 7)
     text = json.dumps(env.get_state())
     other = frame_env(**options)
-    obs, info = other.reset(options={"state": json.loads(text)})
+    obs, _ = other.reset(options={"state": json.loads(text)})
     assert data_equivalence(obs, env._observe(), exact=True) and json.dumps(other.get_state()) == text
     for _ in range(30):
         if env.over:

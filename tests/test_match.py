@@ -16,7 +16,7 @@ from snooker_env.game.frame import Frame
 from snooker_env.render import pygame_view
 
 pytest.importorskip("pettingzoo")
-from pettingzoo.test import api_test, render_test, seed_test  # noqa: E402
+from pettingzoo.test import api_test, render_test, seed_test
 
 ROOT = Path(__file__).parent.parent
 
@@ -116,14 +116,14 @@ def put(env, places, **fields):
 PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}
 
 
-@pytest.mark.parametrize(("decision", "next_player", "played"), [(0.0, "player_1", True), (1.0, "player_1", True), (-1.0, "player_0", False)])
-def test_the_decision_after_a_foul_is_part_of_the_action(decision, next_player, played):
+@pytest.mark.parametrize(("decision", "turn", "played"), [(0.0, "player_1", True), (1.0, "player_1", True), (-1.0, "player_0", False)])
+def test_the_decision_after_a_foul_is_part_of_the_action(decision, turn, played):
     """Player 1 comes to the table after a foul: an easy pot if he plays; or player 0 has to play again."""
     env = put(sn.match_env(aim="target"), PLACES, phase="choice", striker=1, scores=(0, 4))
     assert env.agent_selection == "player_1" and env.infos["player_1"]["choice"]
     before = env.table.positions.tobytes()
     env.step(np.array([-0.5, 0, 0, 0, 0, 0, decision], np.float32))
-    assert env.agent_selection == next_player and (env.table.positions.tobytes() != before) == played
+    assert env.agent_selection == turn and (env.table.positions.tobytes() != before) == played
     assert env.rewards == ({"player_0": -1.0, "player_1": 1.0} if played else {"player_0": 0.0, "player_1": 0.0})
     assert env.strokes == played
 
@@ -132,7 +132,7 @@ def test_after_a_miss_the_balls_may_be_replaced():
     env = sn.match_env(miss="clear_path", layout="break_off")
     env.reset(seed=3)
     offender, before = env.agent_selection, env.table.positions.copy()
-    env.step(np.array([-0.9, 0, 0, -0.5, 0, 0, 0], np.float32))  # into the bottom cushion
+    env.step(np.array([-0.9, 0, 0, -0.5, 0.6, -1.0, 0], np.float32))  # with the reds in sight, into the bottom cushion
     assert env.table.frame.miss_called and env.agent_selection != offender
     moved = env.table.positions.copy()
     env.step(np.array([0, 0, 0, 0, 0, 0, 1.0], np.float32))
@@ -179,7 +179,8 @@ def test_a_saved_match_plays_on_bit_for_bit():
     ("options", "field"),
     [
         ({"layout": "opene"}, "layout"), ({"reward": "pots"}, "reward"), ({"miss": "on"}, "miss"), ({"max_strokes": 0}, "max_strokes"),
-        ({"decision": 1}, "decision"), ({"render_mode": "x"}, "render_mode"), ({"observation": "x"}, "observation"), ({"table": None}, "table"),
+        ({"decision": 1}, "decision"),
+        ({"render_mode": "x"}, "render_mode"), ({"observation": "x"}, "observation"), ({"table": None}, "table"),
     ],
 )  # fmt: skip
 def test_wrong_arguments_are_refused(options, field):
@@ -192,7 +193,7 @@ def test_wrong_actions_change_nothing(action):
     env = sn.match_env()
     env.reset(seed=1)
     before = json.dumps(env.get_state())
-    with pytest.raises(ValueError, match="^action = "):
+    with pytest.raises(ValueError, match=r"^action = "):
         env.step(action)
     assert json.dumps(env.get_state()) == before
 

@@ -112,7 +112,7 @@ def test_snookered_is_what_it_says(seed):
 def test_snookers_are_laid_by_different_colours():
     behind = set()
     for seed in range(60):
-        positions, on_table = layouts.layout("snookered", np.random.default_rng(seed))
+        positions, _ = layouts.layout("snookered", np.random.default_rng(seed))
         behind.add(int(np.argmin(np.hypot(*(positions[YELLOW:] - positions[0]).T))))
     assert len(behind) >= 5
 
@@ -134,10 +134,10 @@ def test_the_difficulties_leave_no_gap_and_do_not_overlap():
 
 @pytest.mark.parametrize("name", ["pots", "pots:", "pots:Easy", "Snookered"])
 def test_unknown_drills_are_refused(name):
-    with pytest.raises(ValueError, match="^layout = "):
+    with pytest.raises(ValueError, match=r"^layout = "):
         layouts.layout(name, np.random.default_rng(0))
 
 
 def test_unknown_difficulties_are_refused():
-    with pytest.raises(ValueError, match="^difficulty = "):
+    with pytest.raises(ValueError, match=r"^difficulty = "):
         layouts.single_pot(np.random.default_rng(0), "very hard")
