@@ -71,9 +71,9 @@ def imports(name):
 
 
 def test_the_reader_of_imports_sees_every_kind():
-    seen = dict(imports("envs/snooker.py"))
-    assert seen[".physics.cue"] and seen[".envs.noise"] and seen["gymnasium"]
-    assert seen[".render.pygame_view"] is False
+    seen = dict(imports("envs/shooting.py"))
+    assert seen[".physics.cue"] and seen[".envs.noise"] and seen["numpy"]
+    assert dict(imports("envs/pictures.py"))[".render.pygame_view"] is False
     assert dict(imports("render/pygame_view.py"))["pygame"] is False
     assert dict(imports("__init__.py"))[".physics.engine"]
     assert len(FILES) > 25

@@ -28,10 +28,10 @@ def mask(balls):
 class Shooter:
     """Everything between an intended shot and the balls at rest; one for all players of an environment."""
 
-    def __init__(self, actions, noise, physics, table, fidelity):
+    def __init__(self, actions: Actions, noise: Noise, physics: Physics, table: Table, fidelity):
         self.actions, self.noise, self.physics, self.table, self.fidelity = actions, noise, physics, table, fidelity
 
-    def shoot(self, intended, positions, on_table, rng, *, path=False):
+    def shoot(self, intended: tuple[float, float, float, float, float], positions, on_table, rng, *, path=False):
         """The ``Shot`` that ``intended`` = (speed, side, top, aim, elevation) becomes; noise is drawn from ``rng``. Nothing is changed."""
         speed, side, top, aim, elevation = self.noise.draw(rng, *intended, self.physics.R)
         v, w = cue.strike(speed, aim, *self.actions.tip(side, top), elevation, self.physics)

@@ -179,6 +179,7 @@ class SnookerEnv(gymnasium.Env):
 
     def _take_frame(self):
         """Take over from the frame what a visit keeps by itself."""
+        assert self.frames is not None
         table = self.frames.table
         self.positions, self.on_table, self.over = table.positions, table.on_table, table.over
         self.ball_on, self.in_hand, self.points = table.frame.ball_on, table.frame.in_hand, table.frame.break_points

@@ -15,7 +15,7 @@ from .._check import choice, refuse
 
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
 MOUTH = 0.012
-"""How far past the line of the noses [m] a ball may lie still: in a pocket's mouth, between jaw and fall of a middle pocket, there is room to nearly this."""
+"""How far past the line of the noses [m] a ball may lie still: just so far between the jaw and the fall of a middle pocket."""
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
 """Pocket indices 0..5, anticlockwise from (-x, -y); bottom is the baulk end, right the yellow side."""
 
