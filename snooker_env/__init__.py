@@ -2,6 +2,7 @@
 
 import gymnasium as _gymnasium
 
+from .match import match_env
 from .physics.engine import EventKind
 from .physics.parameters import Physics
 from .physics.table import POCKETS, Table
@@ -11,8 +12,8 @@ from .warm import warmup
 __version__ = "0.1.0"
 
 __all__ = [
-    "POCKETS", "EventKind", "Physics", "Shot", "ShotBatch", "SimulationError", "Table", "collide_balls", "collide_cushion", "simulate",
-    "simulate_batch", "strike", "warmup",
+    "POCKETS", "EventKind", "Physics", "Shot", "ShotBatch", "SimulationError", "Table", "collide_balls", "collide_cushion", "match_env",
+    "simulate", "simulate_batch", "strike", "warmup",
 ]  # fmt: skip
 
 # A string entry point keeps this import light and the spec JSON-able; a second import (a reload) stays silent.

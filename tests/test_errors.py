@@ -168,7 +168,7 @@ LAYOUTS = [
     case(batch(velocities=np.zeros((2, 2, 2))), "velocities", "shape (2, 2, 2)", "must have shape (3, 2, 2)"),
     case(batch(spins=np.zeros((3, 2))), "spins", "shape (3, 2)", "must have shape (3, 2, 3)"),
     case(batch(positions=[put(0.3, 0.0), put(0.3, 0.0), put(0.02, 0.0)]), "positions[2]", "balls 0 and 1", "overlap by 0.0325 m"),
-    case(batch(positions=[put(0.3, 0.0), put(0.9, 0.5), put(0.3, 0.0)]), "positions[1][1]", "(0.9, 0.5)", "must be on the table"),
+    case(batch(positions=[put(0.3, 0.0), put(0.905, 0.5), put(0.3, 0.0)]), "positions[1][1]", "(0.905, 0.5)", "must be on the table"),
     case(batch(positions=[put(0.3, 0.0), put(0.3, NAN), put(0.3, 0.0)]), "positions[1, 1, 1]", "nan", "must be finite"),
     case(batch(on_table=[True, True]), "on_table", "bool array of shape (2,)", "must be bool of shape (3, 2)"),
     case(batch(**{k: np.zeros((2, 0, n)) for k, n in WIDTHS.items()}), "positions", "shape (2, 0, 2)", "at least one ball", "empty tables"),
@@ -329,25 +329,38 @@ ENV = [
     *[
         case(make(**{field: wrong}), field, repr(wrong), allowed, f"{field}={wrong!r}")
         for field, allowed, wrongs in [
-            ("task", "must be one of 'visit'", ("frames", "Visit", ["visit"], {})),
+            ("task", "must be one of 'visit', 'frame'", ("frames", "Visit", ["visit"], {})),
             ("aim", "must be one of 'absolute', 'target'", ("relative", "Target", ["target"], {})),
             ("observation", "must be one of 'flat', 'balls'", ("pixels", "Flat", ["flat"], {})),
             ("reward", "must be one of 'points', 'points_and_fouls', 'pots'", ("score", "Points", ["points"], {})),
-            ("layout", "must be one of 'opened', 'held_out', 'break_off', 'line_up', 'colours' or \"random:N\" with N from 0 to 15",
-             ("Opened", "random", "random:", "random:-1", "random:3.0", "random: 3", "random:x")),
+            ("layout", "must be one of 'opened', 'held_out', 'break_off', 'line_up', 'colours', 'snookered', "
+             '"pots:easy", "pots:medium", "pots:hard" or "random:N" with N from 0 to 15',
+             ("Opened", "Default", "pots", "pots:", "pots:Easy", "random", "random:", "random:-1", "random:3.0", "random: 3", "random:x")),
             ("noise", "must be one of 'none', 'professional', 'amateur', 'club', 'olympiad' or a dict of ['aim_deg'", ("pro",)),
         ]
         for wrong in (*NOT_A_NAME, *wrongs)
     ],
     *[
         case(make(**{field: wrong}), field, repr(wrong), "must be True or False", f"{field}={wrong!r}")
-        for field in ("elevation", "placement")
+        for field in ("elevation", "placement", "decision")
         for wrong in (0, 1, None, "yes", 0.5, [True])
     ],
     *[
         case(make(render_mode=wrong), "render_mode", repr(wrong), "must be one of 'human', 'rgb_array', 'ansi'", f"render_mode={wrong!r}")
         for wrong in ("", "Human", "depth_array", 3, True, ["ansi"])
     ],
+    *[
+        case(make(**{field: wrong}), field, repr(wrong), f'must be {plain!r} with task="visit"', f"visit-{field}")
+        for field, wrong, plain in (("opponent", "random", "none"), ("miss", "clear_path", "off"), ("decision", True, False))
+    ],
+    *[
+        case(make(task="frame", opponent=wrong), "opponent", repr(wrong), "'none', 'random', 'ghost_ball', a path to a model (.zip)")
+        for wrong in ("", "Random", "model", 3, None, True, ["random"])
+    ],
+    case(make(task="frame", opponent="missing.zip"), "opponent", "'missing.zip'", "must be a model saved by Stable-Baselines3"),
+    *[case(make(task="frame", miss=w), "miss", repr(w), "must be one of 'off', 'clear_path'", f"miss={w!r}") for w in ("on", None, True)],
+    *[case(make(task="frame", reward=w), "reward", repr(w), "must be one of 'points', 'win'") for w in ("pots", "wins")],
+    case(make(reward="win"), "reward", "'win'", "must be one of 'points', 'points_and_fouls', 'pots'", "visit-win"),
     case(make(table="loose"), "table", "'loose'", "must be one of 'match', 'tight'", "env-table"),
     case(make(table=3), "table", "3", '"match", "tight"', "env-table=3"),
     case(make(table=None), "table", "None", 'must be "match", "tight" or a Table'),

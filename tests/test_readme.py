@@ -30,6 +30,8 @@ SHORT = {
     "benchmarks.speed": ["--shots", "20", "--repeats", "1"],
     "benchmarks.fit_cushion": [],
     "benchmarks.make_opened": ["--tables", "2", "--out", "{tmp}/opened.npz"],
+    "benchmarks.frames": ["--frames", "2", "--jobs", "1"],
+    "benchmarks.layouts_picture": ["--out", "{tmp}/layouts.png"],
     "benchmarks.pictures": ["--out", "{tmp}/shot.png"],
 }
 
@@ -40,6 +42,13 @@ def test_benchmark_commands_run(module, tmp_path):
     command, env = [sys.executable, "-m", module, *arguments], os.environ | {"SDL_VIDEODRIVER": "dummy"}
     done = subprocess.run(command, cwd=ROOT, check=True, timeout=300, capture_output=True, env=env)
     assert done.stdout.strip()
+
+
+def test_the_rules_cases_run():
+    command = re.search(r"python -m (tests\.rules_cases \S+?)`", README)
+    assert command is not None
+    done = subprocess.run([sys.executable, "-m", *command[1].split()], cwd=ROOT, check=True, timeout=300, capture_output=True, text=True)
+    assert done.stdout.splitlines()[-1].endswith(", 0 failed")
 
 
 def test_the_help_command_runs():

@@ -28,16 +28,21 @@ class Actions:
                       leaves in without noise (squirt is compensated, as a player does);
                       "target": potting line + 3 deg x (see ``line``)
     4    elevation    only with ``elevation=True``: 0 .. 30 deg, linear
-    -2,  place in     only with ``placement=True``; used when the cue ball is in hand, else
-    -1   the D        ignored: across the D, and from the baulk line (-1) back to the D's edge (+1)
+    next place in     only with ``placement=True``; used when the cue ball is in hand, else
+    two  the D        ignored: across the D, and from the baulk line (-1) back to the D's edge (+1)
+    last decision     only with ``decision=True``; used when the other player has just fouled,
+                      else ignored: below -1/3 the offender must play again from here, above
+                      1/3 the balls are replaced and he plays again (only after a miss was
+                      called, else as the middle), in the middle: play, with this same action
     ==== ============ =======================================================================
     """
 
-    def __init__(self, aim, elevation, placement, physics):
+    def __init__(self, aim, elevation, placement, physics, decision=False):
         self.aim = choice("aim", aim, AIMS)
         self.elevation, self.placement = truth("elevation", elevation), truth("placement", placement)
+        self.decision = truth("decision", decision)
         self.physics = physics
-        self.size = 4 + self.elevation + 2 * self.placement
+        self.size = 4 + self.elevation + 2 * self.placement + self.decision
 
     def check(self, action):
         """The action as a list of floats; ValueError unless it is finite, of the right shape and within [-1, 1]."""
@@ -55,9 +60,15 @@ class Actions:
         return a.tolist()
 
     def place(self, a):
-        """Where in the D the last two components put the cue ball: (x, y)."""
-        x, back = a[-2], 0.5 * (a[-1] + 1.0)
+        """Where in the D the two components of the placement put the cue ball: (x, y)."""
+        at = 4 + self.elevation
+        x, back = a[at], 0.5 * (a[at + 1] + 1.0)
         return D_RADIUS * x, BAULK_Y - D_RADIUS * sqrt(max(0.0, 1.0 - x * x)) * back
+
+    def decide(self, a):
+        """What an action list says after a foul: "play", "play_again" or "replace"; always "play" without ``decision``."""
+        wish = a[-1] if self.decision else 0.0
+        return "play_again" if wish < -1.0 / 3.0 else "replace" if wish > 1.0 / 3.0 else "play"
 
     def shot(self, a, positions, on_table, on):
         """(speed, side, top, aim, elevation) of an action list, the aim being the cue's direction [rad]."""

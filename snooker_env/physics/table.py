@@ -14,6 +14,8 @@ import numpy as np
 from .._check import array, choice, refuse
 
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
+MOUTH = 0.012
+"""How far past the line of the noses [m] a ball may lie still: just so far between the jaw and the fall of a middle pocket."""
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
 """Pocket indices 0..5, anticlockwise from (-x, -y); bottom is the baulk end, right the yellow side."""
 
@@ -74,7 +76,7 @@ class Table:
             if on_table is not None and not on_table[i]:
                 continue
             place = f"{field}[{i}]", (float(x), float(y))
-            if self.noses.size and not (abs(x) < HALF_WIDTH + 0.01 and abs(y) < HALF_LENGTH + 0.01):
+            if self.noses.size and not (abs(x) < HALF_WIDTH + MOUTH and abs(y) < HALF_LENGTH + MOUTH):
                 raise refuse(*place, f"must be on the table, |x| <= {HALF_WIDTH - R:.6g}, |y| <= {HALF_LENGTH - R:.6g} away from pockets")
             for axis, side, level, low, high in self.noses:
                 along, across = (y, x) if axis == 0 else (x, y)

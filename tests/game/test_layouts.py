@@ -7,6 +7,8 @@ from hypothesis import strategies as st
 
 from snooker_env.game import layouts
 from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKETS, SPOTS, YELLOW
+from snooker_env.game.pots import pots
+from snooker_env.game.snookered import is_snookered
 
 NAMES = ["break_off", "line_up", "colours", "random:0", "random:6", "random:15"]
 
@@ -90,3 +92,52 @@ def test_unknown_names_are_refused(name):
 def test_other_generators_are_refused():
     with pytest.raises(ValueError, match="Generator"):
         layouts.break_off(np.random.RandomState(0))
+
+
+# Snookers and single pots
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_snookered_is_what_it_says(seed):
+    positions, on_table = layouts.layout("snookered", np.random.default_rng(seed))
+    assert is_snookered(positions, on_table, 0xFFFE)[0]
+    assert 1 <= on_table[1:YELLOW].sum() <= 3 and on_table[0] and on_table[YELLOW:].all()
+    assert np.array_equal(positions[YELLOW:], SPOTS[YELLOW:])
+    assert gaps(positions, on_table).min() >= layouts.GAP - 1e-12
+    moved = positions.copy()
+    moved[16:] += 10.0  # without the colours it would be no snooker
+    assert not is_snookered(moved, on_table, 0xFFFE)[0]
+
+
+def test_snookers_are_laid_by_different_colours():
+    behind = set()
+    for seed in range(60):
+        positions, _ = layouts.layout("snookered", np.random.default_rng(seed))
+        behind.add(int(np.argmin(np.hypot(*(positions[YELLOW:] - positions[0]).T))))
+    assert len(behind) >= 5
+
+
+@pytest.mark.parametrize("difficulty", ["easy", "medium", "hard"])
+def test_single_pots_are_as_hard_as_they_say(difficulty):
+    low, high = layouts.POT_WINDOWS[difficulty]
+    for seed in range(40):
+        positions, on_table = layouts.layout(f"pots:{difficulty}", np.random.default_rng(seed))
+        assert np.flatnonzero(on_table).tolist() == [0, 1]
+        assert low <= pots(positions, on_table, 2)[0, 5] < high
+        assert gaps(positions, on_table).min() >= layouts.GAP - 1e-12
+
+
+def test_the_difficulties_leave_no_gap_and_do_not_overlap():
+    windows = [layouts.POT_WINDOWS[d] for d in ("hard", "medium", "easy")]
+    assert [w[1] for w in windows[:2]] == [w[0] for w in windows[1:]] and windows[-1][1] == np.inf
+
+
+@pytest.mark.parametrize("name", ["pots", "pots:", "pots:Easy", "Snookered"])
+def test_unknown_drills_are_refused(name):
+    with pytest.raises(ValueError, match=r"^layout = "):
+        layouts.layout(name, np.random.default_rng(0))
+
+
+def test_unknown_difficulties_are_refused():
+    with pytest.raises(ValueError, match=r"^difficulty = "):
+        layouts.single_pot(np.random.default_rng(0), "very hard")

@@ -325,3 +325,13 @@ def test_pocket_acceptance(kind, angle, width):
     w[:, 0, 0], w[:, 0, 1] = -1.5 * d[1] / R, 1.5 * d[0] / R
     dropped = sn.simulate_batch(p, v, w).potted[:, 0] >= 0
     assert dropped.sum() == pytest.approx(width, rel=0.45, abs=6)
+
+
+def test_a_ball_may_lie_still_in_the_mouth_of_a_pocket():
+    """Found in random play: half a millimetre clear of the jaw and of the fall, 10.4 mm past the line of the noses."""
+    place = (0.899444997865469, 0.03449467907672166)
+    shot = sn.simulate([place, (0.0, 0.0)], [(0.0, 0.0)] * 2, np.zeros((2, 3)))
+    assert shot.on_table.all() and tuple(shot.positions[0]) == place
+    for wrong in [(0.9145, 0.03449), (0.899444997865469, 0.033), (0.899444997865469, 0.036), (0.91, 0.5)]:
+        with pytest.raises(ValueError, match=r"positions\[0\] = .*(must be on the table|over a pocket|overlaps)"):
+            sn.simulate([wrong, (0.0, 0.0)], [(0.0, 0.0)] * 2, np.zeros((2, 3)))

@@ -1,0 +1,81 @@
+"""What do the layouts look like? One picture of them all, as the README shows it.
+
+    python -m benchmarks.layouts_picture [--out FILE] [--seed N]
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from snooker_env.game.balls import BALL_RADIUS, REDS_MASK
+from snooker_env.game.layouts import layout
+from snooker_env.game.pots import pots
+from snooker_env.render.pygame_view import rgb_array
+from snooker_env.render.scene import scene
+
+FILE = Path(__file__).parent / "pictures" / "layouts.png"
+HEIGHT, COLUMNS, GAP = 330, 3, 6
+"""Pixels of one table's height, tables a line, and pixels between them."""
+
+SHOWN = {
+    "break_off": "the start of a frame",
+    "opened": "opened by real simulated play",
+    "line_up": "the practice line-up",
+    "colours": "the six colours on their spots",
+    "random:6": "six reds sprinkled",
+    "snookered": "no red can be struck at both edges",
+    "pots:easy": "its line may err by 0.23 degrees or more",
+    "pots:medium": "by 0.06 to 0.23 degrees",
+    "pots:hard": "by 0.02 to 0.06 degrees",
+}
+
+
+def picture(name, says, seed):
+    """One layout with its name; a single pot with its line and ghost ball."""
+    positions, on_table = layout(name, np.random.default_rng(seed))
+    overlay = {}
+    if name.startswith("pots:"):
+        ghost = pots(positions, on_table, REDS_MASK, most=1)[0, 2:4]
+        overlay = {"aim": np.array([positions[0], ghost]), "ghost": ghost}
+    elif name == "snookered":
+        overlay = {"paths": sight(positions, on_table)}
+    return rgb_array(scene("match", positions, on_table, text=f'layout="{name}": {says}', **overlay), HEIGHT)
+
+
+def sight(positions, on_table):
+    """{red: the two tangents from the cue ball to its edges}: lines that something bars, as (3, 2) points."""
+    lines = {}
+    for red in np.flatnonzero(on_table[1:16]) + 1:
+        d = positions[red] - positions[0]
+        side = BALL_RADIUS * np.array([-d[1], d[0]]) / np.hypot(*d)
+        lines[int(red)] = np.array([positions[red] + side, positions[0], positions[red] - side])
+    return lines
+
+
+def sheet(seed):
+    """All of them: uint8 (H, W, 3)."""
+    tables = [picture(name, says, seed) for name, says in SHOWN.items()]
+    rows, (height, width, _) = -(-len(tables) // COLUMNS), tables[0].shape
+    image = np.full((rows * (height + GAP) - GAP, COLUMNS * (width + GAP) - GAP, 3), 255, np.uint8)
+    for k, one in enumerate(tables):
+        top, left = k // COLUMNS * (height + GAP), k % COLUMNS * (width + GAP)
+        image[top : top + height, left : left + width] = one
+    return image
+
+
+def main():
+    """Command line."""
+    import pygame
+
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=FILE)
+    parser.add_argument("--seed", type=int, default=4)
+    args = parser.parse_args()
+    args.out.parent.mkdir(exist_ok=True)
+    pygame.image.save(pygame.surfarray.make_surface(sheet(args.seed).swapaxes(0, 1)), args.out)
+    print(args.out)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,72 @@
+"""How is a shot carried out, and what does the referee see of it? Noise, strike and engine in one; the event log read as a ``Stroke``."""
+
+import numpy as np
+
+from .._check import refuse
+from ..game.balls import BALL_RADIUS, CUE, N_BALLS, TOUCH, mask_of
+from ..game.referee import Stroke
+from ..physics import cue
+from ..physics.contact import parse_fidelity
+from ..physics.engine import EventKind
+from ..physics.parameters import Physics
+from ..physics.table import Table
+from ..simulation import play
+from .actions import Actions
+from .noise import Noise
+
+AT_ONCE = 1e-9
+"""Contacts nearer than this [s] are simultaneous."""
+
+_BITS = 1 << np.arange(N_BALLS)
+
+
+def mask(balls):
+    """The mask of a bool array (22,)."""
+    return int(balls @ _BITS)
+
+
+class Shooter:
+    """Everything between an intended shot and the balls at rest; one for all players of an environment."""
+
+    def __init__(self, actions: Actions, noise: Noise, physics: Physics, table: Table, fidelity):
+        self.actions, self.noise, self.physics, self.table, self.fidelity = actions, noise, physics, table, fidelity
+
+    def shoot(self, intended: tuple[float, float, float, float, float], positions, on_table, rng, *, path=False):
+        """The ``Shot`` that ``intended`` = (speed, side, top, aim, elevation) becomes; noise is drawn from ``rng``. Nothing is changed."""
+        speed, side, top, aim, elevation = self.noise.draw(rng, *intended, self.physics.R)
+        v, w = cue.strike(speed, aim, *self.actions.tip(side, top), elevation, self.physics)
+        velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
+        velocities[CUE], spins[CUE] = v[:2], w
+        return play(positions, velocities, spins, on_table, self.physics, self.table, self.fidelity, path=path)
+
+
+def shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity):
+    """The ``Shooter`` of an environment's arguments, each as documented in ``SnookerEnv``. Raises ValueError."""
+    world, cloth = Physics.of(physics), Table.of(table)
+    if world.R != BALL_RADIUS:
+        raise refuse("physics.R", world.R, f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it")
+    world.check_stopping()
+    if cloth.name == "unbounded":
+        raise refuse("table", table, 'must be "match", "tight" or a Table')
+    quality, errors = parse_fidelity(fidelity), Noise.of(noise)
+    return Shooter(Actions(aim, elevation, placement, world, decision), errors, world, cloth, quality)
+
+
+def stroke_of(shot, positions, on_table, speed):
+    """What the referee sees of a ``Shot`` played at cue speed ``speed`` [m/s] from ``positions`` (22, 2) and ``on_table`` (22,): first
+    contact, touching balls, pots.
+
+    No ball leaves the table and the cue ball jumps none: the simulation is planar.
+    """
+    gaps = np.hypot(*(positions - positions[CUE]).T) - 2 * BALL_RADIUS
+    touching = mask(on_table & (gaps < TOUCH)) & ~1
+    events = shot.events
+    hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
+    first = moved = 0
+    if len(hits):
+        start = hits["time"][0]
+        first = mask_of(hits["j"][hits["time"] <= start + AT_ONCE].tolist())
+        # A touching ball that the cue ball is played away from is not struck; one it is played into is struck before the cue ball has
+        # gone ten times the gap that still counts as touching.
+        moved = touching & first if start * speed <= 10 * TOUCH else 0
+    return Stroke(first=first, potted=mask(shot.potted >= 0), touching=touching, moved=moved)
