@@ -20,6 +20,7 @@ from ..game.ruling import AUTO
 from ..game.settle import settle_table
 from ..simulation import Shot
 from .shooting import Shooter, mask, stroke_of
+from .state import check_keys, checked_layout
 
 STATE = ("frame", "positions", "on_table")
 
@@ -121,13 +122,8 @@ class FrameTable:
 
     def set_state(self, state):
         """Take over what ``get_state`` gave, other keys are not read; ValueError if it is not sound."""
-        missing = set(STATE) - set(state)
-        if missing:
-            raise refuse("state", sorted(state), f"must be a state of get_state(); missing {sorted(missing)}")
-        positions, on_table = np.array(state["positions"], float), np.array(state["on_table"])
-        if positions.shape != (N_BALLS, 2) or on_table.shape != (N_BALLS,) or on_table.dtype != bool or not np.isfinite(positions).all():
-            raise refuse("state", "positions, on_table", "must be finite (22, 2) and bool (22,)")
-        self.shooter.table.check(positions, self.shooter.physics.R, "state.positions", on_table)
+        check_keys(state, STATE)
+        positions, on_table = checked_layout(state, self.shooter.table, self.shooter.physics.R)
         frame = Frame.from_dict(state["frame"])
         if frame.miss != self.miss:
             raise refuse("state.frame.miss", frame.miss, f"must be {self.miss!r}, as this environment plays")

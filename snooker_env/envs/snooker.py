@@ -16,7 +16,7 @@ from .frame_task import FrameTask
 from .pictures import FPS, MODES, Pictures
 from .rewards import REWARDS
 from .shooting import mask, shooter_of, stroke_of
-from .state import checked
+from .state import KEYS, check_keys, check_rng, checked
 
 TASKS = ("visit", "frame")
 FRAME_ONLY = {"opponent": "none", "miss": "off", "decision": False}
@@ -162,6 +162,8 @@ class SnookerEnv(gymnasium.Env):
     def set_state(self, state):
         """Take over a state from ``get_state``; the next shot plays on identically. ValueError if it is not sound."""
         if self.frames is not None:
+            check_keys(state, (*KEYS, "frame"))
+            check_rng(state["rng"], self.np_random)
             self.frames.table.set_state(state)
             self._take_frame()
             self.np_random.bit_generator.state = state["rng"]

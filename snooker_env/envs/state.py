@@ -24,20 +24,40 @@ class State(NamedTuple):
 KEYS = State._fields
 
 
+def check_keys(state, keys):
+    """Raise ValueError unless ``state`` is a dict with these keys."""
+    if not isinstance(state, dict):
+        raise refuse("state", state, "must be a state of get_state(), a dict")
+    if missing := sorted(set(keys) - set(state)):
+        raise refuse("state", sorted(state, key=str), f"must be a state of get_state(); missing {missing}")
+
+
+def checked_layout(state, table, R):
+    """The arrays positions (22, 2) and on_table (22,) of a state; ValueError unless they are a sound layout."""
+    positions = array("state.positions", state["positions"], (N_BALLS, 2))
+    on_table = flags("state.on_table", state["on_table"], (N_BALLS,))
+    check_layout(positions, on_table, R, table, "state.positions")
+    return positions, on_table
+
+
+def check_rng(rng, generator):
+    """Raise ValueError unless ``rng`` is a state that the numpy ``generator`` could take over; the generator is left as it is."""
+    trial = type(generator.bit_generator)()
+    try:
+        trial.state = rng
+    except (TypeError, ValueError, KeyError):
+        raise refuse("state.rng", rng, f"must be the state of a {type(trial).__name__} generator") from None
+
+
 def checked(state, table, R, generator):
     """The ``State`` that a dict describes; ValueError names the first part that is wrong.
 
     ``generator``: the numpy Generator that is to take over the part "rng"; it is left as it is.
     """
-    if not isinstance(state, dict):
-        raise refuse("state", state, "must be a state of get_state(), a dict")
-    if missing := sorted(set(KEYS) - set(state)):
-        raise refuse("state", sorted(state, key=str), f"must be a state of get_state(); missing {missing}")
+    check_keys(state, KEYS)
     if unknown := [key for key in state if key not in KEYS]:
         raise refuse("state", unknown, f"must be a state of get_state() with the keys {list(KEYS)} only")
-    positions = array("state.positions", state["positions"], (N_BALLS, 2))
-    on_table = flags("state.on_table", state["on_table"], (N_BALLS,))
-    check_layout(positions, on_table, R, table, "state.positions")
+    positions, on_table = checked_layout(state, table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
     ball_on = BallOn(integer("state.ball_on", state["ball_on"], BallOn.NOTHING, BallOn.BLACK))
     mask = int(on_table @ (1 << np.arange(N_BALLS)))
@@ -48,10 +68,6 @@ def checked(state, table, R, generator):
             raise refuse("state.ball_on", ball_on.name, "must name balls of which one is on the table")
         if ball_on > BallOn.RED and mask & REDS_MASK:
             raise refuse("state.ball_on", ball_on.name, "must be RED or ANY_COLOUR while reds are on the table")
-    trial = type(generator.bit_generator)()
-    try:
-        trial.state = state["rng"]
-    except (TypeError, ValueError, KeyError):
-        raise refuse("state.rng", state["rng"], f"must be the state of a {type(trial).__name__} generator") from None
+    check_rng(state["rng"], generator)
     points = integer("state.points", state["points"], 0, 155)
     return State(positions, on_table, ball_on, in_hand, points, over, state["rng"])
