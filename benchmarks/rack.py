@@ -8,11 +8,11 @@
   both Newton's law in Moreau's form (u+ + e u- complementary to L) and Poisson's (L grows by e L in restitution). Then the engine.
 * **Compliant**: the yardstick. All balls, contacts as springs with dampers, in micro-steps of 0.1 us for 10 ms; then the engine.
   F = k d^p + c d^q d', never pulling, d the overlap. Hertz: p = 3/2, k = (4/3) (E / (2 (1 - nu^2))) sqrt(R / 2), the resin's E = 5 GPa and
-  nu = 0.34 (round figures; what twice the stiffness does is printed: next to nothing). q = 1/4 (Tsuji 1992) loses the same share at every speed; q = 1/2
-  (Kuwabara & Kono 1987) loses more at speed. Linear: p = 1, q = 0, with Hertz's contact time at 5 m/s. c is set so that one pair has the
-  engine's restitution (q = 1/2: at 5 m/s). Friction between balls and on the cloth is Coulomb's, its impulse in a step at most what
-  stops the slip. As in the engine's impact, friction may lift a ball or press it into the cloth, which answers with friction, and the
-  vertical speed is dropped afterwards.
+  nu = 0.34: round figures, and what twice the stiffness changes is printed. q = 1/4 (Tsuji 1992) loses the same share at every speed;
+  q = 1/2 (Kuwabara & Kono 1987) loses more at speed. Linear: p = 1, q = 0, with Hertz's contact time at 5 m/s. c is set so that one
+  pair has the engine's restitution (q = 1/2: at 5 m/s). Friction between balls and on the cloth is Coulomb's, its impulse in a step at
+  most what stops the slip. As in the engine's impact, friction may lift a ball or press it into the cloth, which answers with
+  friction, and the vertical speed is dropped afterwards.
 
 Energies are kinetic, spin included, 10 ms after the cue ball met the rack, over the cue ball's own before. "Misplaced": half the sum over
 balls of the difference of two such shares, energy that is on another ball, or lost, in one model only. "Sharers": (sum E)^2 / sum E^2 over
