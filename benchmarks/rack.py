@@ -14,9 +14,9 @@
   most what stops the slip. As in the engine's impact, friction may lift a ball or press it into the cloth, which answers with
   friction, and the vertical speed is dropped afterwards.
 
-Energies are kinetic, spin included, 10 ms after the cue ball met the rack, over the cue ball's own before. "Misplaced": half the sum over
-balls of the difference of two such shares, energy that is on another ball, or lost, in one model only. "Sharers": (sum E)^2 / sum E^2 over
-the reds, how many share their energy.
+Energies are kinetic, spin included, 10 ms after the cue ball met the rack, over the cue ball's own before. "Misplaced": how much of it
+a model has on other balls than Hertz does, or has lost: half the sum of the differences, the lost share included. "Sharers":
+(sum E)^2 / sum E^2 over the reds, how many share their energy.
 """
 
 import argparse
@@ -307,7 +307,8 @@ def shares(v, w, speed):
 
 
 def misplaced(a, b):
-    return 0.5 * float(np.abs(a - b).sum())
+    """Of two lists of shares: how much would have to change its place, what is lost being a place too."""
+    return 0.5 * float(np.abs(a - b).sum() + abs(a.sum() - b.sum()))
 
 
 def sharers(x):
