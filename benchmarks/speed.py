@@ -126,10 +126,10 @@ def timed(work, repeats, items):
     return float(np.median(found)), min(found), max(found)
 
 
-def one_by_one(p, v, w, fidelity, repeats):
-    """Median over shots of each shot's own best time [us], and events a shot: the batch kernel on a slice of one."""
+def one_by_one(p, v, w, fidelity, repeats, physics=None):
+    """Each shot's own best time [us]: the batch kernel on a slice of one."""
     code = contact.parse_fidelity(fidelity)
-    physics, table = sn.Physics.preset("paper"), Table.preset("match")
+    physics, table = sn.Physics.of(physics), Table.preset("match")
     here = np.ones(p.shape[:2], bool)
     best = np.full(len(p), np.inf)
     for _ in range(repeats):

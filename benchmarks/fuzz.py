@@ -1,0 +1,267 @@
+"""Does any shot break? Random shots of every kind, fidelity and physics, each checked against every invariant of ``invariants.py``.
+
+Run by ``python -m benchmarks.stability --fuzz N``. A batch is made of nothing but its seed and its number, so that a failure, named by
+seed, batch and index, can be played again: ``python -m benchmarks.stability --replay SEED BATCH INDEX``.
+"""
+
+import dataclasses
+import time
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+
+import snooker_env as sn
+from snooker_env import Table
+from snooker_env.game.balls import SPOTS
+from snooker_env.physics import contact
+from snooker_env.physics.engine import Status
+from snooker_env.physics.table import HALF_LENGTH, HALF_WIDTH, MOUTH
+
+from . import invariants
+
+R = 0.02625
+D = 2 * R
+BATCH = 200
+PUBLIC = 20
+MOST_EVENTS = 100_000
+GAPS = np.array([0.0, 0.0, 1e-15, 1e-12, 1e-9, 1e-6])
+SCENES = ("scattered", "rack", "cluster", "frozen", "melee")
+FIDELITIES = ("fast", "standard", "standard", "reference", "euler:100", "euler:400", "euler:1000")
+WORLDS = ("paper", "match", "random", "extreme")
+
+
+@dataclass(frozen=True)
+class Batch:
+    """``BATCH`` shots of one kind."""
+
+    scene: str
+    world: str
+    fidelity: str
+    physics: sn.Physics
+    table: Table
+    positions: np.ndarray
+    velocities: np.ndarray
+    spins: np.ndarray
+
+
+def legal(p, table):
+    """Which centres (..., 2) are on the table, in no cushion or jaw and over no pocket?"""
+    if not len(table.noses):
+        return np.ones(p.shape[:-1], bool)
+    x, y = p[..., 0], p[..., 1]
+    good = (np.abs(x) < HALF_WIDTH + MOUTH) & (np.abs(y) < HALF_LENGTH + MOUTH)
+    for axis, side, level, low, high in table.noses:
+        along, across = (y, x) if axis == 0 else (x, y)
+        good &= (along < low) | (along > high) | (side * across <= level - R)
+    for cx, cy, radius in table.falls:
+        good &= np.hypot(x - cx, y - cy) > radius
+    for cx, cy, radius, ux, uy, cos_half in table.jaws:
+        far = np.hypot(x - cx, y - cy)
+        good &= (far >= (radius + R) * (1 - 1e-15)) | ((x - cx) * ux + (y - cy) * uy < cos_half * far)
+    return good
+
+
+def put(p, placed, todo, draw, anywhere, table):
+    """Give ball ``placed`` of every table in ``todo`` a place from ``draw(todo)`` that is legal and clear of the balls before it.
+
+    Where that finds no room, ``anywhere(todo)`` takes its place."""
+    for attempt in range(1000):
+        place = draw(todo) if attempt < 100 else anywhere(todo)
+        far = np.hypot(*(p[todo, :placed] - place[:, None]).transpose(2, 0, 1)).min(1, initial=9.0)
+        good = legal(place, table) & (far >= D * (1 - 1e-15))
+        p[todo[good], placed] = place[good]
+        todo = todo[~good]
+        if not len(todo):
+            return
+    raise RuntimeError(f"no room for ball {placed}")
+
+
+def _anywhere(rng):
+    high = np.array([HALF_WIDTH + MOUTH, HALF_LENGTH + MOUTH])
+    return lambda todo: rng.uniform(-high, high, (len(todo), 2))
+
+
+def _at_cushion(rng, table):
+    """Touching a nose or jaw, with a gap of ``GAPS``."""
+
+    def draw(todo):
+        gap = rng.choice(GAPS, len(todo))
+        nose = table.noses[rng.integers(len(table.noses), size=len(todo))]
+        along, across = rng.uniform(nose[:, 3], nose[:, 4]), nose[:, 1] * (nose[:, 2] - R - gap)
+        out = np.where(nose[:, :1] == 0, np.column_stack([across, along]), np.column_stack([along, across]))
+        jaw = table.jaws[rng.integers(len(table.jaws), size=len(todo))]
+        turn = np.arctan2(jaw[:, 4], jaw[:, 3]) + np.arccos(jaw[:, 5]) * rng.uniform(-1, 1, len(todo))
+        far = jaw[:, 2] + R + gap
+        at_jaw = jaw[:, :2] + far[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+        return np.where(rng.random((len(todo), 1)) < 0.3, at_jaw, out)
+
+    return draw
+
+
+def _at_ball(rng, p, placed, lattice):
+    """Touching one of the balls before it, with a gap of ``GAPS``; half of them in the lattice, so that loops close."""
+
+    def draw(todo):
+        turn = rng.uniform(-np.pi, np.pi, len(todo))
+        turn = np.where(rng.random(len(todo)) < 0.6, lattice[todo] + np.pi / 3 * rng.integers(6, size=len(todo)), turn)
+        far = D + rng.choice(GAPS, len(todo))
+        return p[todo, rng.integers(placed, size=len(todo))] + far[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+
+    return draw
+
+
+def layouts(rng, scene, n, table, b=BATCH):
+    """b layouts of n balls: (b, n, 2)."""
+    p, every = np.full((b, n, 2), 99.0), np.arange(b)
+    if scene == "rack":
+        p[:] = SPOTS
+        p[:, 0] = np.column_stack([rng.uniform(-0.29, 0.29, b), rng.uniform(-1.6, -1.1, b)])
+        near = rng.random(b) < 0.1  # a cue ball that touches the pack
+        turn = rng.uniform(-1.7, -1.4, near.sum())
+        p[near, 0] = p[near, 1] + (D + rng.choice(GAPS, near.sum()))[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+        clear = np.hypot(*(p[:, 1:] - p[:, :1]).transpose(2, 0, 1)).min(1) >= D * (1 - 1e-15)
+        p[~clear, 0] = 0.1, -1.3
+        return p
+    lattice = rng.uniform(-np.pi, np.pi, b)
+    anywhere = _anywhere(rng)
+    for ball in range(n):
+        draw = anywhere
+        if scene == "cluster" and ball:
+            draw = _at_ball(rng, p, ball, lattice)
+        if scene == "frozen" and len(table.noses):
+            draw = _at_cushion(rng, table) if ball % 2 == 0 else _at_ball(rng, p, ball, lattice)
+        put(p, ball, every, draw, anywhere, table)
+    return p
+
+
+def motions(rng, scene, p):
+    """Velocities (b, n, 2) and spins (b, n, 3): a struck ball, or in a melee all of them with any spin."""
+    b, n = p.shape[:2]
+    v, w = np.zeros((b, n, 2)), np.zeros((b, n, 3))
+    if scene == "melee":
+        speed, spin = 10 ** rng.uniform(-9, np.log10(50), (b, n)), 10 ** rng.uniform(-3, np.log10(5000), (b, n))
+        turn, axis = rng.uniform(-np.pi, np.pi, (b, n)), rng.normal(size=(b, n, 3))
+        v[:] = (speed * (rng.random((b, n)) < 0.7))[..., None] * np.stack([np.cos(turn), np.sin(turn)], -1)
+        w[:] = (spin * (rng.random((b, n)) < 0.7))[..., None] * axis / np.linalg.norm(axis, axis=-1, keepdims=True)
+        return v, w
+    to = p[np.arange(b), rng.integers(min(1, n - 1), n, b)] - p[:, 0]
+    far = np.maximum(np.hypot(*to.T), D)
+    off = np.arcsin(np.clip(D / far, 0, 1)) * rng.uniform(-1.1, 1.1, b)
+    off[rng.random(b) < 0.15] = 0.0
+    aim = np.where(rng.random(b) < 0.75, np.arctan2(to[:, 1], to[:, 0]) + off, rng.uniform(-np.pi, np.pi, b))
+    speed = np.where(rng.random(b) < 0.9, rng.uniform(0.05, 7, b), 10 ** rng.uniform(-9, np.log10(50), b))
+    side, top, lean = rng.uniform(-0.5, 0.5, b), rng.uniform(-0.5, 0.5, b), rng.uniform(-0.3, 0.3, b)
+    q = 2.5 * speed / R
+    v[:, 0] = speed[:, None] * np.column_stack([np.cos(aim), np.sin(aim)])
+    w[:, 0] = np.column_stack([q * (lean * np.cos(aim) - top * np.sin(aim)), q * (lean * np.sin(aim) + top * np.cos(aim)), q * side])
+    return v, w
+
+
+def world(rng, name):
+    """The constants of a batch."""
+    if name in ("paper", "match"):
+        return sn.Physics.preset(name)
+    if name == "random":
+        return sn.Physics(
+            mu_s=rng.uniform(0.02, 0.5), mu_r=10 ** rng.uniform(-2.5, -1), spin_decel=rng.uniform(1, 60), e_b=rng.uniform(0, 1),
+            mu_bb=rng.uniform(0, 0.3), e_c=rng.uniform(0, 1), mu_c=rng.uniform(0, 0.4), sin_theta=rng.uniform(0, 0.6),
+        )  # fmt: skip
+    pick = lambda *values: float(rng.choice(values))  # noqa: E731
+    return sn.Physics(
+        mu_s=pick(1e-3, 0.21, 0.5, 0.8), mu_r=pick(1e-3, 0.0127, 0.1, 1.0), spin_decel=pick(0.0, 2.0, 22.0, 500.0), e_b=pick(0.0, 0.5, 1.0),
+        mu_bb=pick(0.0, 0.05, 0.5, 1.0), e_c=pick(0.0, 0.5, 1.0), mu_c=pick(0.0, 0.14, 0.5, 1.0), sin_theta=pick(0.0, 0.4, 0.9),
+    )  # fmt: skip
+
+
+def batch(seed, number):
+    """Batch ``number`` of the fuzz with this seed: the same for ever."""
+    rng = np.random.default_rng([seed, number])
+    scene, fidelity = str(rng.choice(SCENES)), str(rng.choice(FIDELITIES))
+    name = str(rng.choice(WORLDS, p=[0.3, 0.3, 0.3, 0.1]))
+    if name == "extreme" and fidelity.startswith("euler"):
+        name = "random"
+    physics = world(rng, name)
+    if fidelity.startswith("euler"):  # near e = 1 its last step gains energy without end, see the table of the scheme
+        physics = dataclasses.replace(physics, e_b=min(physics.e_b, 0.95), e_c=min(physics.e_c, 0.98))
+    table = Table.of((None, "match", "match", "match", "tight")[rng.integers(5)])
+    n = 22 if scene == "rack" else int(rng.choice([1, 2, 3, 4, 6, 10, 16, 22]))
+    p = layouts(rng, scene, n, table)
+    return Batch(scene, name, fidelity, physics, table, p, *motions(rng, scene, p))
+
+
+def allowed(fidelity):
+    """The bound of each invariant, in the order of ``invariants.NAMES``. Euler's steps are not located: its energy may err by 5/N."""
+    _, n = contact.parse_fidelity(fidelity)
+    bounds = dict.fromkeys(invariants.NAMES, 0.0)
+    bounds |= {
+        "jump": 1e-12, "energy at impact": 5 / n if n else 1e-9, "energy between": 1e-12, "momentum": 1e-6, "parting": 1 / n if n else 1e-5,
+        "overlap": 1e-9, "in cushion": 1e-9, "rest": 1e-9,
+    }  # fmt: skip
+    return np.array([bounds[name] for name in invariants.NAMES])
+
+
+def play(one):
+    """A batch's ``Checked``."""
+    here = np.ones(one.positions.shape[:2], bool)
+    code = contact.parse_fidelity(one.fidelity)
+    return invariants.play(one.positions, one.velocities, one.spins, here, one.physics, one.table, code, MOST_EVENTS)
+
+
+@dataclass
+class Fuzzed:
+    """What a fuzz found."""
+
+    shots: int = 0
+    seconds: float = 0.0
+    worst: dict = field(default_factory=dict)
+    """Fidelity -> worst figure of each invariant, in the order of ``invariants.NAMES``."""
+    events: dict = field(default_factory=dict)
+    """Scene -> most events of a shot."""
+    drawn: Counter = field(default_factory=Counter)
+    """(scene, world, fidelity) -> shots."""
+    failures: list = field(default_factory=list)
+    """(batch, index, what, figure, scene, world, fidelity)"""
+
+
+def compare_public(one, found, threads):
+    """Does ``simulate_batch`` give the same bits? It also checks every layout."""
+    batch = sn.simulate_batch(one.positions, one.velocities, one.spins, one.table, one.physics, one.fidelity, threads=threads)
+    same = (batch.positions == found.positions).all((1, 2)) & (batch.duration == found.duration) & (batch.event_count == found.n_events)
+    return same & (batch.potted == found.potted).all(1) & (batch.on_table == found.on_table).all(1)
+
+
+def run(shots, seed, threads, say):
+    """The fuzz: shots in batches of ``BATCH``, every ``PUBLIC``-th batch through ``simulate_batch`` as well. ``say``: a progress line."""
+    out, started, count = Fuzzed(), time.perf_counter(), -(-shots // BATCH)
+
+    def one(number):
+        drawn = batch(seed, number)
+        found = play(drawn)
+        return number, drawn, found
+
+    with ThreadPoolExecutor(threads) as pool:
+        for first in range(0, count, 50):
+            for number, drawn, found in pool.map(one, range(first, min(first + 50, count))):
+                _take(out, number, drawn, found, threads)
+            out.seconds = time.perf_counter() - started
+            say(f"{out.shots:,} of {count * BATCH:,} shots, {len(out.failures)} failures, {out.seconds:.0f} s")
+    return out
+
+
+def _take(out, number, drawn, found, threads):
+    """Add a batch's findings."""
+    ok = found.status == Status.OK
+    labels = drawn.scene, drawn.world, drawn.fidelity
+    out.shots += len(ok)
+    out.drawn[labels] += len(ok)
+    worst = found.worst[ok].max(0, initial=-np.inf)
+    out.worst[drawn.fidelity] = np.maximum(out.worst.get(drawn.fidelity, worst), worst)
+    out.events[drawn.scene] = max(out.events.get(drawn.scene, 0), int(found.n_events[ok].max(initial=0)))
+    out.failures += [(number, int(k), Status(found.status[k]).name, float(found.n_events[k]), *labels) for k in np.flatnonzero(~ok)]
+    for k, c in np.argwhere((found.worst > allowed(drawn.fidelity)) & ok[:, None]):
+        out.failures.append((number, int(k), invariants.NAMES[c], float(found.worst[k, c]), *labels))
+    if number % PUBLIC == 0 and ok.all():
+        other = np.flatnonzero(~compare_public(drawn, found, threads))
+        out.failures += [(number, int(k), "simulate_batch gives other bits", 1.0, *labels) for k in other]

@@ -1,0 +1,250 @@
+"""Does a shot keep the laws? Reads the engine's own log of a shot, piece by piece, and gives the worst figure of every invariant.
+
+The log holds each ball's motion as closed forms, so what lies between two events is checked as well as the events: for every pair the
+gap is followed by steps no longer than the gap allows (at least ``LEAST``, which can hide 2e-10 m at the most), and so are jaws.
+Energies are kinetic, of translation and rotation, per unit mass.
+"""
+
+from dataclasses import dataclass
+from math import hypot, inf, isfinite, sqrt
+
+import numba
+import numpy as np
+
+from snooker_env.physics import cloth
+from snooker_env.physics.cloth import AX, AY, COLUMNS, GONE, REST, T0, T_END, VX, VY, X, Y
+from snooker_env.physics.engine import EventKind, Status
+from snooker_env.physics.parameters import P_MU_A, P_MU_B, P_MU_S, P_R, P_SPIN
+from snooker_env.simulation import MAX_EVENTS, _run
+
+FINITE, CLOCK, JUMP, ENERGY, PHASE, MOMENTUM, PARTING, OVERLAP, CUSHION, REST_TIME, ACCOUNT = range(11)
+NAMES = ("finite", "clock", "jump", "energy at impact", "energy between", "momentum", "parting", "overlap", "in cushion", "rest", "account")
+WHAT = {
+    "finite": "numbers that are not finite",
+    "clock": "time going backwards [s]",
+    "jump": "jump of a path at an event [m]",
+    "energy at impact": "energy gained in an impact, over the energy of its balls",
+    "energy between": "energy gained between events, over the ball's",
+    "momentum": "momentum of a pair changed by more than the cloth can [of the impulse]",
+    "parting": "speed of a pair still closing after its impact, over the closing speed",
+    "overlap": "overlap of two balls, at events and between [m]",
+    "in cushion": "overlap with a nose or jaw, at events and between [m]",
+    "rest": "speed (v + R w) left at the reported time of rest [m/s]",
+    "account": "balls whose place, fate or log does not add up",
+}
+LEAST = 1e-5
+_BALL_BALL, _CUSHION, _JAW, _POT = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW), int(EventKind.POT)
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _energy(v, w, R):
+    return 0.5 * (v[0] * v[0] + v[1] * v[1]) + 0.2 * R * R * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _note(worst, what, x):
+    if not x <= worst[what]:  # a NaN counts
+        worst[what] = x if x == x else inf
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _step(gap, speed, accel, left):
+    """The time in which two bodies cannot close more than the gap."""
+    reach = max(gap, LEAST)
+    if speed * left + 0.5 * accel * left * left < reach:
+        return left
+    return min(left, 2.0 * reach / (speed + sqrt(speed * speed + 2.0 * accel * reach)))
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _follow(rows, state, a, b, start, stop, d, phys):
+    """The deepest overlap of balls a and b (at distance d) in [start, stop]."""
+    ax, ay = rows[a, AX] - rows[b, AX], rows[a, AY] - rows[b, AY]
+    accel, t, deepest = hypot(ax, ay), start, -inf
+    while True:
+        r1, v1, _ = cloth.evaluate(rows, state, a, t, phys)
+        r2, v2, _ = cloth.evaluate(rows, state, b, t, phys)
+        gap = hypot(r2[0] - r1[0], r2[1] - r1[1]) - d
+        deepest = max(deepest, -gap)
+        if not t < stop:
+            return deepest
+        step = _step(gap, hypot(v1[0] - v2[0], v1[1] - v2[1]), accel, stop - t)
+        t = stop if not t + step < stop else t + step
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _in_boundary(r, noses, jaws, R):
+    """How deep a centre is in a nose or jaw; how far it is from the next jaw."""
+    deepest, clear = -inf, inf
+    for k in range(len(noses)):
+        across, along = (r[0], r[1]) if noses[k, 0] == 0.0 else (r[1], r[0])
+        if noses[k, 3] <= along <= noses[k, 4]:
+            deepest = max(deepest, noses[k, 1] * across - (noses[k, 2] - R))
+    for k in range(len(jaws)):
+        dx, dy = r[0] - jaws[k, 0], r[1] - jaws[k, 1]
+        far = hypot(dx, dy)
+        if dx * jaws[k, 3] + dy * jaws[k, 4] >= jaws[k, 5] * far:
+            deepest = max(deepest, jaws[k, 2] + R - far)
+        clear = min(clear, far - jaws[k, 2] - R)
+    return deepest, clear
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _along_boundary(rows, state, i, stop, noses, jaws, R, phys):
+    """The deepest place of ball i in noses and jaws over its present piece, until ``stop``."""
+    t, deepest = rows[i, T0], -inf
+    if state[i] == REST or len(noses) + len(jaws) == 0:
+        stop = t
+    accel = hypot(rows[i, AX], rows[i, AY])
+    for c in range(2):  # where a parabola turns, it may dip into a nose
+        a = rows[i, AX + c]
+        turn = rows[i, T0] - rows[i, VX + c] / a if a != 0.0 else inf
+        if rows[i, T0] < turn < stop:
+            deepest = max(deepest, _in_boundary(cloth.evaluate(rows, state, i, turn, phys)[0], noses, jaws, R)[0])
+    while True:
+        r, v, _ = cloth.evaluate(rows, state, i, t, phys)
+        deep, clear = _in_boundary(r, noses, jaws, R)
+        deepest = max(deepest, deep)
+        if not t < stop:
+            return deepest
+        step = _step(min(max(clear, 0.0), 0.02), hypot(v[0], v[1]), accel, stop - t)
+        t = stop if not t + step < stop else t + step
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws, falls, worst):
+    R = phys[P_R]
+    D = 2.0 * R
+    rows, state = np.zeros((n, COLUMNS)), np.zeros(n, np.int64)
+    old, old_state = np.zeros((n, COLUMNS)), np.zeros(n, np.int64)
+    for i in range(n):
+        rows[i] = segments[i, :COLUMNS]
+        state[i] = int(segments[i, COLUMNS + 1])
+    at, now = n, 0.0
+    for e in range(n_events):
+        kind, i, j = what[e, 0], what[e, 1], what[e, 2]
+        balls = 2 if kind == _BALL_BALL else 1
+        if at + balls > n_segments:
+            _note(worst, ACCOUNT, 1.0)
+            return
+        t = segments[at, T0]
+        _note(worst, CLOCK, now - t)
+        now = t
+        before = after = 0.0
+        for k in range(balls):
+            b = i if k == 0 else j
+            old[b], old_state[b] = rows[b], state[b]
+            new = segments[at + k]
+            if int(new[COLUMNS]) != b or new[T0] != t or state[b] == GONE:
+                _note(worst, ACCOUNT, 1.0)
+                return
+            for c in range(COLUMNS):
+                if not (isfinite(new[c]) or (c == T_END and new[c] > 0.0)):
+                    _note(worst, FINITE, 1.0)
+                    return
+            r, v, w = cloth.evaluate(rows, state, b, t, phys)
+            _, v0, w0 = cloth.evaluate(rows, state, b, rows[b, T0], phys)
+            begun, ended = _energy(v0, w0, R), _energy(v, w, R)
+            if begun > 0.0:
+                _note(worst, PHASE, (ended - begun) / begun)
+            before += ended
+            _note(worst, JUMP, hypot(r[0] - new[X], r[1] - new[Y]))
+            _note(worst, CUSHION, _along_boundary(rows, state, b, t, noses, jaws, R, phys))
+            for other in range(n):
+                if other != b and state[other] != GONE and not (state[other] == REST and state[b] == REST):
+                    _note(worst, OVERLAP, _follow(rows, state, b, other, max(rows[b, T0], rows[other, T0]), t, D, phys))
+        for k in range(balls):
+            b = i if k == 0 else j
+            rows[b] = segments[at + k, :COLUMNS]
+            state[b] = int(segments[at + k, COLUMNS + 1])
+            if state[b] != GONE:
+                _, v, w = cloth.evaluate(rows, state, b, t, phys)
+                after += _energy(v, w, R)
+        at += balls
+        if before > 0.0:
+            _note(worst, ENERGY, (after - before) / before)
+        if kind == _BALL_BALL:
+            r1, v1, _ = cloth.evaluate(old, old_state, i, t, phys)
+            r2, v2, _ = cloth.evaluate(old, old_state, j, t, phys)
+            nx, ny = (r2[0] - r1[0]) / hypot(r2[0] - r1[0], r2[1] - r1[1]), (r2[1] - r1[1]) / hypot(r2[0] - r1[0], r2[1] - r1[1])
+            closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
+            a1, a2 = rows[i, VX] - v1[0], rows[i, VY] - v1[1]
+            b1, b2 = rows[j, VX] - v2[0], rows[j, VY] - v2[1]
+            push = hypot(a1 + b1, a2 + b2)
+            impulse = max(hypot(a1, a2), hypot(b1, b2))
+            size = hypot(v1[0], v1[1]) + hypot(v2[0], v2[1])
+            share = phys[P_MU_S] * (phys[P_MU_A] + phys[P_MU_B])
+            if impulse > 0.0:
+                _note(worst, MOMENTUM, (push - share * (impulse + push) - 1e-14 * size) / impulse)
+            still = (rows[i, VX] - rows[j, VX]) * nx + (rows[i, VY] - rows[j, VY]) * ny
+            if closing > 0.0:
+                _note(worst, PARTING, (still - 1e-14 * size) / closing)
+        elif kind == _CUSHION or kind == _JAW:
+            if kind == _CUSHION:
+                nx, ny = (noses[j, 1], 0.0) if noses[j, 0] == 0.0 else (0.0, noses[j, 1])
+            else:
+                nx, ny = jaws[j, 0] - rows[i, X], jaws[j, 1] - rows[i, Y]
+                far = hypot(nx, ny)
+                nx, ny = nx / far, ny / far
+            _, v, _ = cloth.evaluate(old, old_state, i, t, phys)
+            closing = v[0] * nx + v[1] * ny
+            if closing > 0.0:
+                _note(worst, PARTING, (rows[i, VX] * nx + rows[i, VY] * ny - 1e-14 * hypot(v[0], v[1])) / closing)
+        elif kind == _POT:
+            far = hypot(rows[i, X] - falls[j, 0], rows[i, Y] - falls[j, 1])
+            _note(worst, JUMP, abs(far - falls[j, 2]))
+    if at != n_segments:
+        _note(worst, ACCOUNT, 1.0)
+    for i in range(n):
+        if state[i] == GONE:
+            continue
+        r, v, w = cloth.evaluate(rows, state, i, duration, phys)
+        left = hypot(v[0], v[1]) + R * (hypot(w[0], w[1]) + (abs(w[2]) if phys[P_SPIN] > 0.0 else 0.0))
+        _note(worst, REST_TIME, left)
+        if state[i] != REST:
+            _note(worst, ACCOUNT, 1.0)
+        _note(worst, CUSHION, _in_boundary(r, noses, jaws, R)[0])
+        for j in range(i):
+            if state[j] != GONE:
+                _note(worst, OVERLAP, D - hypot(rows[i, X] - rows[j, X], rows[i, Y] - rows[j, Y]))
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _check_all(segments, n_segments, what, n_events, status, n, duration, phys, noses, jaws, falls, worst):
+    for k in range(len(worst)):
+        if status[k] == 0:
+            _check(segments[k], n_segments[k], what[k], n_events[k], n, duration[k], phys, noses, jaws, falls, worst[k])
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What became of b shots: outcome and the worst figure of each invariant."""
+
+    positions: np.ndarray
+    on_table: np.ndarray
+    potted: np.ndarray
+    duration: np.ndarray
+    n_events: np.ndarray
+    status: np.ndarray
+    """``Status`` of each; of one that is not OK nothing else is judged."""
+    worst: np.ndarray
+    """(b, len(NAMES))"""
+
+
+def play(positions, velocities, spins, on_table, physics, table, fidelity, max_events=MAX_EVENTS, log_size=512):
+    """Play b shots and check each; positions (b, n, 2) and so on as in ``simulate_batch``; fidelity as ``parse_fidelity`` gives it."""
+    b, n = positions.shape[:2]
+    state = [np.array(a) for a in (positions, velocities, spins, on_table)]
+    out = _run(state, physics, table, fidelity, max_events, log_size, 2 * log_size + n + 2)
+    worst = np.full((b, len(NAMES)), -inf)
+    args = physics.pack(), table.noses, table.jaws, table.falls, worst
+    _check_all(out.segments, out.n_segments, out.event_what, out.n_events, out.status, n, out.duration, *args)
+    found = Checked(state[0], state[3], out.potted, out.duration, out.n_events, out.status, worst)
+    for k in np.flatnonzero(out.status == Status.LOG_FULL):  # few; with more room
+        r, v, w, here = (a[k : k + 1] for a in (positions, velocities, spins, on_table))
+        one = play(r, v, w, here, physics, table, fidelity, max_events, 8 * log_size)
+        for mine, its in zip(vars(found).values(), vars(one).values(), strict=True):
+            mine[k] = its[0]
+    finite = np.isfinite(found.positions).all((1, 2)) & np.isfinite(found.duration)
+    worst[~finite, FINITE] = 1.0
+    return found

@@ -1,0 +1,281 @@
+"""What does each fidelity cost and how far is it from the truth? Impacts, then whole pots; a picture; which fidelity for which use.
+
+    python -m benchmarks.tradeoff [--impacts 2000] [--shots 1000] [--repeats 3] [--physics paper] [--json FILE] [--out FILE]
+
+Truth is ``reference``. Impacts: errors of direction and speed, the worse of the two balls, just after the impact and once both roll (the
+direction a player sees; where a ball is all but stopped by its own spin, its direction means little). Shots: how far from the truth the
+cue ball and the object ball stop, if they stay on the table, and how often the pot's outcome changes. The yardstick is a professional's
+hand: the same intended stroke, played twice by the truth with the errors of ``envs.noise``.
+"""
+
+import argparse
+import json
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+
+import snooker_env as sn
+from snooker_env.physics import contact
+from snooker_env.physics.engine import EventKind
+
+from . import _machine, _shots
+from .speed import impacts, median_impact, one_by_one, results
+
+OWN = ("fast", "standard", "reference")
+IMPACTS = (*OWN, *(f"euler:{n}" for n in (10, 30, 100, 200, 300, 1000, 3000, 10000)))
+SHOTS = (*OWN, *(f"euler:{n}" for n in (100, 300, 1000, 3000, 10000)))
+SETS = {"two-ball pots": _shots.two_ball, "full tables": _shots.full_table}
+CONTACTS = ((1, 1), (2, 2), (3, 5), (6, 999))
+HAND = "a professional's hand"
+SHARE = 0.1
+"""A fidelity is good enough for play if it moves balls and changes pots at most this share of what a professional's hand does."""
+STORED = 1e-3
+"""... and for results that are kept and compared if it changes at most this share of pots."""
+FILE = Path(__file__).parent / "pictures" / "tradeoff.png"
+
+
+def spread(values):
+    """Median, 99 % and largest."""
+    return np.quantile(values, [0.5, 0.99, 1.0]).tolist() if len(values) else [float("nan")] * 3
+
+
+def impact_errors(found, truth):
+    """Of each impact the worse ball's error, just after it and once both roll: direction [deg], speed [m/s]; the object ball's alone."""
+    errors, object_angle = [], np.zeros(0)
+    for rolling in (False, True):
+        angle, speed = np.zeros(len(truth)), np.zeros(len(truth))
+        for ball in (0, 6):
+            a, b = ((x[:, ball : ball + 2], x[:, ball + 3 : ball + 5]) for x in (found, truth))
+            # once the slip is over: v - (2/7) u with u = v + R (-w_y, w_x)
+            a, b = ((5 * v + 2 * np.column_stack([w[:, 1], -w[:, 0]])) / 7 if rolling else v for v, w in (a, b))
+            turn = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(1))
+            object_angle = np.degrees(np.abs(turn))
+            angle = np.maximum(angle, object_angle)
+            speed = np.maximum(speed, np.abs(np.hypot(*a.T) - np.hypot(*b.T)))
+        errors += [angle, speed]
+    names = ("angle_deg", "speed_m_s", "rolling_angle_deg", "rolling_speed_m_s", "object_rolling_angle_deg")
+    return dict(zip(names, map(spread, (*errors, object_angle)), strict=True))
+
+
+def play_impacts(n):
+    """Figures of every fidelity on the set of impacts."""
+    x, normals = impacts(n)
+    phys, truth, rows = sn.Physics.preset("paper").pack(), results(x, normals, "reference"), {}
+    for fidelity in IMPACTS:
+        code, steps = contact.parse_fidelity(fidelity)
+        guess = median_impact(x[:50], normals[:50], phys, code, steps, 2)
+        errors = impact_errors(results(x, normals, fidelity), truth)
+        rows[fidelity] = {"us": median_impact(x, normals, phys, code, steps, max(2, int(30 / guess))), **errors}
+    return rows
+
+
+def compare(end, truth, ball):
+    """Shots that end in ``end`` against ``truth``: shifts of cue ball and object ball [mm], nan if off the table; has the pot changed?"""
+    rows = np.arange(len(ball))
+    shifts = []
+    for b in (0 * ball, ball):
+        shift = 1e3 * np.hypot(*(end.positions - truth.positions)[rows, b].T)
+        shifts.append(np.where(end.on_table[rows, b] & truth.on_table[rows, b], shift, np.nan))
+    return *shifts, (end.potted[rows, ball] >= 0) != (truth.potted[rows, ball] >= 0)
+
+
+def play_shots(make, n, repeats, physics):
+    """Figures of every fidelity, and of the hand, on one set of shots."""
+    world = sn.Physics.preset(physics)
+    shots = make(n, world)
+    v, w = shots.struck(seed=1)
+
+    def play(state, fidelity, events=False):
+        return sn.simulate_batch(shots.positions, *state, physics=world, fidelity=fidelity, events=events)
+
+    truth = play((v, w), "reference", events=True)
+    assert truth.events is not None
+    hits = np.array([(log["kind"] == EventKind.BALL_BALL).sum() for log in truth.events])
+    rows = {}
+    for name in (*SHOTS, HAND):
+        hand = name == HAND
+        end = play(shots.struck(seed=2), "reference") if hand else play((v, w), name)
+        cue, ball, changed = compare(end, truth, shots.ball)
+        groups = [(c, (hits >= c[0]) & (hits <= c[1]) & ~np.isnan(cue)) for c in CONTACTS]
+        rows[name] = {
+            "us": None if hand else float(one_by_one(shots.positions, v, w, name, repeats, world).mean()),
+            "cue_mm": spread(cue[~np.isnan(cue)]), "ball_mm": spread(ball[~np.isnan(ball)]), "changed": float(changed.mean()),
+            "by_contacts": [{"contacts": c, "shots": int(g.sum()), "cue_mm": spread(cue[g])} for c, g in groups],
+        }  # fmt: skip
+    potted = float((truth.potted[np.arange(n), shots.ball] >= 0).mean())
+    return {"potted": potted, "contacts": float(hits.mean()), "rows": rows}
+
+
+def dominated(rows, name, error):
+    """The fidelities that are both faster and nearer the truth than ``name``."""
+    others = [f for f in rows if f not in (name, HAND, "reference")]
+    return [f for f in others if rows[f]["us"] < rows[name]["us"] and error(rows[f]) < error(rows[name])]
+
+
+def recommendation(impact_rows, sets):
+    """Sentences; every choice in them is made from the figures."""
+
+    def cheapest(good):
+        fit = [f for f in SHOTS if all(good(s["rows"][f], s["rows"][HAND]) for s in sets.values())]
+        return min(fit, key=lambda f: sum(s["rows"][f]["us"] for s in sets.values())) if fit else None
+
+    def figures(fidelity):
+        parts = []
+        for name, s in sets.items():
+            row, hand = s["rows"][fidelity], s["rows"][HAND]
+            parts.append(
+                f"{name}: {row['us']:.1f} us a shot, {100 * row['changed']:.2g} % of pots change (a professional's hand:"
+                f" {100 * hand['changed']:.2g} %), the cue ball stops {row['cue_mm'][0]:.2g} mm off in the middle case"
+                f" ({hand['cue_mm'][0]:.3g} mm)"
+            )
+        return "; ".join(parts)
+
+    def shares(row, hand):
+        pots = row["changed"] / hand["changed"] if hand["changed"] else float(row["changed"] > 0)
+        return {"pots changed": pots, "the cue ball's middle shift": row["cue_mm"][0] / hand["cue_mm"][0]}
+
+    def for_play(row, hand):
+        return max(shares(row, hand).values()) <= SHARE
+
+    says = []
+    play, kept = cheapest(for_play), cheapest(lambda row, hand: for_play(row, hand) and row["changed"] <= STORED)
+    rule = f"Learning, search, play: at most {SHARE:.0%} of what a professional's hand does, in pots changed and in the cue ball's place."
+    says.append(f"{rule} The cheapest that keeps to it: {play}. {figures(play)}." if play else f"{rule} None of these keeps to it.")
+    rule = f"Results that are kept and compared: besides, at most {STORED:.1%} of pots changed."
+    says.append(f"{rule} None of these keeps to it." if kept is None else f"{rule} The same: {kept}." if kept == play else
+                f"{rule} The cheapest that keeps to it: {kept}. {figures(kept)}.")  # fmt: skip
+    saved = [1 - s["rows"]["fast"]["us"] / s["rows"]["standard"]["us"] for s in sets.values()]
+    over = [
+        f"{what} on {name} {share:.1%} of the hand's"
+        for name, s in sets.items() for what, share in shares(s["rows"]["fast"], s["rows"][HAND]).items() if share > SHARE
+    ]  # fmt: skip
+    fit = f"breaks the rule for play ({'; '.join(over)})" if over else "keeps to the rule for play"
+    says.append(
+        f"fast {fit} and saves {min(saved):.0%} to {max(saved):.0%} of the time of standard. {figures('fast')}. In one impact it turns"
+        f" the worse ball by at most {impact_rows['fast']['angle_deg'][2]:.2g} deg, the object ball's final path by at most"
+        f" {impact_rows['fast']['object_rolling_angle_deg'][2]:.2g} deg."
+    )
+    ratio = [s["rows"]["reference"]["us"] / s["rows"]["standard"]["us"] for s in sets.values()]
+    says.append(
+        f"reference is the truth here, at {min(ratio):.1f} to {max(ratio):.1f} times the time of standard: for checks of the others, and"
+        f" where a shot with many contacts must be the same to the millimetre (standard on full tables: 99 % within"
+        f" {sets['full tables']['rows']['standard']['cue_mm'][1]:.2g} mm)."
+    )
+    euler = [f for f in IMPACTS if f.startswith("euler")]
+    beaten = {f: dominated(impact_rows, f, lambda r: r["angle_deg"][1]) for f in euler}
+    free = [f for f in euler if not beaten[f]]
+    steps = np.array([float(f[6:]) for f in euler])
+    order = -np.polyfit(np.log(steps), np.log([impact_rows[f]["angle_deg"][0] for f in euler]), 1)[0]
+    says.append(
+        f"euler:N, the paper's scheme, comes nearer the truth as N^-{order:.2f} (median angle): an independent check of reference. "
+        + ("It is for reproducing the paper: every N here has a fidelity that is both faster and nearer (99 % of angles)" if not free else
+           f"Of these N, {', '.join(free)} are not beaten by a fidelity both faster and nearer (99 % of angles), the others are")
+        + f"; euler:10000 errs by {impact_rows['euler:10000']['angle_deg'][1]:.1g} deg and takes"
+        f" {impact_rows['euler:10000']['us'] / impact_rows['standard']['us']:.0f} times as long as standard, which errs by"
+        f" {impact_rows['standard']['angle_deg'][1]:.1g} deg."
+    )  # fmt: skip
+    return says
+
+
+def draw(figures, out):
+    """Time against error: impacts (angle, speed), then where the cue ball stops in each set of shots."""
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.lines import Line2D
+
+    fig, axes = plt.subplots(2, 2, figsize=(12, 9), layout="constrained")
+    impact_rows = figures["impacts"]
+    panels = [
+        (axes[0, 0], impact_rows, "angle_deg", "one impact: direction of the worse ball", "error [deg]", "us an impact"),
+        (axes[0, 1], impact_rows, "speed_m_s", "one impact: speed of the worse ball", "error [m/s]", "us an impact"),
+    ]
+    for ax, (name, s) in zip(axes[1], figures["shots"].items(), strict=True):
+        panels.append((ax, s["rows"], "cue_mm", f"{name}: where the cue ball stops", "distance from the truth [mm]", "us a shot"))
+    for ax, rows, key, title, error, cost in panels:
+        for fidelity, row in rows.items():
+            middle, high, worst = row[key]
+            if fidelity == HAND:
+                ax.axhline(middle, color="tab:green", lw=1)
+                ax.axhspan(middle, high, color="tab:green", alpha=0.12, lw=0)
+                ax.annotate("a professional's hand: median to 99 %", (0.98, middle), xycoords=("axes fraction", "data"), color="tab:green",
+                            va="bottom", ha="right", fontsize=8)  # fmt: skip
+                continue
+            if fidelity == "reference":
+                ax.axvline(row["us"], color="0.5", ls=":", lw=1)
+                ax.annotate("reference:\nthe truth here", (row["us"], 0.98), xycoords=("data", "axes fraction"), va="top", fontsize=8,
+                            color="0.4", xytext=(4, 0), textcoords="offset points")  # fmt: skip
+                continue
+            colour = "tab:blue" if fidelity in OWN else "tab:orange"
+            ax.plot([row["us"]] * 2, [middle, worst], color=colour, lw=1, alpha=0.5)
+            ax.plot(row["us"], middle, "o", color=colour)
+            ax.plot(row["us"], high, "_", color=colour, ms=12, mew=2)
+            ax.plot(row["us"], worst, "^", color=colour, ms=4, mfc="none")
+            label = f"N={fidelity[6:]}" if fidelity not in OWN else fidelity
+            ax.annotate(label, (row["us"], middle), xytext=(0, -13), textcoords="offset points", ha="center", fontsize=8, color=colour)
+        own = [f for f in rows if f not in (HAND, "reference")]
+        front = [(rows[f]["us"], rows[f][key][0]) for f in own if not dominated(rows, f, lambda r, key=key: r[key][0])]
+        ax.step(*zip(*sorted(front), strict=True), where="post", color="tab:blue", lw=1, ls="--", zorder=0)
+        ax.set(xscale="log", yscale="log", title=title, xlabel=cost, ylabel=error)
+        ax.margins(0.1, 0.09)
+        ax.grid(alpha=0.3)
+    handles = [
+        Line2D([], [], marker=m, ls="", color="0.3", mfc=f, ms=s, mew=2 if m == "_" else 1, label=t)
+        for m, f, s, t in (("o", "0.3", 6, "median"), ("_", "0.3", 12, "99 %"), ("^", "none", 5, "worst"))
+    ]
+    handles.append(Line2D([], [], color="tab:blue", ls="--", lw=1, label="Pareto front of the medians"))
+    colours = (("tab:blue", "snooker_env"), ("tab:orange", "euler:N, the paper's"))
+    handles += [Line2D([], [], marker="o", ls="", color=c, label=t) for c, t in colours]
+    axes[0, 1].legend(handles=handles, loc="lower right", fontsize=8)
+    fig.suptitle(f"Time against error, {_machine.line()}", fontsize=10)
+    out.parent.mkdir(exist_ok=True)
+    fig.savefig(out, dpi=110)
+
+
+def main():
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--impacts", type=int, default=2000, help="impacts in the set")
+    parser.add_argument("--shots", type=int, default=1000, help="shots in each set")
+    parser.add_argument("--repeats", type=int, default=3, help="timed runs of every shot; the best counts")
+    parser.add_argument("--physics", default="paper", help="the world of the shots: paper or match")
+    parser.add_argument("--json", type=Path, help="also write every figure there")
+    parser.add_argument("--out", type=Path, default=FILE, help="the picture")
+    options = parser.parse_args()
+
+    print(_machine.line())
+    impact_rows = play_impacts(options.impacts)
+    print(f"\n{options.impacts} impacts: median us; then median, 99 %, worst of: direction [deg], speed [m/s]; once both roll: the same")
+    for fidelity, row in impact_rows.items():
+        errors = "   ".join(" ".join(f"{e:7.1e}" for e in row[k]) for k in list(row)[1:5])
+        print(f"  {fidelity:12s} {row['us']:8.3f}   {errors}")
+    sets = {}
+    for name, make in SETS.items():
+        s = sets[name] = play_shots(make, options.shots, options.repeats, options.physics)
+        print(f'\n{options.shots} {name}, physics "{options.physics}": {s["potted"]:.0%} potted, {s["contacts"]:.1f} ball-ball hits a shot')
+        print("                          us a shot   pots changed   cue ball off by [mm]: median, 99 %, worst   object ball: the same")
+        for fidelity, row in s["rows"].items():
+            us = "        -" if row["us"] is None else f"{row['us']:9.1f}"
+            mm = "      ".join(" ".join(f"{e:9.2g}" if e < 100 else f"{e:9.0f}" for e in row[k]) for k in ("cue_mm", "ball_mm"))
+            print(f"  {fidelity:22s}  {us}      {row['changed']:7.2%}      {mm}")
+    print("\nfull tables, cue ball off by [mm] (median, 99 %, worst), by the number of ball-ball contacts in the shot")
+    heads = [f"{a} or more" if b == 999 else f"{a}" if a == b else f"{a} to {b}" for a, b in CONTACTS]
+    groups = sets["full tables"]["rows"]
+    counts = [g["shots"] for g in groups["standard"]["by_contacts"]]
+    print(" " * 26 + "".join(f"{f'{h} ({c} shots)':>26s}" for h, c in zip(heads, counts, strict=True)))
+    for fidelity, row in groups.items():
+        cells = (" ".join(f"{e:7.2g}" if e < 100 else f"{e:7.0f}" for e in g["cue_mm"]) for g in row["by_contacts"])
+        print(f"  {fidelity:24s}" + "".join(f"{c:>26s}" for c in cells))
+    says = recommendation(impact_rows, sets)
+    print("\nWhich fidelity for which use")
+    for sentence in says:
+        print(f"* {sentence}")
+    figures = {"machine": _machine.machine(), "physics": options.physics, "impacts": impact_rows, "shots": sets, "recommendation": says}
+    draw(figures, options.out)
+    print(f"\n{options.out}")
+    if options.json:
+        options.json.write_text(json.dumps(figures, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
