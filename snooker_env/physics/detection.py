@@ -3,7 +3,7 @@
 Relative position over a phase is c(x) = c0 + c1 x + c2 x^2. A contact is the first fall of |c| through a distance d.
 
 Contact at gap zero. Two bodies that touch (gap below TOUCH) and close faster than CREEP meet at once. If they close more slowly,
-stand still, or part, the next contact is the fall of the gap through -SKIN: bodies pressed together by friction from rest gain a
+stand still, or part, the next contact is the fall of the gap through -SKIN (if it is there already: at once): bodies pressed together by friction from rest gain a
 closing speed before they meet, instead of meeting without end at speed zero, and bodies that part do not meet again by rounding.
 """
 
@@ -15,6 +15,7 @@ from .roots import quadratic_crossing, quartic_crossing
 
 TOUCH = 1e-10  # m
 SKIN = 5e-10  # m; overlap stays under the 1e-9 that the tests allow
+STILL = 1e-12  # m/s; rounding may leave this much of a closing speed after a meeting
 CREEP = 5e-5  # m/s; the speed gained over SKIN at the largest relative acceleration on cloth, about 2 mu_s g
 
 
@@ -29,7 +30,7 @@ def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
     far = sqrt(far2)
     gap = far - d
     if gap < TOUCH:
-        if -dot1 > CREEP * far:
+        if -dot1 > CREEP * far or (gap <= -SKIN and -dot1 > STILL * far):
             return 0.0
         d = d - SKIN if gap > -1.5 * SKIN else far - SKIN
     else:
@@ -66,7 +67,7 @@ def _level_crossing(gap, closing, closing2, beside, T):
     beside: the ball is beside the nose itself. In the mouth of a pocket it may be far beyond the nose's line without touching anything.
     """
     if beside and gap < TOUCH:
-        if closing > CREEP:
+        if closing > CREEP or (gap <= -SKIN and closing > STILL):
             return 0.0
         gap = gap + SKIN if gap > -1.5 * SKIN else SKIN
     return quadratic_crossing(gap, -closing, -closing2, T)

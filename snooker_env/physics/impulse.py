@@ -333,7 +333,7 @@ def solve(start, c, law, mu_s, e, accuracy):
         if cloth == _GRIPS:
             next_cloth = _GRIPS
             if not _grip_holds(k7, new, c, mu_s):
-                if h > delta:  # the cloth gave way inside the step: find where
+                if new[4] - x[4] > delta:  # the cloth gave way inside the step: find where
                     h *= 0.5
                     continue
                 next_cloth = _STARTS
@@ -371,9 +371,9 @@ def solve(start, c, law, mu_s, e, accuracy):
             next_mode = _STICK
         if mode == _STICK and cloth == _GRIPS and c[9] != 0.0 and y < 1e3 * delta:
             return new, OK  # wedged between nose and cloth: both hold, so nothing moves across the nose, and no impulse frees the ball
-        if n == _KNIFE_EDGE:  # friction all but balances what drives a slip, which stays small and stiff: follow its limit
+        if n >= _KNIFE_EDGE:  # friction all but balances what drives a slip, which stays small and stiff: follow its limit
             near, creep = max(near, _STIFF), max(creep, 10.0 * _STIFF)
-        if n == _JAMMED and abs(y) < 1e-2:
+        if n >= _JAMMED and abs(y) < 1e-2:
             return new, OK  # friction balances the elastic force all but exactly: what moves across the nose creeps on without an end
         done = work <= target and not compressing
         if done or (compressing and y <= 0.0):
