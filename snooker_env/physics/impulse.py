@@ -329,6 +329,9 @@ def solve(start, c, law, mu_s, e, accuracy):
         if b1 * b1_old + b2 * b2_old < 0.0 and mu_s * (c[7] + abs(c[8]) * mu) * (new[4] - x[4]) > delta and h > 1e-13:
             h *= 0.25  # the cloth's slip turned right round inside the step, where the stages may not have looked
             continue
+        if new[6] < -10.0 * tol and x[6] > 0.0 and h > 1e-13:
+            h *= 0.5  # the ball came down inside the step: find where
+            continue
         next_cloth = _SLIDES if b1 * b1 + b2 * b2 > near * near else _STARTS
         if cloth == _GRIPS:
             next_cloth = _GRIPS
