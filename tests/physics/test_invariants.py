@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 import snooker_env as sn
 from snooker_env import EventKind
+from snooker_env.physics.detection import SKIN, distance_crossing
 
 R, g = 0.02625, 9.81
 D = 2 * R
@@ -353,3 +354,35 @@ def test_a_shot_stopped_and_started_again_goes_on_as_before(shot, at):
     two = sn.simulate(*one.at(t), None, fidelity="reference")
     assert np.abs(two.positions - one.positions).max() < 1e-6
     assert t + two.duration == pytest.approx(one.duration, abs=1e-6)
+
+
+# what the fuzz found ---------------------------------------------------------------------------------------------------------------
+
+UNSOLVED = (  # v, w, normal, mu_s, mu_c, sin_theta, e_c
+    ((-0.0037727559465330724, 0.33474473152165324), (15.946283824890289, -3.103489430192995, -4.040993500703731), (0, 1),
+     0.7, 0.14, 0.4, 0.98),
+    ((-0.03150012916185054, 0.16182982301995855), (-5.631742292193911, -0.9135289056240937, 9.235027324826552), (0, 1),
+     0.3, 0.3, 0.6, 0.98),
+    ((0.1892598335095641, -0.022659902199318786), (0.8632343694978586, 7.209898419411966, 4.553909051496761), (0, -1),
+     0.37435603872240425, 0.0960303469577783, 0.5986740392033739, 0.45095779299471095),
+    ((0.6852182528384435, 0.3014285607836339), (-11.482992791757482, 26.10355248908356, -45.77952915771147), (1, 0),
+     0.371821773133134, 0.2176661633068515, 0.5294182367993291, 0.4692885555332693),
+    ((1.7571646438865136, -0.4642600144717246), (17.686095789399033, 66.939605481391, 45.636404073107386), (1, 0),
+     0.24694609284162072, 0.39121172612894456, 0.5299161939002829, 0.027594006678478555),
+)  # fmt: skip
+"""Cushion impacts that "standard" or "reference" once did not end."""
+
+
+@pytest.mark.parametrize("case", UNSOLVED)
+def test_cushion_impacts_that_once_did_not_end(case):
+    v, w, n, mu_s, mu_c, sin_theta, e_c = case
+    physics = sn.Physics(mu_s=mu_s, mu_c=mu_c, sin_theta=sin_theta, e_c=e_c)
+    standard, reference = (sn.collide_cushion((*v, 0), w, (*n, 0), physics, f) for f in FIDELITIES[1:])
+    assert far(standard, reference) <= 2e-5 * size_of((np.array(v), np.array(w), n))
+    assert energy(reference) < energy((np.array(v), np.array(w)))
+
+
+@pytest.mark.parametrize("depth", [0.9, 1.1, 1.49, 1.51])
+def test_touching_balls_that_creep_together_meet_however_deep(depth):
+    """Pressed between 1 and 1.5 skins deep they once never met, and went on into each other."""
+    assert distance_crossing(D - depth * SKIN, 0.0, -4e-5, 0.0, 0.0, 0.0, D, 1.0) < 1e-3
