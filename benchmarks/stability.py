@@ -243,10 +243,10 @@ def frozen(gap):
     for kind in ("pair", "line", "rack"):
         p = chains(rng, gap, kind)
         to = p[:, 1] - p[:, 0]
-        aim = np.arctan2(to[:, 1], to[:, 0]) + (rng.uniform(-np.pi, np.pi, b) if kind == "pair" else rng.uniform(-0.15, 0.15, 200))
-        tips = rng.uniform(-0.35, 0.35, (2, 200))
-        out.append(shot_figures(p, *struck(p, rng.uniform(0.2, 7, 200), aim, *tips), None))
-    return 1800, merge(out)
+        aim = np.arctan2(to[:, 1], to[:, 0]) + (rng.uniform(-np.pi, np.pi, 100) if kind == "pair" else rng.uniform(-0.15, 0.15, 100))
+        tips = rng.uniform(-0.35, 0.35, (2, 100))
+        out.append(shot_figures(p, *struck(p, rng.uniform(0.2, 7, 100), aim, *tips), None))
+    return 900, merge(out)
 
 
 def at_cushions(gap):
