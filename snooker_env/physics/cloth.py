@@ -4,7 +4,8 @@
 direction is constant and the path a parabola (curved when the spin is not about the axis of rolling: the masse curve). Slip ends
 after T = 2 |u| / (7 mu_s g); rolling decelerates by mu_r g; spin about the vertical decays by ``spin_decel`` in every state.
 
-A ball's motion is one row of ``motion`` (float64, columns below), valid from its time T0 to T_END, and one code in ``state``.
+A ball's motion is one row of ``motion`` (float64, columns below), valid from its time T0 to T_END, and one code in ``state``. LO_X to
+HI_Y bound its whole path in that time: whatever they do not come near, the ball does not meet.
 """
 
 from math import copysign, sqrt
@@ -13,10 +14,21 @@ from .._jit import kernel
 from .parameters import P_G, P_MU_R, P_MU_S, P_R, P_SPIN
 
 GONE, REST, ROLL, SLIDE = range(4)
-X, Y, VX, VY, AX, AY, WX, WY, WZ, T0, T_END = range(11)
-COLUMNS = 11
+X, Y, VX, VY, AX, AY, WX, WY, WZ, T0, T_END, LO_X, HI_X, LO_Y, HI_Y = range(15)
+COLUMNS = 15
 
 _STILL = 1e-12  # m/s: slower is at rest (it would roll 4e-24 m)
+
+
+@kernel
+def extent(x, v, a, T):
+    """Least and largest value of x + v t + a t^2 / 2 for t in [0, T]."""
+    end = x + (v + 0.5 * a * T) * T
+    low, high = min(x, end), max(x, end)
+    if v * a < 0.0 and abs(v) < abs(a) * T:
+        turn = x - 0.5 * v * v / a
+        low, high = min(low, turn), max(high, turn)
+    return low, high
 
 
 @kernel
@@ -26,26 +38,30 @@ def begin(motion, state, i, t, x, y, vx, vy, wx, wy, wz, phys):
     ux, uy = vx - R * wy, vy + R * wx
     u = sqrt(ux * ux + uy * uy)
     v = sqrt(vx * vx + vy * vy)
-    row = motion[i]
-    row[X], row[Y], row[T0], row[WZ] = x, y, t, wz
+    motion[i, X], motion[i, Y], motion[i, T0], motion[i, WZ] = x, y, t, wz
     if u > _STILL:
         decel = phys[P_MU_S] * g
         state[i] = SLIDE
-        row[VX], row[VY] = vx, vy
-        row[AX], row[AY] = -decel * ux / u, -decel * uy / u
-        row[WX], row[WY] = wx, wy
-        row[T_END] = t + u / (3.5 * decel)  # eq. 19
+        motion[i, VX], motion[i, VY] = vx, vy
+        motion[i, AX], motion[i, AY] = -decel * ux / u, -decel * uy / u
+        motion[i, WX], motion[i, WY] = wx, wy
+        motion[i, T_END] = t + u / (3.5 * decel)  # eq. 19
     elif v > _STILL:
         decel = phys[P_MU_R] * g
         state[i] = ROLL
-        row[VX], row[VY] = vx, vy
-        row[AX], row[AY] = -decel * vx / v, -decel * vy / v
-        row[WX], row[WY] = -vy / R, vx / R
-        row[T_END] = t + v / decel
+        motion[i, VX], motion[i, VY] = vx, vy
+        motion[i, AX], motion[i, AY] = -decel * vx / v, -decel * vy / v
+        motion[i, WX], motion[i, WY] = -vy / R, vx / R
+        motion[i, T_END] = t + v / decel
     else:
         state[i] = REST
-        row[VX] = row[VY] = row[AX] = row[AY] = row[WX] = row[WY] = 0.0
-        row[T_END] = float("inf")
+        motion[i, VX] = motion[i, VY] = motion[i, AX] = motion[i, AY] = motion[i, WX] = motion[i, WY] = 0.0
+        motion[i, T_END] = float("inf")
+        motion[i, LO_X] = motion[i, HI_X] = x
+        motion[i, LO_Y] = motion[i, HI_Y] = y
+        return
+    motion[i, LO_X], motion[i, HI_X] = extent(x, motion[i, VX], motion[i, AX], motion[i, T_END] - t)
+    motion[i, LO_Y], motion[i, HI_Y] = extent(y, motion[i, VY], motion[i, AY], motion[i, T_END] - t)
 
 
 @kernel
@@ -57,15 +73,14 @@ def spin_after(wz, dt, decel):
 @kernel
 def evaluate(motion, state, i, t, phys):
     """Ball i at time t within its present phase: (x, y), (vx, vy), (wx, wy, wz)."""
-    row = motion[i]
-    dt = t - row[T0]
-    ax, ay = row[AX], row[AY]
-    vx, vy = row[VX] + ax * dt, row[VY] + ay * dt
-    x, y = row[X] + (row[VX] + 0.5 * ax * dt) * dt, row[Y] + (row[VY] + 0.5 * ay * dt) * dt
+    dt = t - motion[i, T0]
+    ax, ay = motion[i, AX], motion[i, AY]
+    vx, vy = motion[i, VX] + ax * dt, motion[i, VY] + ay * dt
+    x, y = motion[i, X] + (motion[i, VX] + 0.5 * ax * dt) * dt, motion[i, Y] + (motion[i, VY] + 0.5 * ay * dt) * dt
     R = phys[P_R]
-    wz = spin_after(row[WZ], dt, phys[P_SPIN])
+    wz = spin_after(motion[i, WZ], dt, phys[P_SPIN])
     if state[i] == SLIDE:  # friction at the cloth turns the ball: dw = (5/2) z x (-a) / R
-        wx, wy = row[WX] + 2.5 * ay * dt / R, row[WY] - 2.5 * ax * dt / R
+        wx, wy = motion[i, WX] + 2.5 * ay * dt / R, motion[i, WY] - 2.5 * ax * dt / R
     else:
         wx, wy = -vy / R, vx / R
     return (x, y), (vx, vy), (wx, wy, wz)
@@ -79,9 +94,8 @@ def next_phase(motion, state, i, phys):
     if state[i] == SLIDE:
         R = phys[P_R]
         # final v = v0 - (2/7) u0 without the rounding of v0 + a T: u is then zero by construction
-        row = motion[i]
-        vx = row[VX] - (row[VX] - R * row[WY]) / 3.5
-        vy = row[VY] - (row[VY] + R * row[WX]) / 3.5
+        vx = motion[i, VX] - (motion[i, VX] - R * motion[i, WY]) / 3.5
+        vy = motion[i, VY] - (motion[i, VY] + R * motion[i, WX]) / 3.5
         begin(motion, state, i, t, x, y, vx, vy, -vy / R, vx / R, wz, phys)
     else:
         begin(motion, state, i, t, x, y, 0.0, 0.0, 0.0, 0.0, wz, phys)

@@ -10,10 +10,11 @@ closing speed before they meet, instead of meeting without end at speed zero, an
 from math import inf, sqrt
 
 from .._jit import kernel
-from .cloth import AX, AY, REST, T0, T_END, VX, VY, X, Y
+from .cloth import AX, AY, HI_X, HI_Y, LO_X, LO_Y, REST, ROLL, T0, T_END, VX, VY, X, Y, extent
 from .roots import quadratic_crossing, quartic_crossing
 
 TOUCH = 1e-10  # m
+_MARGIN = 1e-9  # m; bodies nearer than this to a path may touch it
 SKIN = 5e-10  # m; overlap stays under the 1e-9 that the tests allow
 STILL = 1e-12  # m/s; rounding may leave this much of a closing speed after a meeting
 CREEP = 5e-5  # m/s; the speed gained over SKIN at the largest relative acceleration on cloth, about 2 mu_s g
@@ -49,15 +50,72 @@ def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
 
 
 @kernel
+def _rolls_onto(dx, dy, vx, vy, ax, ay, d):
+    """How long until a ball rolling at v, slowed by a, meets a still one at (dx, dy) from it: a straight line, a chord, a quadratic."""
+    speed2 = vx * vx + vy * vy
+    along, across = dx * vx + dy * vy, dx * vy - dy * vx  # times the speed
+    half = d * d * speed2 - across * across
+    if along <= 0.0 or half <= 0.0:
+        return inf
+    speed = sqrt(speed2)
+    way = (dx * dx + dy * dy - d * d) * speed / (along + sqrt(half))  # to the contact
+    left = speed2 - 2.0 * way * sqrt(ax * ax + ay * ay)
+    return 2.0 * way / (speed + sqrt(left)) if left >= 0.0 else inf
+
+
+@kernel
+def may_meet(motion, i, j, d):
+    """Do the paths of balls i and j in their present phases come within d of each other? A quick test of their bounds.
+
+    (Here and below: indices, no rows. A row is an object whose references numba counts, which costs more than the arithmetic.)
+    """
+    return (
+        motion[i, LO_X] <= motion[j, HI_X] + d and motion[j, LO_X] <= motion[i, HI_X] + d
+        and motion[i, LO_Y] <= motion[j, HI_Y] + d and motion[j, LO_Y] <= motion[i, HI_Y] + d
+    )  # fmt: skip
+
+
+@kernel
 def pair_time(motion, state, i, j, t, d):
     """Absolute time of the next contact of balls i and j, at centre distance d, within their present phases; t is now."""
-    a, b = motion[i], motion[j]
-    ti, tj = t - a[T0], t - b[T0]
-    x2, y2 = 0.5 * (b[AX] - a[AX]), 0.5 * (b[AY] - a[AY])
-    x1, y1 = b[VX] + b[AX] * tj - a[VX] - a[AX] * ti, b[VY] + b[AY] * tj - a[VY] - a[AY] * ti
-    x0 = b[X] + (b[VX] + 0.5 * b[AX] * tj) * tj - a[X] - (a[VX] + 0.5 * a[AX] * ti) * ti
-    y0 = b[Y] + (b[VY] + 0.5 * b[AY] * tj) * tj - a[Y] - (a[VY] + 0.5 * a[AY] * ti) * ti
-    return t + distance_crossing(x0, y0, x1, y1, x2, y2, d, min(a[T_END], b[T_END]) - t)
+    ti, tj = t - motion[i, T0], t - motion[j, T0]
+    axi, ayi, axj, ayj = motion[i, AX], motion[i, AY], motion[j, AX], motion[j, AY]
+    vxi, vyi, vxj, vyj = motion[i, VX], motion[i, VY], motion[j, VX], motion[j, VY]
+    x1, y1 = vxj + axj * tj - vxi - axi * ti, vyj + ayj * tj - vyi - ayi * ti
+    x0 = motion[j, X] + (vxj + 0.5 * axj * tj) * tj - motion[i, X] - (vxi + 0.5 * axi * ti) * ti
+    y0 = motion[j, Y] + (vyj + 0.5 * ayj * tj) * tj - motion[i, Y] - (vyi + 0.5 * ayi * ti) * ti
+    if state[i] + state[j] == ROLL + REST and x0 * x0 + y0 * y0 > (d + TOUCH) * (d + TOUCH):
+        # one is still, so the relative motion is the other's
+        return t + _rolls_onto(-x0, -y0, x1, y1, axj - axi, ayj - ayi, d)
+    T = min(motion[i, T_END], motion[j, T_END]) - t
+    return t + distance_crossing(x0, y0, x1, y1, 0.5 * (axj - axi), 0.5 * (ayj - ayi), d, T)
+
+
+@kernel
+def _apart(lo_x, hi_x, lo_y, hi_y, x, y, r):
+    """Is a circle apart from a rectangle?"""
+    dx, dy = max(lo_x - x, x - hi_x, 0.0), max(lo_y - y, y - hi_y, 0.0)
+    return dx * dx + dy * dy > r * r
+
+
+@kernel
+def clear_box(noses, jaws, falls, R):
+    """A rectangle (lo x, hi x, lo y, hi y) in which a ball's centre meets no nose, jaw or fall; an empty one if the table has none."""
+    lo_x, hi_x, lo_y, hi_y = -inf, inf, -inf, inf
+    for k in range(noses.shape[0]):
+        level = noses[k, 2] - R
+        if noses[k, 0] == 0.0:
+            lo_x, hi_x = (lo_x, min(hi_x, level)) if noses[k, 1] > 0.0 else (max(lo_x, -level), hi_x)
+        else:
+            lo_y, hi_y = (lo_y, min(hi_y, level)) if noses[k, 1] > 0.0 else (max(lo_y, -level), hi_y)
+    free = True
+    for k in range(jaws.shape[0]):
+        free = free and _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, 0], jaws[k, 1], jaws[k, 2] + R - _MARGIN)
+    for k in range(falls.shape[0]):
+        free = free and _apart(lo_x, hi_x, lo_y, hi_y, falls[k, 0], falls[k, 1], falls[k, 2] - _MARGIN)
+    if not free:
+        return inf, -inf, inf, -inf
+    return lo_x, hi_x, lo_y, hi_y
 
 
 @kernel
@@ -74,19 +132,26 @@ def _level_crossing(gap, closing, closing2, beside, T):
 
 
 @kernel
-def boundary_event(motion, state, i, noses, jaws, falls, R):
-    """The next nose (kind 1), jaw (2) or fall (3) of ball i after T0 within its phase: absolute time, kind, index; inf if none."""
-    row = motion[i]
+def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
+    """The next nose (kind 1), jaw (2) or fall (3) of ball i after T0 within its phase: absolute time, kind, index; inf if none.
+
+    clear: as ``clear_box`` returns it.
+    """
     best, kind, index = inf, 0, -1
-    if state[i] == REST:
+    lo_x, hi_x, lo_y, hi_y = motion[i, LO_X] - _MARGIN, motion[i, HI_X] + _MARGIN, motion[i, LO_Y] - _MARGIN, motion[i, HI_Y] + _MARGIN
+    if state[i] == REST or (lo_x > clear[0] and hi_x < clear[1] and lo_y > clear[2] and hi_y < clear[3]):
         return best, kind, index
-    T = row[T_END] - row[T0]
-    x0, y0, x1, y1, x2, y2 = row[X], row[Y], row[VX], row[VY], 0.5 * row[AX], 0.5 * row[AY]
+    T = motion[i, T_END] - motion[i, T0]
+    x0, y0, x1, y1, x2, y2 = motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY], 0.5 * motion[i, AX], 0.5 * motion[i, AY]
     for k in range(noses.shape[0]):
         side, level = noses[k, 1], noses[k, 2]
         if noses[k, 0] == 0.0:
+            if (hi_x if side > 0.0 else -lo_x) < level - R or hi_y < noses[k, 3] or lo_y > noses[k, 4]:
+                continue
             p, p1, p2, q, q1, q2 = x0, x1, x2, y0, y1, y2
         else:
+            if (hi_y if side > 0.0 else -lo_y) < level - R or hi_x < noses[k, 3] or lo_x > noses[k, 4]:
+                continue
             p, p1, p2, q, q1, q2 = y0, y1, y2, x0, x1, x2
         beside = noses[k, 3] <= q <= noses[k, 4]
         s = _level_crossing(level - R - side * p, side * p1, side * p2, beside, min(T, best))
@@ -94,11 +159,19 @@ def boundary_event(motion, state, i, noses, jaws, falls, R):
             along = q + (q1 + q2 * s) * s
             if noses[k, 3] <= along <= noses[k, 4]:
                 best, kind, index = s, 1, k
+    if best < T:  # only what lies on the way to the nose can come first
+        lo_x, hi_x = extent(x0, x1, motion[i, AX], best)
+        lo_y, hi_y = extent(y0, y1, motion[i, AY], best)
+        lo_x, hi_x, lo_y, hi_y = lo_x - _MARGIN, hi_x + _MARGIN, lo_y - _MARGIN, hi_y + _MARGIN
     for k in range(falls.shape[0]):
+        if _apart(lo_x, hi_x, lo_y, hi_y, falls[k, 0], falls[k, 1], falls[k, 2]):
+            continue
         s = distance_crossing(x0 - falls[k, 0], y0 - falls[k, 1], x1, y1, x2, y2, falls[k, 2], min(T, best))
         if s < best:
             best, kind, index = s, 3, k
     for k in range(jaws.shape[0]):
+        if _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, 0], jaws[k, 1], jaws[k, 2] + R):
+            continue
         cx, cy = x0 - jaws[k, 0], y0 - jaws[k, 1]
         s = distance_crossing(cx, cy, x1, y1, x2, y2, jaws[k, 2] + R, min(T, best))
         if s < best:
@@ -106,4 +179,4 @@ def boundary_event(motion, state, i, noses, jaws, falls, R):
             # closed range and a little more: the nose ends where the arc starts, and no rounding may open a gap between them
             if dx * jaws[k, 3] + dy * jaws[k, 4] >= (jaws[k, 5] - 1e-9) * sqrt(dx * dx + dy * dy):
                 best, kind, index = s, 2, k
-    return row[T0] + best, kind, index
+    return motion[i, T0] + best, kind, index

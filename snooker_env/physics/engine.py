@@ -18,7 +18,7 @@ from .._jit import entry, kernel
 from . import cloth
 from .cloth import GONE, REST, T0, T_END, WZ
 from .contact import collide_balls, collide_cushion, cushion_restitution
-from .detection import boundary_event, pair_time
+from .detection import TOUCH, boundary_event, clear_box, may_meet, pair_time
 from .parameters import P_E_B, P_R, P_SPIN
 
 PART = 2e-3  # m/s; below what a shot can show: a ball at this speed rolls 16 micrometres
@@ -117,7 +117,7 @@ def _rescan(pair, best_time, best_ball, i):
 
 
 @kernel
-def _predict(motion, state, i, t, noses, jaws, falls, R, pair, best_time, best_ball, own_time, own_kind, own_index):
+def _predict(motion, state, i, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index):
     """Ball i has a new motion at time t: predict all its events, and mend the rows of its partners."""
     n = pair.shape[0]
     still = state[i] == REST
@@ -125,9 +125,8 @@ def _predict(motion, state, i, t, noses, jaws, falls, R, pair, best_time, best_b
     for j in range(n):
         if j == i or state[j] == GONE:
             continue
-        if still and state[j] == REST:
-            s = inf
-        else:
+        s = inf
+        if not (still and state[j] == REST) and may_meet(motion, i, j, 2.0 * R + TOUCH):
             a, b = (i, j) if i < j else (j, i)
             s = pair_time(motion, state, a, b, t, 2.0 * R)
         pair[i, j] = pair[j, i] = s
@@ -140,7 +139,7 @@ def _predict(motion, state, i, t, noses, jaws, falls, R, pair, best_time, best_b
     best_time[i], best_ball[i] = time, ball
     own_time[i], own_kind[i], own_index[i] = inf, 0, -1
     if not still:
-        s, kind, index = boundary_event(motion, state, i, noses, jaws, falls, R)
+        s, kind, index = boundary_event(motion, state, i, noses, jaws, falls, clear, R)
         if s > motion[i, T_END] or kind == 0:
             s, index = motion[i, T_END], -1
             kind = _ROLL if state[i] == cloth.SLIDE else _STOP
@@ -181,6 +180,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
     """
     n = positions.shape[0]
     R = phys[P_R]
+    clear = clear_box(noses, jaws, falls, R)
     n_segments = n_events = 0
     for i in range(n):
         potted[i] = -1
@@ -195,7 +195,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
         n_segments = _record(segments, n_segments, motion, state, i)
     for i in range(n):
         if state[i] > REST:
-            _predict(motion, state, i, 0.0, noses, jaws, falls, R, pair, best_time, best_ball, own_time, own_kind, own_index)
+            _predict(motion, state, i, 0.0, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
     status = _OK
     end = 0.0
     while True:
@@ -253,10 +253,10 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
             status = _UNSOLVED
             break
         n_segments = _record(segments, n_segments, motion, state, i)
-        _predict(motion, state, i, t, noses, jaws, falls, R, pair, best_time, best_ball, own_time, own_kind, own_index)
+        _predict(motion, state, i, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
         if kind == _BALL_BALL:
             n_segments = _record(segments, n_segments, motion, state, j)
-            _predict(motion, state, j, t, noses, jaws, falls, R, pair, best_time, best_ball, own_time, own_kind, own_index)
+            _predict(motion, state, j, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
     for i in range(n):
         if state[i] == GONE:
             positions[i, 0], positions[i, 1] = motion[i, 0], motion[i, 1]
