@@ -11,7 +11,7 @@ from ._jit import entry
 from .physics import cloth, contact, cue, engine, trajectory
 from .physics.engine import EventKind, Status
 from .physics.parameters import P_E_B, Physics
-from .physics.table import OVERLAP_ALLOWED, Table
+from .physics.table import Table
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
 """One logged event; ``kind`` is an ``EventKind``."""
@@ -142,17 +142,6 @@ class ShotBatch:
     events: list[np.ndarray] | None = None
 
 
-def check_layout(positions, on_table, R, table, field="positions"):
-    """Raise ValueError if a ball is off the table, in a cushion, over a pocket or in another ball; positions (n, 2), on_table (n,)."""
-    table.check(positions, R, field, on_table)
-    here = np.flatnonzero(on_table)
-    p = positions[here]
-    far = np.hypot(p[:, None, 0] - p[None, :, 0], p[:, None, 1] - p[None, :, 1])
-    for a, b in np.argwhere(np.triu(far < 2 * R - OVERLAP_ALLOWED, 1)):
-        depth = 2 * R - float(far[a, b])
-        raise refuse_what(field, f"balls {here[a]} and {here[b]}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
-
-
 def _balls(positions, velocities, spins, on_table, batch):
     lead = (-1,) if batch else ()
     r = array("positions", positions, (*lead, -1, 2))
@@ -177,7 +166,7 @@ def simulate(positions, velocities, spins, table="match", physics=None, fidelity
     physics, table, fidelity = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=False)
     physics.check_stopping()
-    check_layout(r, here, physics.R, table)
+    table.check(r, physics.R, "positions", here)
     return play(r, v, w, here, physics, table, fidelity, integer("max_events", max_events, 1, 2**31))
 
 
@@ -212,8 +201,7 @@ def simulate_batch(
     physics, table, fidelity = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=True)
     physics.check_stopping()
-    for k in range(len(r)):
-        check_layout(r[k], here[k], physics.R, table, f"positions[{k}]")
+    table.check(r, physics.R, "positions", here)
     threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
     max_events = integer("max_events", max_events, 1, 2**31)
     start = r.copy(), v.copy(), w.copy(), here.copy()

@@ -203,7 +203,7 @@ def test_wherever_a_layout_may_put_a_ball_the_table_of_the_physics_has_room(name
     clear = np.all(np.abs(places) <= room, axis=1)
     clear &= np.all(np.hypot(*(places[:, None] - balls.POCKETS).transpose(2, 0, 1)) >= layouts.POCKET_GAP, axis=1)
     assert clear.sum() > 5000
-    Table.preset(name).check(places[clear], balls.BALL_RADIUS)
+    Table.preset(name).check(places[clear][:, None], balls.BALL_RADIUS)  # each by itself
 
 
 def test_touching_and_overlapping_are_measured_alike():

@@ -6,7 +6,6 @@ import numpy as np
 
 from .._check import array, flags, integer, refuse, truth
 from ..game.balls import CUE, N_BALLS, REDS_MASK, BallOn, balls_on
-from ..simulation import check_layout
 
 
 class State(NamedTuple):
@@ -36,7 +35,7 @@ def checked_layout(state, table, R):
     """The arrays positions (22, 2) and on_table (22,) of a state; ValueError unless they are a sound layout."""
     positions = array("state.positions", state["positions"], (N_BALLS, 2))
     on_table = flags("state.on_table", state["on_table"], (N_BALLS,))
-    check_layout(positions, on_table, R, table, "state.positions")
+    table.check(positions, R, "state.positions", on_table)
     return positions, on_table
 
 

@@ -3,8 +3,9 @@
 Relative position over a phase is c(x) = c0 + c1 x + c2 x^2. A contact is the first fall of |c| through a distance d.
 
 Contact at gap zero. Two bodies that touch (gap below TOUCH) and close faster than CREEP meet at once. If they close more slowly,
-stand still, or part, the next contact is the fall of the gap through -SKIN (if it is there already: at once): bodies pressed together by friction from rest gain a
-closing speed before they meet, instead of meeting without end at speed zero, and bodies that part do not meet again by rounding.
+stand still, or part, the next contact is the fall of the gap through -SKIN (if it is there already: at once): bodies pressed together by
+friction from rest gain a closing speed before they meet, instead of meeting without end at speed zero, and bodies that part do not meet
+again by rounding.
 """
 
 from math import inf, sqrt
@@ -14,8 +15,9 @@ from .cloth import AX, AY, HI_X, HI_Y, LO_X, LO_Y, REST, ROLL, T0, T_END, VX, VY
 from .roots import quadratic_crossing, quartic_crossing
 
 TOUCH = 1e-10  # m
-_MARGIN = 1e-9  # m; bodies nearer than this to a path may touch it
 SKIN = 5e-10  # m; overlap stays under the 1e-9 that the tests allow
+_DEEP = SKIN * (1.0 - 1e-6)  # from here on an overlap is SKIN, but for rounding
+_MARGIN = 1e-9  # m; bodies nearer than this to a path may touch it
 STILL = 1e-12  # m/s; rounding may leave this much of a closing speed after a meeting
 CREEP = 5e-5  # m/s; the speed gained over SKIN at the largest relative acceleration on cloth, about 2 mu_s g
 
@@ -31,7 +33,7 @@ def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
     far = sqrt(far2)
     gap = far - d
     if gap < TOUCH:
-        if -dot1 > CREEP * far or (gap <= -SKIN and -dot1 > STILL * far):
+        if -dot1 > CREEP * far or (gap <= -_DEEP and -dot1 > STILL * far):
             return 0.0
         d = d - SKIN if gap > -1.5 * SKIN else far - SKIN
     else:
@@ -125,7 +127,7 @@ def _level_crossing(gap, closing, closing2, beside, T):
     beside: the ball is beside the nose itself. In the mouth of a pocket it may be far beyond the nose's line without touching anything.
     """
     if beside and gap < TOUCH:
-        if closing > CREEP or (gap <= -SKIN and closing > STILL):
+        if closing > CREEP or (gap <= -_DEEP and closing > STILL):
             return 0.0
         gap = gap + SKIN if gap > -1.5 * SKIN else SKIN
     return quadratic_crossing(gap, -closing, -closing2, T)
@@ -176,7 +178,9 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
         s = distance_crossing(cx, cy, x1, y1, x2, y2, jaws[k, 2] + R, min(T, best))
         if s < best:
             dx, dy = cx + (x1 + x2 * s) * s, cy + (y1 + y2 * s) * s
-            # closed range and a little more: the nose ends where the arc starts, and no rounding may open a gap between them
-            if dx * jaws[k, 3] + dy * jaws[k, 4] >= (jaws[k, 5] - 1e-9) * sqrt(dx * dx + dy * dy):
+            # The nose ends where the arc starts, with a common tangent: a ball pressed SKIN deep into the nose falls through the circle
+            # an angle of sqrt(2 SKIN / d) before that.
+            seam = sqrt(2.5 * SKIN * (1.0 - jaws[k, 5] * jaws[k, 5]) / (jaws[k, 2] + R))
+            if dx * jaws[k, 3] + dy * jaws[k, 4] >= (jaws[k, 5] - seam) * sqrt(dx * dx + dy * dy):
                 best, kind, index = s, 2, k
     return motion[i, T0] + best, kind, index

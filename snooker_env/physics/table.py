@@ -11,7 +11,8 @@ from math import hypot, sqrt
 
 import numpy as np
 
-from .._check import array, choice, refuse
+from .._check import array, choice, refuse, refuse_what
+from .._jit import entry
 
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
 MOUTH = 0.012
@@ -24,6 +25,8 @@ _CORNER_FALL, _MIDDLE_FALL = (0.047625, 0.0889), (0.05159, 0.05319)  # slate cir
 _MIDDLE_ARC = 0.109185  # middle pocket: distance of the arc centres from the pocket's axis
 _CORNER_ARC = {"match": 0.0976352, "tight": 0.0934916}  # corner: where the arc leaves the nose, from the corner; throats 86.0 and 80.14 mm
 
+PLAY = 1e-3
+"""Facing noses must be at least this much [m] further apart than a ball is wide."""
 OVERLAP_ALLOWED = 1e-6
 """Input positions may overlap a ball or cushion by this much [m]: layouts printed to a micrometre. They count as touching."""
 
@@ -46,6 +49,7 @@ class Table:
             a = array(f"table.{name}", getattr(self, name), (-1, columns))
             a.setflags(write=False)
             object.__setattr__(self, name, a)
+        object.__setattr__(self, "_narrowest", _narrowest(self.noses))
 
     @classmethod
     def preset(cls, name="match"):
@@ -71,25 +75,77 @@ class Table:
         return _PRESETS[name] if name in _PRESETS else cls(name, noses, jaws, falls)
 
     def check(self, positions, R, field="positions", on_table=None):
-        """Raise ValueError if a ball's centre is off the table, in a cushion or jaw, or over a pocket."""
-        for i, (x, y) in enumerate(positions):
-            if on_table is not None and not on_table[i]:
+        """Raise ValueError unless every layout is sound: no ball off the table, in a cushion, jaw or other ball, or over a pocket.
+
+        positions (n, 2) or, of many tables at once, (b, n, 2); on_table (n,) or (b, n) bool: balls that do not count are False.
+        """
+        positions = np.asarray(positions, float)
+        many = positions.ndim == 3
+        places = positions if many else positions[None]
+        here = np.ones(places.shape[:2], bool) if on_table is None else np.atleast_2d(on_table)
+        width, *pair = self._narrowest
+        if width - 2 * R < PLAY:  # it would bounce between them without end in no time
+            what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
+            raise refuse_what("table.noses", f"{pair[0]} and {pair[1]}", what)
+        k, i, fault, j = _first_fault(places, here, self.noses, self.jaws, self.falls, float(R))
+        if fault == _SOUND:
+            return
+        field = f"{field}[{k}]" if many else field
+        place = f"{field}[{i}]", (float(places[k, i, 0]), float(places[k, i, 1]))
+        if fault == _OFF:
+            raise refuse(*place, f"must be on the table, |x| <= {HALF_WIDTH - R:.6g}, |y| <= {HALF_LENGTH - R:.6g} away from pockets")
+        if fault == _IN_NOSE:
+            axis, side, level = self.noses[j, :3]
+            raise refuse(*place, f"overlaps the cushion at {'xy'[int(axis)]} = {side * level:g}")
+        if fault == _OVER_POCKET:
+            raise refuse(*place, "is over a pocket")
+        if fault == _IN_JAW:
+            raise refuse(*place, f"overlaps jaw {j} at ({self.jaws[j, 0]:.4f}, {self.jaws[j, 1]:.4f})")
+        depth = 2 * R - float(hypot(*(places[k, i] - places[k, j])))
+        raise refuse_what(field, f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
+
+
+def _narrowest(noses):
+    """The least distance [m] of two facing noses that a ball can touch both at once, and which they are."""
+    found = (np.inf, -1, -1)
+    for a, (axis, side, level, low, high) in enumerate(noses):
+        for b, (other_axis, other_side, other_level, other_low, other_high) in enumerate(noses):
+            if a < b and axis == other_axis and side != other_side and low <= other_high and other_low <= high:
+                found = min(found, (float(level + other_level), a, b))
+    return found
+
+
+_SOUND, _OFF, _IN_NOSE, _OVER_POCKET, _IN_JAW, _IN_BALL = range(6)
+
+
+@entry
+def _first_fault(positions, on_table, noses, jaws, falls, R):
+    """The first unsound place of positions (b, n, 2): table, ball, what is wrong, and with which nose, fall, jaw or ball."""
+    for k in range(positions.shape[0]):
+        for i in range(positions.shape[1]):
+            if not on_table[k, i]:
                 continue
-            place = f"{field}[{i}]", (float(x), float(y))
-            if self.noses.size and not (abs(x) < HALF_WIDTH + MOUTH and abs(y) < HALF_LENGTH + MOUTH):
-                raise refuse(*place, f"must be on the table, |x| <= {HALF_WIDTH - R:.6g}, |y| <= {HALF_LENGTH - R:.6g} away from pockets")
-            for axis, side, level, low, high in self.noses:
-                along, across = (y, x) if axis == 0 else (x, y)
-                if low <= along <= high and level - R - side * across < -OVERLAP_ALLOWED:
-                    raise refuse(*place, f"overlaps the cushion at {'xy'[int(axis)]} = {side * level:g}")
-            for cx, cy, radius in self.falls:
-                if hypot(x - cx, y - cy) < radius:
-                    raise refuse(*place, "is over a pocket")
-            for k, (cx, cy, radius, ux, uy, cos_half) in enumerate(self.jaws):
-                dx, dy = x - cx, y - cy
+            x, y = positions[k, i, 0], positions[k, i, 1]
+            if noses.shape[0] > 0 and not (abs(x) < HALF_WIDTH + MOUTH and abs(y) < HALF_LENGTH + MOUTH):
+                return k, i, _OFF, -1
+            for j in range(noses.shape[0]):
+                along, across = (y, x) if noses[j, 0] == 0.0 else (x, y)
+                if noses[j, 3] <= along <= noses[j, 4] and noses[j, 2] - R - noses[j, 1] * across < -OVERLAP_ALLOWED:
+                    return k, i, _IN_NOSE, j
+            for j in range(falls.shape[0]):
+                if hypot(x - falls[j, 0], y - falls[j, 1]) < falls[j, 2]:
+                    return k, i, _OVER_POCKET, j
+            for j in range(jaws.shape[0]):
+                dx, dy = x - jaws[j, 0], y - jaws[j, 1]
                 d = hypot(dx, dy)
-                if d < radius + R - OVERLAP_ALLOWED and dx * ux + dy * uy >= cos_half * d:
-                    raise refuse(*place, f"overlaps jaw {k} at ({cx:.4f}, {cy:.4f})")
+                if d < jaws[j, 2] + R - OVERLAP_ALLOWED and dx * jaws[j, 3] + dy * jaws[j, 4] >= jaws[j, 5] * d:
+                    return k, i, _IN_JAW, j
+        for i in range(positions.shape[1]):
+            for j in range(i + 1, positions.shape[1]):
+                dx, dy = positions[k, j, 0] - positions[k, i, 0], positions[k, j, 1] - positions[k, i, 1]
+                if on_table[k, i] and on_table[k, j] and hypot(dx, dy) < 2.0 * R - OVERLAP_ALLOWED:
+                    return k, i, _IN_BALL, j
+    return -1, -1, _SOUND, -1
 
 
 def _build(name):
