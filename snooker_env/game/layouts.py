@@ -1,17 +1,21 @@
-"""How can a table stand at the start of a task? Layouts from a random generator: geometry only, no shot is simulated.
+"""How can a table stand at the start of a task? Layouts from a stream of random numbers: geometry only, no shot is simulated.
 
-Each function returns ``positions`` (22, 2) [m] and ``on_table`` (22,) bool and draws only from the generator it is given: the same
-generator state, the same table. A ball off the table keeps its row of ``balls.SPOTS``. Balls that are not racked or on a spot stand
-at least ``GAP`` from any other.
+A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool. It depends on the stream alone: the same key and counter, the same table. A
+ball off the table keeps its row of ``balls.SPOTS``. Balls that are not racked or on a spot stand at least ``GAP`` from any other.
 """
+
+from dataclasses import dataclass
+from math import atan2, cos, hypot, sin
 
 import numpy as np
 
-from .._check import integer, refuse
-from .balls import BALL_RADIUS, BAULK_Y, BLACK, CUE, D_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, N_REDS, POCKETS, REDS_MASK, SPOTS, YELLOW
-from .opened import held_out, opened
-from .pots import pots
-from .snookered import is_snookered
+from .._check import refuse
+from .._jit import entry, kernel
+from .balls import BALL_RADIUS, BAULK_Y, CUE, D_RADIUS, GREEN, HALF_LENGTH, HALF_WIDTH, N_BALLS, N_REDS, POCKETS, REDS_MASK, SPOTS, YELLOW
+from .opened import HELD_OUT, NO_BANK, bank
+from .pots import POT_COLUMNS, find_pots
+from .snookered import NO_JAWS, snookered_from
+from .stream import normals, pair, stream_of
 
 GAP = 0.001
 """Least gap [m] between a ball placed at random and any other."""
@@ -20,101 +24,93 @@ CUSHION_GAP = 0.05
 POCKET_GAP = 0.15
 """Least distance [m] of such a ball's centre from a pocket's nominal place: clear of the jaws."""
 
+OPENED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
+"""Kinds of layouts, for the kernels."""
 
-def _generator(rng):
-    if not isinstance(rng, np.random.Generator):
-        raise refuse("rng", rng, "must be a numpy.random.Generator")
-    return rng
-
-
-def _table(reds):
-    """Fresh arrays: the first ``reds`` reds and all colours on the table, every ball on its spot, no cue ball yet."""
-    on_table = np.zeros(N_BALLS, dtype=np.bool_)
-    on_table[1 : 1 + reds] = True
-    on_table[YELLOW:] = True
-    return SPOTS.copy(), on_table
+_TABLE = (-HALF_WIDTH, -HALF_LENGTH, HALF_WIDTH, HALF_LENGTH)
+_D = (-D_RADIUS, BAULK_Y - D_RADIUS, D_RADIUS, BAULK_Y)
+_BESIDE_LINE = (-0.6, -0.3, 0.6, 1.5)
 
 
-def _clear(positions, on_table, place):
+@kernel
+def clear(positions, on_table, x, y):
     """Is a place clear of the balls on the table, cushions and pockets?"""
-    return (
-        np.all(np.hypot(*(positions[on_table] - place).T) >= 2 * BALL_RADIUS + GAP)
-        and np.all(np.abs(place) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - CUSHION_GAP)
-        and np.all(np.hypot(*(POCKETS - place).T) >= POCKET_GAP)
-    )
+    room = BALL_RADIUS + CUSHION_GAP
+    if abs(x) > HALF_WIDTH - room or abs(y) > HALF_LENGTH - room:
+        return False
+    for k in range(POCKETS.shape[0]):
+        if hypot(POCKETS[k, 0] - x, POCKETS[k, 1] - y) < POCKET_GAP:
+            return False
+    for i in range(N_BALLS):
+        if on_table[i] and hypot(positions[i, 0] - x, positions[i, 1] - y) < 2 * BALL_RADIUS + GAP:
+            return False
+    return True
 
 
-def _put(positions, on_table, ball, draw):
-    """Put a ball at the first place from ``draw()`` that is clear of other balls, cushions and pockets."""
+@kernel
+def _within(kind, x, y):
+    """May the cue ball of this kind of layout stand there, as far as the other balls do not matter?"""
+    if kind == BREAK_OFF:
+        return hypot(x, y - BAULK_Y) <= D_RADIUS
+    if kind == COLOURS:
+        return 0.25 <= hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1]) <= 1.2
+    return True
+
+
+@kernel
+def _put(positions, on_table, ball, kind, box, stream):
+    """Put a ball at the first place drawn from the box (left, bottom, right, top) that is clear and within the kind's bounds."""
+    left, bottom, right, top = box
     while True:
-        place = draw()
-        if _clear(positions, on_table, place):
-            positions[ball] = place
+        u, v = pair(stream)
+        x, y = left + u * (right - left), bottom + v * (top - bottom)
+        if _within(kind, x, y) and clear(positions, on_table, x, y):
+            positions[ball, 0], positions[ball, 1] = x, y
             on_table[ball] = True
             return
 
 
-def _box(rng, low, high):
-    """A draw, uniform in a box."""
-    return lambda: rng.uniform(low, high)
+@kernel
+def _spotted(positions, on_table, reds):
+    """The first ``reds`` reds and all colours on their spots, no cue ball."""
+    positions[:, :] = SPOTS
+    for i in range(N_BALLS):
+        on_table[i] = 1 <= i <= reds or i >= YELLOW
 
 
-def _in_d(rng):
-    """A draw, uniform in the D."""
-
-    def draw():
-        while True:
-            x, y = rng.uniform([-D_RADIUS, -D_RADIUS], [D_RADIUS, 0.0])
-            if x * x + y * y <= D_RADIUS * D_RADIUS:
-                return np.array([x, BAULK_Y + y])
-
-    return draw
+@kernel
+def _sprinkle(positions, on_table, reds, stream):
+    """All colours on their spots, ``reds`` reds anywhere."""
+    _spotted(positions, on_table, 0)
+    for red in range(1, 1 + reds):
+        _put(positions, on_table, red, RANDOM, _TABLE, stream)
 
 
-def break_off(rng):
-    """The start of a frame: reds racked, colours on their spots, the cue ball at a random place in the D."""
-    positions, on_table = _table(N_REDS)
-    _put(positions, on_table, CUE, _in_d(_generator(rng)))
-    return positions, on_table
+@kernel
+def _opened(positions, on_table, tables, first, last, stream):
+    """One of the tables ``first`` to ``last`` of the bank, every second one mirrored in the long axis."""
+    u, v = pair(stream)
+    positions[:, :] = tables[first + int(u * (last - first))]
+    on_table[:] = True
+    if v < 0.5:
+        positions[:, 0] *= -1.0
+        for c in range(2):  # so that each keeps its side of the table
+            positions[YELLOW, c], positions[GREEN, c] = positions[GREEN, c], positions[YELLOW, c]
 
 
-def line_up(rng):
+@kernel
+def _line_up(positions, on_table, stream):
     """The practice line-up: 15 reds on the centre line, two below the blue, seven from blue to pink, four on to the black, two above it.
 
     They stand about 112 mm apart, so that a ball just passes between two. The cue ball is placed at random beside the line.
     """
-    positions, on_table = _table(N_REDS)
+    _spotted(positions, on_table, N_REDS)
     blue, pink, black = SPOTS[19, 1], SPOTS[20, 1], SPOTS[21, 1]
     low, high = (pink - blue) / 8, (black - pink) / 5
-    ys = [blue - 2 * low, blue - low, *(blue + low * np.arange(1, 8)), *(pink + high * np.arange(1, 5)), black + high, black + 2 * high]
-    positions[1 : 1 + N_REDS] = np.column_stack([np.zeros(N_REDS), ys])
-    _put(positions, on_table, CUE, _box(_generator(rng), [-0.6, -0.3], [0.6, 1.5]))
-    return positions, on_table
-
-
-def colours(rng):
-    """Only the six colours, on their spots; the cue ball at a random place 0.25 m to 1.2 m from the yellow, the first ball on."""
-    positions, on_table = _table(0)
-    box = _box(_generator(rng), [-HALF_WIDTH, -HALF_LENGTH], [HALF_WIDTH, HALF_LENGTH])
-
-    def draw():
-        while True:
-            place = box()
-            if 0.25 <= np.hypot(*(place - SPOTS[YELLOW])) <= 1.2:
-                return place
-
-    _put(positions, on_table, CUE, draw)
-    return positions, on_table
-
-
-def random(rng, n):
-    """``n`` reds (0 to 15) and the cue ball sprinkled over the whole table, all colours on their spots."""
-    positions, on_table = _table(0)
-    draw = _box(_generator(rng), [-HALF_WIDTH, -HALF_LENGTH], [HALF_WIDTH, HALF_LENGTH])
-    for red in range(1, 1 + integer("n", n, 0, N_REDS)):
-        _put(positions, on_table, red, draw)
-    _put(positions, on_table, CUE, draw)
-    return positions, on_table
+    for k in range(N_REDS):
+        y = blue + low * (k - 2 if k < 2 else k - 1) if k < 9 else pink + high * (k - 8) if k < 13 else black + high * (k - 12)
+        positions[1 + k, 0], positions[1 + k, 1] = 0.0, y
+    _put(positions, on_table, CUE, LINE_UP, _BESIDE_LINE, stream)
 
 
 SNOOKERED_REDS = 3
@@ -123,24 +119,28 @@ BEHIND = (0.08, 0.5)
 """How far from the snookering colour its cue ball lies [m]: from about a ball's width to a third of the table's width."""
 
 
-def snookered(rng):
+@kernel
+def _snookered(positions, on_table, stream):
     """The cue ball snookered on every red: one to three reds sprinkled, all colours on their spots, red on.
 
     By construction and trial: behind a colour as seen from a red, then kept only if the rule's tangent test (``snookered.is_snookered``)
     finds no red that can be struck at both edges. A way out needs a cushion, swerve, or a touch on a red's one open edge.
     """
-    rng = _generator(rng)
     while True:
-        positions, on_table = random(rng, int(rng.integers(1, SNOOKERED_REDS + 1)))
-        red, colour = 1 + rng.integers(np.count_nonzero(on_table[1:YELLOW])), rng.integers(YELLOW, BLACK + 1)
-        away = positions[colour] - positions[red]
-        angle = np.arctan2(away[1], away[0]) + rng.normal(0.0, 0.03)
-        place = positions[colour] + rng.uniform(*BEHIND) * np.array([np.cos(angle), np.sin(angle)])
-        on_table[CUE] = False
-        if _clear(positions, on_table, place):
-            positions[CUE], on_table[CUE] = place, True
-            if is_snookered(positions, on_table, REDS_MASK)[0]:
-                return positions, on_table
+        u, v = pair(stream)
+        reds = 1 + int(u * SNOOKERED_REDS)
+        red, (u, far) = 1 + int(v * reds), pair(stream)
+        colour = YELLOW + int(u * (N_BALLS - YELLOW))
+        _sprinkle(positions, on_table, reds, stream)
+        turn = normals(stream)[0]
+        angle = atan2(positions[colour, 1] - positions[red, 1], positions[colour, 0] - positions[red, 0]) + 0.03 * turn
+        far = BEHIND[0] + far * (BEHIND[1] - BEHIND[0])
+        x, y = positions[colour, 0] + far * cos(angle), positions[colour, 1] + far * sin(angle)
+        if clear(positions, on_table, x, y):
+            positions[CUE, 0], positions[CUE, 1] = x, y
+            on_table[CUE] = True
+            if snookered_from(positions, on_table, REDS_MASK, x, y, NO_JAWS, BALL_RADIUS)[0]:
+                return
 
 
 POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e-3)}
@@ -148,35 +148,109 @@ POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e
 no allowance for throw, 300 of each went in 69, 61 and 45 % of the time with an aim of 0.025 deg, and 68, 52 and 22 % with 0.1 deg."""
 
 
-def single_pot(rng, difficulty):
-    """One red and the cue ball alone on the table, anywhere, with a direct pot; its widest is of that ``difficulty`` (``POT_WINDOWS``)."""
-    rng = _generator(rng)
-    if difficulty not in POT_WINDOWS:
-        raise refuse("difficulty", difficulty, "must be one of " + ", ".join(map(repr, POT_WINDOWS)))
-    low, high = POT_WINDOWS[difficulty]
-    draw = _box(rng, [-HALF_WIDTH, -HALF_LENGTH], [HALF_WIDTH, HALF_LENGTH])
+@kernel
+def _single_pot(positions, on_table, low, high, stream, found):
+    """One red and the cue ball alone on the table, anywhere, with a direct pot; its widest tolerance is in [low, high)."""
     while True:
-        positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, dtype=np.bool_)
-        _put(positions, on_table, 1, draw)
-        _put(positions, on_table, CUE, draw)
-        found = pots(positions, on_table, REDS_MASK, most=1)
-        if len(found) and low <= found[0, 5] < high:
-            return positions, on_table
+        positions[:, :] = SPOTS
+        on_table[:] = False
+        _put(positions, on_table, 1, POT, _TABLE, stream)
+        _put(positions, on_table, CUE, POT, _TABLE, stream)
+        if find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, found) and low <= found[0, 5] < high:
+            return
 
 
+@kernel
+def _deal(code, tables, stream, positions, on_table, found):
+    kind, reds = int(code[0]), int(code[1])
+    if kind == OPENED:
+        _opened(positions, on_table, tables, int(code[2]), int(code[3]), stream)
+    elif kind == LINE_UP:
+        _line_up(positions, on_table, stream)
+    elif kind == SNOOKERED:
+        _snookered(positions, on_table, stream)
+    elif kind == POT:
+        _single_pot(positions, on_table, code[2], code[3], stream, found)
+    else:
+        if kind == RANDOM:
+            _sprinkle(positions, on_table, reds, stream)
+        else:
+            _spotted(positions, on_table, reds)
+        _put(positions, on_table, CUE, kind, _D if kind == BREAK_OFF else _TABLE, stream)
+
+
+@entry
+def deal_tables(wanted, code, tables, streams, positions, on_table):
+    """Deal a new layout on each table k that is ``wanted``, from its own stream: positions (n, 22, 2), on_table (n, 22), in place.
+
+    ``code`` and ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64.
+    """
+    found = np.empty((1, POT_COLUMNS))
+    for k in range(wanted.shape[0]):
+        if wanted[k]:
+            _deal(code, tables, streams[k], positions[k], on_table[k], found)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A layout's name as the kernels read it. A copy is made anew from the name: the bank of tables is never copied."""
+
+    name: str
+    code: np.ndarray
+    """Kind, number of reds, and two numbers: the first and last table of the bank, or the window of a pot."""
+    tables: np.ndarray
+    """The bank of opened tables, or none."""
+
+    @property
+    def in_hand(self):
+        """Whether the cue ball may be moved within the D."""
+        return self.name == "break_off"
+
+    def __reduce__(self):
+        return plan_of, (self.name,)
+
+
+_NAMES = {"break_off": (BREAK_OFF, N_REDS), "line_up": (LINE_UP, N_REDS), "colours": (COLOURS, 0), "snookered": (SNOOKERED, 0)}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
-LAYOUTS = {"opened": opened, "held_out": held_out, "break_off": break_off, "line_up": line_up, "colours": colours, "snookered": snookered}
+LAYOUTS = ("opened", "held_out", *_NAMES)
+
+
+def plan_of(name):
+    """The ``Plan`` of a layout: one of ``LAYOUTS``, ``"random:N"`` with N reds, or ``"pots:D"`` with D one of ``POT_WINDOWS``."""
+    head, _, which = name.partition(":") if isinstance(name, str) else ("", "", "")
+    tables, code = NO_BANK, None
+    if name in ("opened", "held_out"):
+        tables = bank()
+        code = (OPENED, N_REDS, *((0, len(tables) - HELD_OUT) if name == "opened" else (len(tables) - HELD_OUT, len(tables))))
+    elif isinstance(name, str) and name in _NAMES:
+        code = (*_NAMES[name], 0, 0)
+    elif head == "random" and which in _COUNTS:
+        code = (RANDOM, int(which), 0, 0)
+    elif head == "pots" and which in POT_WINDOWS:
+        code = (POT, 1, *POT_WINDOWS[which])
+    if code is None:
+        known = ", ".join(map(repr, LAYOUTS))
+        allowed = f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard" or "random:N" with N from 0 to {N_REDS}'
+        raise refuse("layout", name, allowed)
+    return Plan(name, np.array(code, np.float64), tables)
 
 
 def layout(name, rng):
-    """The layout of that name: one of ``LAYOUTS``, ``"random:N"`` with N reds, or ``"pots:D"`` with D one of ``POT_WINDOWS``."""
-    if isinstance(name, str):
-        if name in LAYOUTS:
-            return LAYOUTS[name](rng)
-        head, _, which = name.partition(":")
-        if head == "random" and which in _COUNTS:
-            return random(rng, int(which))
-        if head == "pots" and which in POT_WINDOWS:
-            return single_pot(rng, which)
-    known = ", ".join(map(repr, LAYOUTS))
-    raise refuse("layout", name, f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard" or "random:N" with N from 0 to {N_REDS}')
+    """A layout by its name (see ``plan_of``): ``positions`` (22, 2) [m] and ``on_table`` (22,) bool, fresh.
+
+    ``rng``: a numpy Generator, of which one number is drawn: the key of the layout's stream.
+    """
+    plan = plan_of(name)
+    positions, on_table = np.empty((1, N_BALLS, 2)), np.empty((1, N_BALLS), np.bool_)
+    deal_tables(np.ones(1, np.bool_), plan.code, plan.tables, stream_of(rng)[None], positions, on_table)
+    return positions[0], on_table[0]
+
+
+def break_off(rng):
+    """The start of a frame: reds racked, colours on their spots, the cue ball at a random place in the D."""
+    return layout("break_off", rng)
+
+
+def opened(rng):
+    """A table opened by play, all 22 balls on it."""
+    return layout("opened", rng)
