@@ -53,7 +53,8 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
         row[at + 2] = 1.0 if here else 0.0
         row[at + 3] = VALUES[i] / 7.0
         row[at + 4] = (on >> i) & 1
-    row[BALLS_SIZE:] = 0.0
+    for at in range(BALLS_SIZE, SIZE):
+        row[at] = 0.0
     row[BALLS_SIZE] = count(bits(on_table) & REDS_MASK) / 15.0
     if ball_on >= 0:
         row[BALLS_SIZE + 1 + ball_on] = 1.0

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .._jit import entry
+from .._jit import entry, kernel
 from ..game.balls import BALL_RADIUS, CUE, N_BALLS, balls_on_kernel, bits, next_on_kernel
 from ..game.in_hand import nearest_place
 from ..game.layouts import Plan, deal_tables
@@ -52,11 +52,8 @@ def _address(actions, waiting, positions, on_table, game, streams, options, nois
     found = np.empty((1, POT_COLUMNS))
     for k in range(actions.shape[0]):
         a, p, on = actions[k], positions[k], on_table[k]
-        v[k] = 0.0
-        w[k] = 0.0
         if waiting[k]:
-            r[k] = p
-            here[k] = False
+            here[k, :] = False
             continue
         if game[k, IN_HAND] and options[A_PLACEMENT]:
             x, y = place_of(a, options)
@@ -71,8 +68,9 @@ def _address(actions, waiting, positions, on_table, game, streams, options, nois
         shot = shots[k]
         shot[VX], shot[VY], shot[WX], shot[WY], shot[WZ] = strike(speed, aim, side, top, elevation, options[A_END_MASS])
         shot[SPEED] = intended[0]
-        r[k] = p
-        here[k] = on
+        for i in range(N_BALLS):
+            r[k, i, 0], r[k, i, 1], here[k, i] = p[i, 0], p[i, 1], on[i]
+            v[k, i, 0] = v[k, i, 1] = w[k, i, 0] = w[k, i, 1] = w[k, i, 2] = 0.0
         v[k, CUE, 0], v[k, CUE, 1] = shot[VX], shot[VY]
         w[k, CUE, 0], w[k, CUE, 1], w[k, CUE, 2] = shot[WX], shot[WY], shot[WZ]
 
@@ -94,7 +92,7 @@ def _conclude(waiting, positions, on_table, game, r, potted, status, duration, e
         for i in range(N_BALLS):
             if potted[k, i] >= 0:
                 down |= 1 << i
-        p[:, :] = r[k]
+            p[i, 0], p[i, 1] = r[k, i, 0], r[k, i, 1]
         ball_on = state[BALL_ON]
         verdict = settle_visit(p, on, ball_on, state[POINTS], first, touching, moved, down, BALL_RADIUS)
         state[BALL_ON], state[IN_HAND] = verdict.ball_on, verdict.in_hand
@@ -114,6 +112,12 @@ def _conclude(waiting, positions, on_table, game, r, potted, status, duration, e
         counts[k, 3], counts[k, 4], counts[k, 5] = ball_on, lowest, n_events[k]
 
 
+@kernel
+def _copy(row, to):
+    for c in range(len(row)):
+        to[c] = row[c]
+
+
 @entry
 def _begin(wanted, others, in_hand, positions, on_table, game, observations, reals, counts, last_observations, last_reals, last_counts):
     """Start a visit on the tables ``wanted``, dealt before, and write what a reset returns; on the ``others`` too if that is set.
@@ -126,14 +130,16 @@ def _begin(wanted, others, in_hand, positions, on_table, game, observations, rea
         mask, state = bits(on_table[k]), game[k]
         if wanted[k]:
             if last_observations.shape[0]:
-                last_observations[k], last_reals[k], last_counts[k] = observations[k], reals[k], counts[k]
-            state[:] = 0
+                _copy(observations[k], last_observations[k])
+                _copy(reals[k], last_reals[k])
+                _copy(counts[k], last_counts[k])
             state[BALL_ON], state[IN_HAND] = next_on_kernel(mask), in_hand
+            state[POINTS] = state[OVER] = state[STEPS] = 0
         on = balls_on_kernel(state[BALL_ON], mask)
         observe_into(observations[k], positions[k], on_table[k], state[BALL_ON], on, state[IN_HAND], state[POINTS])
-        reals[k] = 0.0
-        reals[k, 1] = state[POINTS]
-        counts[k] = 0
+        reals[k, 0], reals[k, 1], reals[k, 2] = 0.0, state[POINTS], 0.0
+        for c in range(len(COUNTS)):
+            counts[k, c] = 0
         counts[k, 3], counts[k, 4] = state[BALL_ON], -1
 
 

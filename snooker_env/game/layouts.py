@@ -27,10 +27,6 @@ POCKET_GAP = 0.15
 OPENED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
 """Kinds of layouts, for the kernels."""
 
-_TABLE = (-HALF_WIDTH, -HALF_LENGTH, HALF_WIDTH, HALF_LENGTH)
-_D = (-D_RADIUS, BAULK_Y - D_RADIUS, D_RADIUS, BAULK_Y)
-_BESIDE_LINE = (-0.6, -0.3, 0.6, 1.5)
-
 
 @kernel
 def clear(positions, on_table, x, y):
@@ -48,99 +44,75 @@ def clear(positions, on_table, x, y):
 
 
 @kernel
-def _within(kind, x, y):
-    """May the cue ball of this kind of layout stand there, as far as the other balls do not matter?"""
-    if kind == BREAK_OFF:
-        return hypot(x, y - BAULK_Y) <= D_RADIUS
-    if kind == COLOURS:
-        return 0.25 <= hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1]) <= 1.2
-    return True
-
-
-@kernel
-def _put(positions, on_table, ball, kind, box, stream):
-    """Put a ball at the first place drawn from the box (left, bottom, right, top) that is clear and within the kind's bounds."""
-    left, bottom, right, top = box
+def _put(positions, on_table, ball, kind, stream):
+    """Put a ball at the first place drawn that is clear of the others; the cue ball within the bounds of its kind of layout."""
+    left, bottom, right, top = -HALF_WIDTH, -HALF_LENGTH, HALF_WIDTH, HALF_LENGTH
+    if ball == CUE and kind == BREAK_OFF:
+        left, bottom, right, top = -D_RADIUS, BAULK_Y - D_RADIUS, D_RADIUS, BAULK_Y
+    elif ball == CUE and kind == LINE_UP:
+        left, bottom, right, top = -0.6, -0.3, 0.6, 1.5
     while True:
         u, v = pair(stream)
         x, y = left + u * (right - left), bottom + v * (top - bottom)
-        if _within(kind, x, y) and clear(positions, on_table, x, y):
+        if ball == CUE and kind == BREAK_OFF and hypot(x, y - BAULK_Y) > D_RADIUS:
+            continue
+        if ball == CUE and kind == COLOURS and not 0.25 <= hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1]) <= 1.2:
+            continue  # not too near the first ball on, nor too far
+        if clear(positions, on_table, x, y):
             positions[ball, 0], positions[ball, 1] = x, y
             on_table[ball] = True
             return
 
 
 @kernel
-def _spotted(positions, on_table, reds):
-    """The first ``reds`` reds and all colours on their spots, no cue ball."""
-    positions[:, :] = SPOTS
-    for i in range(N_BALLS):
-        on_table[i] = 1 <= i <= reds or i >= YELLOW
-
-
-@kernel
-def _sprinkle(positions, on_table, reds, stream):
-    """All colours on their spots, ``reds`` reds anywhere."""
-    _spotted(positions, on_table, 0)
-    for red in range(1, 1 + reds):
-        _put(positions, on_table, red, RANDOM, _TABLE, stream)
-
-
-@kernel
 def _opened(positions, on_table, tables, first, last, stream):
     """One of the tables ``first`` to ``last`` of the bank, every second one mirrored in the long axis."""
     u, v = pair(stream)
-    positions[:, :] = tables[first + int(u * (last - first))]
-    on_table[:] = True
-    if v < 0.5:
-        positions[:, 0] *= -1.0
-        for c in range(2):  # so that each keeps its side of the table
-            positions[YELLOW, c], positions[GREEN, c] = positions[GREEN, c], positions[YELLOW, c]
+    table = tables[first + int(u * (last - first))]
+    for i in range(N_BALLS):
+        j = i
+        if v < 0.5 and YELLOW <= i <= GREEN:
+            j = YELLOW + GREEN - i  # so that each keeps its side of the table
+        positions[i, 0], positions[i, 1] = -table[j, 0] if v < 0.5 else table[j, 0], table[j, 1]
+        on_table[i] = True
 
 
 @kernel
-def _line_up(positions, on_table, stream):
-    """The practice line-up: 15 reds on the centre line, two below the blue, seven from blue to pink, four on to the black, two above it.
-
-    They stand about 112 mm apart, so that a ball just passes between two. The cue ball is placed at random beside the line.
-    """
-    _spotted(positions, on_table, N_REDS)
+def _line_up_y(k):
+    """Where red k of 15 of the practice line-up stands on the centre line: two below the blue, seven from blue to pink, four on to the
+    black, two above it. They stand about 112 mm apart, so that a ball just passes between two."""
     blue, pink, black = SPOTS[19, 1], SPOTS[20, 1], SPOTS[21, 1]
     low, high = (pink - blue) / 8, (black - pink) / 5
-    for k in range(N_REDS):
-        y = blue + low * (k - 2 if k < 2 else k - 1) if k < 9 else pink + high * (k - 8) if k < 13 else black + high * (k - 12)
-        positions[1 + k, 0], positions[1 + k, 1] = 0.0, y
-    _put(positions, on_table, CUE, LINE_UP, _BESIDE_LINE, stream)
+    if k <= 9:
+        return blue + low * (k - 3 if k <= 2 else k - 2)
+    return pink + high * (k - 9) if k <= 13 else black + high * (k - 13)
 
 
 SNOOKERED_REDS = 3
-"""At most so many reds are on the table in ``snookered``."""
+"""At most so many reds are on the table in ``"snookered"``."""
 BEHIND = (0.08, 0.5)
 """How far from the snookering colour its cue ball lies [m]: from about a ball's width to a third of the table's width."""
 
 
 @kernel
-def _snookered(positions, on_table, stream):
-    """The cue ball snookered on every red: one to three reds sprinkled, all colours on their spots, red on.
+def _hide(positions, on_table, reds, stream):
+    """Try to snooker the cue ball on every red (of 1 to ``reds``), by a colour drawn: is it now placed so?
 
-    By construction and trial: behind a colour as seen from a red, then kept only if the rule's tangent test (``snookered.is_snookered``)
+    By construction and trial: behind the colour as seen from a red, kept only if the rule's tangent test (``snookered.is_snookered``)
     finds no red that can be struck at both edges. A way out needs a cushion, swerve, or a touch on a red's one open edge.
     """
-    while True:
-        u, v = pair(stream)
-        reds = 1 + int(u * SNOOKERED_REDS)
-        red, (u, far) = 1 + int(v * reds), pair(stream)
-        colour = YELLOW + int(u * (N_BALLS - YELLOW))
-        _sprinkle(positions, on_table, reds, stream)
-        turn = normals(stream)[0]
-        angle = atan2(positions[colour, 1] - positions[red, 1], positions[colour, 0] - positions[red, 0]) + 0.03 * turn
-        far = BEHIND[0] + far * (BEHIND[1] - BEHIND[0])
-        x, y = positions[colour, 0] + far * cos(angle), positions[colour, 1] + far * sin(angle)
-        if clear(positions, on_table, x, y):
-            positions[CUE, 0], positions[CUE, 1] = x, y
-            on_table[CUE] = True
-            if snookered_from(positions, on_table, REDS_MASK, x, y, NO_JAWS, BALL_RADIUS)[0]:
-                return
+    u, v = pair(stream)
+    far, _ = pair(stream)
+    turn, _ = normals(stream)
+    red, colour = 1 + int(u * reds), YELLOW + int(v * (N_BALLS - YELLOW))
+    angle = atan2(positions[colour, 1] - positions[red, 1], positions[colour, 0] - positions[red, 0]) + 0.03 * turn
+    far = BEHIND[0] + far * (BEHIND[1] - BEHIND[0])
+    x, y = positions[colour, 0] + far * cos(angle), positions[colour, 1] + far * sin(angle)
+    if not clear(positions, on_table, x, y):
+        return False
+    positions[CUE, 0], positions[CUE, 1] = x, y
+    on_table[CUE] = True
+    return snookered_from(positions, on_table, REDS_MASK, x, y, NO_JAWS, BALL_RADIUS)[0]
 
 
 POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e-3)}
@@ -149,34 +121,33 @@ no allowance for throw, 300 of each went in 69, 61 and 45 % of the time with an 
 
 
 @kernel
-def _single_pot(positions, on_table, low, high, stream, found):
-    """One red and the cue ball alone on the table, anywhere, with a direct pot; its widest tolerance is in [low, high)."""
-    while True:
-        positions[:, :] = SPOTS
-        on_table[:] = False
-        _put(positions, on_table, 1, POT, _TABLE, stream)
-        _put(positions, on_table, CUE, POT, _TABLE, stream)
-        if find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, found) and low <= found[0, 5] < high:
-            return
-
-
-@kernel
 def _deal(code, tables, stream, positions, on_table, found):
-    kind, reds = int(code[0]), int(code[1])
+    """One layout. Racked and spotted balls first, then the reds that lie anywhere, last the cue ball; again until what is asked for holds."""
+    kind, reds, low, high = int(code[0]), int(code[1]), code[2], code[3]
     if kind == OPENED:
-        _opened(positions, on_table, tables, int(code[2]), int(code[3]), stream)
-    elif kind == LINE_UP:
-        _line_up(positions, on_table, stream)
-    elif kind == SNOOKERED:
-        _snookered(positions, on_table, stream)
-    elif kind == POT:
-        _single_pot(positions, on_table, code[2], code[3], stream, found)
-    else:
-        if kind == RANDOM:
-            _sprinkle(positions, on_table, reds, stream)
+        _opened(positions, on_table, tables, int(low), int(high), stream)
+        return
+    racked = reds if kind == BREAK_OFF or kind == LINE_UP else 0
+    loose = reds - racked
+    while True:
+        if kind == SNOOKERED:
+            u, _ = pair(stream)
+            loose = 1 + int(u * reds)
+        for i in range(N_BALLS):
+            positions[i, 0], positions[i, 1] = SPOTS[i, 0], SPOTS[i, 1]
+            on_table[i] = 1 <= i <= racked or (i >= YELLOW and kind != POT)
+            if kind == LINE_UP and 1 <= i <= racked:
+                positions[i, 0], positions[i, 1] = 0.0, _line_up_y(i)
+        for ball in range(loose, 0 if kind == SNOOKERED else -1, -1):
+            _put(positions, on_table, ball, kind, stream)
+        if kind == SNOOKERED:
+            if _hide(positions, on_table, loose, stream):
+                return
+        elif kind == POT:
+            if find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, found) and low <= found[0, 5] < high:
+                return
         else:
-            _spotted(positions, on_table, reds)
-        _put(positions, on_table, CUE, kind, _D if kind == BREAK_OFF else _TABLE, stream)
+            return
 
 
 @entry
@@ -210,7 +181,7 @@ class Plan:
         return plan_of, (self.name,)
 
 
-_NAMES = {"break_off": (BREAK_OFF, N_REDS), "line_up": (LINE_UP, N_REDS), "colours": (COLOURS, 0), "snookered": (SNOOKERED, 0)}
+_NAMES = {"break_off": (BREAK_OFF, N_REDS), "line_up": (LINE_UP, N_REDS), "colours": (COLOURS, 0), "snookered": (SNOOKERED, SNOOKERED_REDS)}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = ("opened", "held_out", *_NAMES)
 
