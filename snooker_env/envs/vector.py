@@ -23,8 +23,10 @@ from .snooker import LAYOUTS, SnookerEnv, visit_only
 from .state import checked
 from .visit import BALL_ON, COUNTS, NEVER, POINTS, REALS, Returned, Rules, Visits, Work
 
-CHUNK = 32
-"""Tables played in one go: few enough to share work space that stays in the processor's cache, enough to make the calls cheap."""
+CHUNK = 128
+"""Most tables played in one go: few enough for a work space that stays in the processor's cache, enough to make the calls from Python cheap."""
+LEAST = 8
+"""Fewest tables that are worth a thread or a chunk of their own."""
 
 PICTURES = ("rgb_array", "ansi")
 
@@ -209,8 +211,9 @@ class SnookerVectorEnv(VectorEnv):
 
     def _play(self, actions, waiting, out, same_step):
         """Share the tables out among the threads, a chunk at a time."""
-        threads = max(1, min(self.threads, self.num_envs // 8))
-        size = min(CHUNK, -(-self.num_envs // threads))
+        threads = max(1, min(self.threads, self.num_envs // LEAST))
+        even = self.num_envs if threads == 1 else max(LEAST, -(-self.num_envs // (4 * threads)))  # shots differ in length
+        size = min(CHUNK, even)
         while len(self._works) < threads:
             self._works.append(Work(size))
         starts = iter(range(0, self.num_envs, size))
