@@ -232,6 +232,7 @@ def test_replacing_after_a_miss_brings_the_balls_back():
     shooter = shooter_of("absolute", False, True, True, "none", "paper", "match", "standard")
     table, rng = FrameTable(shooter, miss="clear_path"), np.random.default_rng(0)
     table.start(*frames.break_off(rng), breaker=0, in_hand=True)
+    table.place(*SPOTS[CUE])
     before = table.positions.tobytes()
     table.play((1.0, 0.0, 0.0, -np.pi / 2, 0.0), rng)  # at the bottom cushion, hitting nothing
     assert table.frame.choices == ("play", "play_again", "replace") and table.positions.tobytes() != before
