@@ -249,14 +249,9 @@ class SnookerVectorEnv(VectorEnv):
 
     def _final(self, out, done):
         """What SAME_STEP adds: how the visits ended that ended in this step."""
-        final = np.full(self.num_envs, None, object)
-        which = np.flatnonzero(done)
-        rows = out.last_observations[which]
-        if self.observation == "flat":
-            final[which] = np.fromiter(rows, object, len(rows))
-        else:
-            shaped = observations.shaped(self.observation, rows)
-            each = ({name: shaped[name][k] for name in shaped} for k in range(len(rows)))
-            final[which] = np.fromiter(each, object, len(rows))
+        rows = observations.shaped(self.observation, out.last_observations)
+        each = rows if self.observation == "flat" else ({name: rows[name][k] for name in rows} for k in range(self.num_envs))
+        final = np.fromiter(each, object, self.num_envs)
+        final[~done] = None
         info = self._infos(out.last_reals, out.last_counts, done)
         return {"final_obs": final, "_final_obs": done.copy(), "final_info": info, "_final_info": done.copy()}
