@@ -114,15 +114,15 @@ class Recorded:
             self.shots.append([a[:m].copy() for a in (work.r, work.v, work.w, work.here)])
             self.original(visits, work, m)
 
-        Visits._run = run
+        setattr(Visits, "_run", run)  # noqa: B010 - the parameter is not called self
         return self
 
     def __exit__(self, *_):
-        Visits._run = self.original
+        setattr(Visits, "_run", self.original)  # noqa: B010
 
 
 def outside(tables, repeats):
-    """Microseconds of a step, of the same shots by the engine alone, and the share outside it; medians of pairs timed one after the other."""
+    """Microseconds of a step, of the same shots by the engine alone, and the share outside it; medians of neighbouring timings."""
     env = native(tables, 1)
     step, pairs = stepper(env), []
     for k in range(1, repeats + 1):
@@ -133,7 +133,7 @@ def outside(tables, repeats):
         for a, old in zip((visits.positions, visits.on_table, visits.game, visits.streams), before, strict=True):
             a[:] = old
         work = Work(len(recorded.shots[0][0]))
-        engine, whole = 0.0, []
+        engine = 0.0
         for shots in recorded.shots:
             for target, source in zip((work.r, work.v, work.w, work.here), shots, strict=True):
                 target[: len(source)] = source
@@ -154,7 +154,7 @@ def sizes(seconds):
 
 
 def ppo(steps, envs):
-    """Seconds that PPO spends in the environment, in the policy's forward passes and in its updates, for ``steps`` shots; None without SB3."""
+    """Seconds that PPO spends in the environment, in its updates and in the rest, for ``steps`` shots; None without SB3."""
     try:
         import torch
         from stable_baselines3 import PPO
@@ -194,7 +194,8 @@ def show(found):
     for name in ("one thread", "two threads", "SyncVectorEnv, 16 tables", "single table"):
         print(f"  {name:<58}{r[name]:>9,.0f}")
     print(f"  two threads over one {r['two threads over one']:.2f} (plain arithmetic on two threads over one: {r['control']:.2f})")
-    print(f"a step {o['step [us]']:.1f} us, the engine alone {o['engine alone [us]']:.1f} us: {100 * o['outside the engine']:.1f} % outside it")
+    share = 100 * o["outside the engine"]
+    print(f"a step {o['step [us]']:.1f} us, the engine alone {o['engine alone [us]']:.1f} us: {share:.1f} % outside it")
     print("tables:  " + "".join(f"{n:>9}" for n in found["sizes"]))
     print("steps/s: " + "".join(f"{x:>9,.0f}" for x in found["sizes"].values()))
     for p in found["ppo"] or ():

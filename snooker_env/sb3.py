@@ -19,9 +19,9 @@ from .envs.visit import COUNTS, REALS
 class SnookerVecEnv(VecEnv):
     """``num_envs`` tables as SB3 takes them; all other arguments are those of ``SnookerVectorEnv``.
 
-    A step that ends a visit starts the next one, its info holds ``terminal_observation``, ``TimeLimit.truncated`` and, as a ``Monitor`` around
-    each table would give it, ``episode`` with the reward "r", the length "l" and the time "t" [s]. Other infos are left out, a dict for each
-    table at each step being slow, but for those named in ``info_keys``.
+    A step that ends a visit starts the next one. Its info holds ``terminal_observation``, ``TimeLimit.truncated`` and, as a ``Monitor``
+    around each table would give it, ``episode`` with the reward "r", the length "l" and the time "t" [s]. Other infos are left out, ten
+    entries for each table at each step being slow, but for those named in ``info_keys``.
     """
 
     def __init__(self, num_envs, *, info_keys=(), **kwargs):

@@ -228,7 +228,8 @@ def wrong(**changes):
         (wrong(a21=float("nan")), r"actions\[2\] = \[0\.0, nan, 0\.0, 0\.0\]: must be finite and within \[-1, 1\]"),
         (wrong(a13=1.0001), r"actions\[1\] = "), (wrong(a00=-np.inf, a11=2.0), r"actions\[0\] = "),
         (np.zeros((2, 4)), r"shape \(2, 4\): must have shape \(3, 4\)"), (np.zeros((3, 5)), r"must have shape \(3, 4\)"),
-        (np.zeros(4), "must have shape"), (None, "must have shape"), ([["a"] * 4] * 3, "real numbers"), ([[0.0] * 4, [0.0]], "must have shape"),
+        (np.zeros(4), "must have shape"), (None, "must have shape"),
+        ([["a"] * 4] * 3, "real numbers"), ([[0.0] * 4, [0.0]], "must have shape"),
         (np.zeros((3, 4), bool), "real numbers"),
     ],
 )  # fmt: skip

@@ -55,7 +55,7 @@ def line_of(positions, on_table, on, found):
 
 @kernel
 def shot_of(a, positions, on_table, on, options, found):
-    """(speed, side, top, aim, elevation) of an action (k,), the aim being the cue's direction [rad]; ``options`` as ``Actions.pack`` gives."""
+    """(speed, side, top, aim, elevation) of an action (k,), the aim being the cue's direction [rad]; ``options``: ``Actions.pack``."""
     speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
     side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], options[A_MAX_OFFSET])
     elevation = 0.5 * (a[4] + 1.0) * MAX_ELEVATION if options[A_ELEVATION] else 0.0

@@ -92,8 +92,8 @@ class Noise:
         """The shot as executed: (speed, side, top, aim, elevation). Five numbers are drawn from ``rng`` unless silent."""
         if self.silent:
             return speed, side, top, aim, elevation
-        shot = map(float, (speed, side, top, aim, elevation))
-        return _draw(*shot, rng.standard_normal(5), self.pack(R))
+        z = rng.standard_normal(5)
+        return _draw(float(speed), float(side), float(top), float(aim), float(elevation), z, self.pack(R))
 
     def pack(self, R):
         """What the kernels must know: float64, places ``N_*`` of this module; R the ball's radius [m]."""

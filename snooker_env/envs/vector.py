@@ -1,10 +1,11 @@
-"""How do thousands of tables play side by side? The native vector environment of ``Snooker-v0``: whole steps as kernels, spread over threads.
+"""How do thousands of tables play side by side? The native vector environment of ``Snooker-v0``: steps as kernels, spread over threads.
 
     gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
 """
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -24,7 +25,7 @@ from .state import checked
 from .visit import BALL_ON, COUNTS, NEVER, POINTS, REALS, Returned, Rules, Visits, Work
 
 CHUNK = 128
-"""Most tables played in one go: few enough for a work space that stays in the processor's cache, enough to make the calls from Python cheap."""
+"""Most tables played in one go: few enough for a work space that stays in the cache, enough to make the calls from Python cheap."""
 LEAST = 8
 """Fewest tables that are worth a thread or a chunk of their own."""
 
@@ -44,8 +45,8 @@ class SnookerVectorEnv(VectorEnv):
     is truncated. All other arguments are those of ``SnookerEnv`` in a visit; a frame needs "sync" or "async". Pictures show the balls as
     they lie, without paths; a window ("human") shows one environment only.
 
-    ``reset(seed=...)`` takes an int, a list or None as ``SyncVectorEnv`` does; options: "reset_mask" (bool array: only those tables), "state" (a
-    state of ``get_state``, of this or of ``SnookerEnv``, for all of them) or "states" (a list of one each).
+    ``reset(seed=...)`` takes an int, a list or None as ``SyncVectorEnv`` does; options: "reset_mask" (bool array: only those tables),
+    "state" (of ``SnookerEnv.get_state``, for all of them) or "states" (of ``get_state``: a list of one each).
     """
 
     metadata = SnookerEnv.metadata
@@ -76,14 +77,14 @@ class SnookerVectorEnv(VectorEnv):
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.visits = Visits(Rules(shooter, plan, reward, limit), self.num_envs)
         self._pictures = Pictures(shooter.table, render_mode)
-        self._generators = [None] * self.num_envs
+        self._generators: list[Any] = [None] * self.num_envs
         self._begun = np.zeros(self.num_envs, np.bool_)
         self._done = np.zeros(self.num_envs, np.bool_)
         self._pool, self._works = None, []
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
-    def reset(self, *, seed=None, options=None):
+    def reset(self, *, seed: int | list[int | None] | None = None, options=None):
         """New visits on all tables, or on those of ``options["reset_mask"]``."""
         options = {} if options is None else options
         if not isinstance(options, dict):
@@ -112,7 +113,7 @@ class SnookerVectorEnv(VectorEnv):
         return observations.shaped(self.observation, out.observations), self._infos(out.reals, out.counts, wanted)
 
     def step(self, actions):
-        """One stroke on each table. ValueError if an action is not finite and within [-1, 1]: it names the table, and nothing was played."""
+        """One stroke on each table. ValueError, before anything is played, if an action is not finite and within [-1, 1]."""
         a = self.shooter.actions.check_many(actions, self.num_envs)
         if not self._begun.all():
             raise gymnasium.error.ResetNeeded("call reset() before step()")

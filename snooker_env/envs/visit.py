@@ -285,7 +285,7 @@ class Visits:
             work.enlarged = one
 
     def begin(self, wanted, out, start=0, *, others=False):
-        """New visits on the tables of the slice from ``start`` on that are ``wanted``, with what a reset returns; ``others``: also observe the rest."""
+        """New visits on the tables from ``start`` on that are ``wanted``, with what a reset returns; ``others``: observe the rest too."""
         here = slice(start, start + len(wanted))
         dealt = bool(wanted.any())
         positions, on_table, game = self.positions[here], self.on_table[here], self.game[here]

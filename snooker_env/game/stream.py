@@ -42,7 +42,7 @@ def pair(stream):
 
 @kernel
 def normals(stream):
-    """Two independent standard normal numbers [Box & Muller 1958]: sqrt(-2 ln(1 - u)) times the cosine and the sine of 2 pi v. One block."""
+    """Two independent standard normal numbers [Box & Muller 1958]: sqrt(-2 ln(1 - u)) times cosine and sine of 2 pi v. One block."""
     u, v = pair(stream)
     far = sqrt(-2.0 * log(1.0 - u))
     return far * cos(2.0 * pi * v), far * sin(2.0 * pi * v)

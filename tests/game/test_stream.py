@@ -70,7 +70,7 @@ def test_a_draw_takes_one_block_and_can_be_found_again():
 def test_uniform_numbers_are_uniform():
     """200 000 of them: chi-square over 100 bins, each coordinate and the two together; each at 0.1 %."""
     x = drawn(pairs, 12345, 100_000)
-    assert 0.0 <= x.min() and x.max() < 1.0
+    assert x.min() >= 0.0 and x.max() < 1.0
     for column in x.T:
         assert stats.chisquare(np.histogram(column, 100, (0, 1))[0]).pvalue > 1e-3
         assert abs(np.corrcoef(column[1:], column[:-1])[0, 1]) < 4 / np.sqrt(len(column))
