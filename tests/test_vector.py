@@ -120,13 +120,17 @@ def test_seeds_none_int_and_list():
     assert np.array_equal(a, b)
     for k in range(4):
         assert np.array_equal(SnookerEnv().reset(seed=7 + k)[0], a[k])
+    assert env.np_random_seed == (7, 8, 9, 10)
     c, _ = env.reset(seed=[7, None, 9, None])
     assert np.array_equal(a[[0, 2]], c[[0, 2]]) and not (a[1] == c[1]).all() and not (a[3] == c[3]).all()
     d, _ = env.reset()
     assert not any((x == y).all() for x, y in zip(c, d, strict=True))
-    assert len({row.tobytes() for row in native(50).reset()[0]}) == 50
+    for look in (lambda env: None, lambda env: env.np_random, lambda env: env.get_state()):  # before the first reset, and without a seed
+        env = native(50, layout="random:3")
+        look(env)
+        assert len({row.tobytes() for row in env.reset()[0]}) == 50
     with pytest.raises(ValueError, match="seed = 3 seeds"):
-        env.reset(seed=[1, 2, 3])
+        native(4).reset(seed=[1, 2, 3])
 
 
 def test_a_mask_resets_only_those():

@@ -78,6 +78,8 @@ class SnookerVectorEnv(VectorEnv):
         self.visits = Visits(Rules(shooter, plan, reward, limit), self.num_envs)
         self._pictures = Pictures(shooter.table, render_mode)
         self._generators: list[Any] = [None] * self.num_envs
+        self._generator_seeds = [-1] * self.num_envs
+        self._keyed = np.zeros(self.num_envs, np.bool_)  # has the table's stream a key?
         self._begun = np.zeros(self.num_envs, np.bool_)
         self._done = np.zeros(self.num_envs, np.bool_)
         self._pool, self._works = None, []
@@ -100,8 +102,10 @@ class SnookerVectorEnv(VectorEnv):
         if states is None:
             for k in tables:
                 if seeds[k] is not None or self._generators[k] is None:
-                    self._generators[k], _ = seeding.np_random(seeds[k])
+                    self._seed_generator(k, seeds[k])
+                if seeds[k] is not None or not self._keyed[k]:
                     self.visits.seed(k, self._generators[k])
+                    self._keyed[k] = True
         else:
             for k in tables:
                 self._set_state(k, states[k])
@@ -156,8 +160,18 @@ class SnookerVectorEnv(VectorEnv):
     @property
     def np_random(self):
         """The numpy generator of each table; each is asked once, for the key of its table's stream."""
-        self._generators = [seeding.np_random()[0] if g is None else g for g in self._generators]
+        for k in range(self.num_envs):
+            if self._generators[k] is None:
+                self._seed_generator(k, None)
         return tuple(self._generators)
+
+    @property
+    def np_random_seed(self):
+        """The seed of each table's generator; -1 where it came with a state."""
+        return self.np_random and tuple(self._generator_seeds)
+
+    def _seed_generator(self, k, seed):
+        self._generators[k], self._generator_seeds[k] = seeding.np_random(seed)
 
     # states ----------------------------------------------------------------------------------------------------------------
 
@@ -167,9 +181,10 @@ class SnookerVectorEnv(VectorEnv):
 
     def _set_state(self, k, state):
         if self._generators[k] is None:
-            self._generators[k], _ = seeding.np_random()
-        self._generators[k].bit_generator.state = state.rng
+            self._seed_generator(k, None)
+        self._generators[k].bit_generator.state, self._generator_seeds[k] = state.rng, -1
         self.visits.set_state(k, state)
+        self._keyed[k] = True
 
     def __getstate__(self):
         return self.__dict__ | {"_pool": None, "_works": []}  # threads belong to one process
