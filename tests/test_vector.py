@@ -346,3 +346,19 @@ def test_a_strike_is_that_of_the_physics_bit_for_bit():
         speed, aim, side, top, elevation = rng.uniform((0, -4, -0.35, -0.35, 0), (7, 4, 0.35, 0.35, 1.5))
         v, w = sn.strike(speed, aim, side, top, elevation)
         assert strike(speed, aim, side, top, elevation, sn.Physics().end_mass_ratio) == (v[0], v[1], w[0], w[1], w[2])
+
+
+def test_processes_forked_while_threads_are_kept_play_on():
+    """AsyncVectorEnv forks; the threads of a vector environment in the parent do no harm."""
+    env = native(32, threads=2)
+    env.reset(seed=0)
+    a = np.zeros((32, 4), np.float32)
+    want = env.step(a)[0]
+    forked = gymnasium.vector.AsyncVectorEnv([lambda: gymnasium.make("Snooker-v0")] * 2, context="fork")
+    try:
+        forked.reset(seed=0)
+        assert np.array_equal(forked.step(a[:2])[0], want[:2])
+    finally:
+        forked.close()
+    env.step(a)
+    env.close()

@@ -255,11 +255,8 @@ class SnookerVectorEnv(VectorEnv):
 
     def _infos(self, reals, counts, there):
         """Infos as Gymnasium's vector environments give them: an array a key, and a mask of the tables that it is about."""
-        infos = {}
-        for c, name in enumerate(REALS):
-            infos[name] = np.where(there, reals[:, c], 0.0)
-        for c, name in enumerate(COUNTS):
-            infos[name] = np.where(there, counts[:, c], 0)
+        columns = [*zip(REALS, reals.T, strict=True), *zip(COUNTS, counts.T, strict=True)]
+        infos: dict[str, Any] = {name: column * there for name, column in columns}
         infos["foul"] = infos["fouls"] != 0
         return infos | {f"_{name}": there.copy() for name in infos}
 

@@ -240,7 +240,7 @@ class Visits:
         """One step of the m tables from ``start`` on: actions (m, k) float64 that were checked, results into ``out``.
 
         ``waiting`` (m,) bool: tables that begin a new visit instead of playing; ``same_step``: those whose visit ends begin a new one at
-        once. Raises SimulationError if a shot cannot be computed: that table is left as it was, the others have been played.
+        once. Raises SimulationError if a shot cannot be computed: its balls are left as they lay, other tables may have been played.
         """
         here = slice(start, start + len(actions))
         r, v, w, on, shots = (a[: len(actions)] for a in (work.r, work.v, work.w, work.here, work.shots))
