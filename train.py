@@ -6,7 +6,7 @@
 
 A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; like every pickle, load only your own), ``model.zip`` (for
 ``stable_baselines3``), ``results.json`` (every figure) and ``tb/`` (``tensorboard --logdir runs``). What an agent sees and how it is judged
-is in ``agents/visits.py``; here follow, top to bottom: settings, the tables, recipes, checkpoints, the run.
+is in ``agents/visits.py``; here follow, top to bottom: settings, recipes, checkpoints, the run.
 """
 
 import argparse
@@ -21,13 +21,12 @@ import subprocess
 import sys
 import time
 from dataclasses import asdict, dataclass, field, fields
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 import snooker_env
-from agents.visits import evaluate_all, lesson, make_env, show
+from agents.visits import evaluate_all, lesson, make_env, make_envs, show
 
 try:
     import rich.progress
@@ -35,9 +34,7 @@ try:
     import tensorboard  # noqa: F401 - stable_baselines3 would miss it only after the tables are set up
     import torch
     from stable_baselines3.common.callbacks import BaseCallback
-    from stable_baselines3.common.monitor import Monitor
     from stable_baselines3.common.utils import LinearSchedule
-    from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv
 except ImportError as error:
     raise SystemExit(f'train.py: {error.name} is missing; train.py needs:  pip install "snooker-env[train]"') from None
 
@@ -56,7 +53,7 @@ class Settings:
     algo: str = option("ppo", "what learns", choices=("ppo", "sac"))
     steps: int = option(0, "shots in all; 0: 400000 for ppo, 60000 for sac")
     envs: int = option(16, "tables played side by side")
-    parallel: str = option("auto", "a process for each table, or one for all: auto looks at the processors; the same shots come out",
+    parallel: str = option("auto", "threads for the tables: auto (once called processes) is one a processor; the same shots come out",
                            choices=("auto", "processes", "one"))  # fmt: skip
     seed: int = option(0, "of tables, weights and exploration")
     aim: str = option("target", "how the aim is read: target or absolute (much harder)")
@@ -89,34 +86,6 @@ def parse(argv):
             parser.error(f"--{name.replace('_', '-')} is {given[name]}, must be at least {low}")
     rest["out"] = rest["out"] or Path("runs", f"{given.get('algo', Settings.algo)}-{given.get('seed', Settings.seed)}")
     return parser, given, argparse.Namespace(**rest)
-
-
-# the tables ---------------------------------------------------------------------------------------------------------------------
-
-
-def monitored(settings):
-    """One table that reports each visit's points to SB3's log."""
-    return Monitor(make_env(settings))
-
-
-def in_worker(settings):
-    """The same in a process of its own. Ctrl-C reaches the whole process group: only the parent acts on it, after the last shot is in."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    return monitored(settings)
-
-
-def make_envs(settings):
-    """The tables side by side as an SB3 VecEnv: the one place to change for another kind of parallelism.
-
-    With two processors, passing observations between processes costs more than the second processor gives: PPO with 8 tables made
-    1,000 to 1,300 shots a second in processes and 1,600 in one, on the same busy machine.
-    """
-    few = settings.envs == 1 or (os.cpu_count() or 1) <= 2
-    if settings.parallel == "one" or (settings.parallel == "auto" and few):
-        return DummyVecEnv([partial(monitored, settings)] * settings.envs)
-    envs = SubprocVecEnv([partial(in_worker, settings)] * settings.envs)  # forkserver: this module is imported once for all workers
-    envs.get_attr("spec")  # waits until the last worker is there
-    return envs
 
 
 # recipes -------------------------------------------------------------------------------------------------------------------------
@@ -286,13 +255,13 @@ def main(argv=None):
     if settings.steps == 0:
         settings = Settings(**{**asdict(settings), "steps": DEFAULT_STEPS[settings.algo]})
     print("Compiling ...", flush=True)
-    snooker_env.warmup()  # here, once: the workers load what it leaves in the cache
+    snooker_env.warmup()
     try:
         make_env(settings)  # a bad option ends here, with the environment's own words
     except ValueError as error:
         parser.error(str(error))
     torch.set_num_threads(1)  # a network this small gains nothing from more, and the tables need the processors
-    envs = make_envs(settings)
+    envs = make_envs(settings, threads=1 if settings.parallel == "one" else None)
     try:
         out.mkdir(parents=True, exist_ok=True)
         model = load_model(state, settings, envs) if state else make_model(settings, envs, str(out / "tb"))

@@ -3,67 +3,127 @@
 ``settings`` is any object with the fields of ``train.Settings`` that a function reads.
 """
 
-from typing import cast
+from math import hypot, log10
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
 
+from snooker_env._jit import entry
 from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
-from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import HALF_LENGTH
-from snooker_env.game.pots import POCKETS, pots
+from snooker_env.envs.observations import SIZE
+from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS
+from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
 
 EVAL_LAYOUT, EVAL_SEED = "held_out", 1_000_000
 
+MOST_POTS = 4
+"""Pots shown."""
+POT_ENTRIES = 8
+"""Numbers shown of each."""
 
-class PotView(gymnasium.ObservationWrapper):
-    """Appends the four widest direct pots to the flat observation, eight numbers each; all 0 where there are fewer.
+
+@entry
+def _add_pots(observations, shown):
+    """Copy the observations (n, SIZE) into ``shown`` and write the pots behind them, read from the observations alone."""
+    found = np.empty((MOST_POTS, POT_COLUMNS))
+    positions, on_table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
+    for k in range(len(observations)):
+        seen, row, on = observations[k], shown[k], 0
+        for c in range(row.shape[0]):
+            row[c] = seen[c] if c < SIZE else 0.0
+        for i in range(N_BALLS):
+            positions[i, 0], positions[i, 1] = seen[5 * i] * HALF_WIDTH, seen[5 * i + 1] * HALF_LENGTH
+            on_table[i] = seen[5 * i + 2] > 0.0
+            on |= (1 << i) if seen[5 * i + 4] > 0.0 else 0
+        for p in range(find_pots(positions, on_table, on, BALL_RADIUS, found) if on_table[0] else 0):
+            ball, pocket, at = int(found[p, 0]), int(found[p, 1]), SIZE + POT_ENTRIES * p
+            bx, by, gx, gy = positions[ball, 0], positions[ball, 1], found[p, 2], found[p, 3]
+            px, py, rx, ry = gx - positions[0, 0], gy - positions[0, 1], bx - gx, by - gy
+            away, run = hypot(px, py), hypot(rx, ry)
+            px, py, rx, ry = px / away, py / away, rx / run, ry / run
+            to_pocket = hypot(POCKETS[pocket, 0] - bx, POCKETS[pocket, 1] - by)
+            row[at], row[at + 1], row[at + 2], row[at + 3], row[at + 4] = 1.0, px, py, px * ry - py * rx, found[p, 4]
+            row[at + 5], row[at + 6] = away / HALF_LENGTH - 1.0, to_pocket / HALF_LENGTH - 1.0
+            row[at + 7] = 1.0 + log10(found[p, 5]) / 2.0
+            for c in range(at, at + POT_ENTRIES):
+                row[c] = min(1.0, max(-1.0, row[c]))
+
+
+def with_pots(observations):
+    """Flat observations (n, SIZE) with the four widest direct pots appended, eight numbers each; all 0 where there are fewer.
 
     1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance. A small network cannot find these
     lines itself in a few minutes: without them the same run makes a third of the pots.
     """
+    shown = np.empty((len(observations), SIZE + MOST_POTS * POT_ENTRIES), np.float32)
+    _add_pots(np.ascontiguousarray(observations), shown)
+    return shown
 
-    MOST = 4
+
+VIEW_SPACE = spaces.Box(-1.0, 1.0, (SIZE + MOST_POTS * POT_ENTRIES,), np.float32)
+"""What the agent sees."""
+
+
+class PotView(gymnasium.ObservationWrapper):
+    """``with_pots`` for one table."""
 
     def __init__(self, env):
         super().__init__(env)
-        self.observation_space = spaces.Box(-1.0, 1.0, (spaces.flatdim(env.observation_space) + 8 * self.MOST,), np.float32)
+        self.observation_space = VIEW_SPACE
 
     def observation(self, observation):
-        table = cast(SnookerEnv, self.unwrapped)
-        rows = np.zeros((self.MOST, 8), np.float32)
-        for row, (ball, pocket, x, y, cos_cut, tolerance) in zip(
-            rows, pots(table.positions, table.on_table, table.on, most=self.MOST), strict=False
-        ):
-            at = table.positions[int(ball)]
-            path, run = np.array([x, y]) - table.positions[0], at - (x, y)
-            away = np.hypot(*path)
-            path, run = path / away, run / np.hypot(*run)
-            to_pocket = np.hypot(*(POCKETS[int(pocket), :2] - at))
-            row[:] = 1, *path, path[0] * run[1] - path[1] * run[0], cos_cut, away / HALF_LENGTH - 1, to_pocket / HALF_LENGTH - 1, \
-                1 + np.log10(tolerance) / 2  # fmt: skip
-        return np.concatenate([observation, np.clip(rows, -1.0, 1.0).ravel()])
+        return with_pots(observation[None])[0]
+
+
+def _options(settings, layout):
+    return {"layout": layout or settings.layout, "aim": settings.aim, "noise": settings.noise, "fidelity": settings.fidelity}
 
 
 def make_env(settings, layout=None):
     """One table as the agent sees it."""
-    table = gymnasium.make(
-        "Snooker-v0", layout=layout or settings.layout, aim=settings.aim, noise=settings.noise, fidelity=settings.fidelity
-    )
-    return PotView(table)
+    return PotView(gymnasium.make("Snooker-v0", **_options(settings, layout)))
+
+
+def make_envs(settings, threads=None):
+    """The training tables side by side, as the agent sees them: an SB3 ``VecEnv``."""
+    from stable_baselines3.common.vec_env import VecEnvWrapper
+
+    from snooker_env.sb3 import SnookerVecEnv
+
+    class PotsOfAll(VecEnvWrapper):
+        """``with_pots`` for all tables in one go."""
+
+        def reset(self):
+            return with_pots(self.venv.reset())
+
+        def step_wait(self):
+            observations, rewards, done, infos = self.venv.step_wait()
+            ended = [info for info in infos if "terminal_observation" in info]
+            if ended:
+                for info, row in zip(ended, with_pots(np.stack([info["terminal_observation"] for info in ended])), strict=True):
+                    info["terminal_observation"] = row
+            return with_pots(observations), rewards, done, infos
+
+    return PotsOfAll(SnookerVecEnv(settings.envs, threads=threads, **_options(settings, None)), VIEW_SPACE)
 
 
 def evaluate(settings, act, visits):
-    """Figures of ``visits`` held-out visits, seeds EVAL_SEED, EVAL_SEED + 1, ...: the same tables for every agent ``act(observation)``."""
-    env = make_env(settings, EVAL_LAYOUT)
+    """Figures of ``visits`` held-out visits, seeds EVAL_SEED, EVAL_SEED + 1, ...: the same tables for every agent ``act(observations)``.
+
+    All are played side by side; what is played on a table after its visit has ended does not count.
+    """
+    tables = gymnasium.make_vec("Snooker-v0", visits, vectorization_mode="vector_entry_point", **_options(settings, EVAL_LAYOUT))
+    observations, _ = tables.reset(seed=EVAL_SEED)
     played = np.zeros((visits, 4))  # strokes, pots, points, fouls
-    for i in range(visits):
-        observation, _ = env.reset(seed=EVAL_SEED + i)
-        over = False
-        while not over:
-            observation, _, over, _, info = env.step(act(observation))
-            played[i] += 1, info["points"] > 0, info["points"], info["foul"]
+    going = np.ones(visits, bool)
+    while going.any():
+        actions = np.zeros((visits, tables.single_action_space.shape[0]), np.float32)
+        actions[going] = act(with_pots(observations[going]))
+        observations, _, ended, _, info = tables.step(actions)
+        played[going] += np.column_stack([going, info["points"] > 0, info["points"], info["foul"]])[going]
+        going &= ~ended
+    tables.close()
     strokes, scoring, points, fouls = played.T
     rate = scoring.sum() / strokes.sum()
     error = lambda x: float(np.std(x, ddof=1) / np.sqrt(visits))  # noqa: E731
@@ -79,14 +139,15 @@ def evaluate_all(settings, model):
     """The trained agent, its own average shot played every time (has it learned to read the table, or just one good shot?), random play."""
     shots, rng = [], np.random.default_rng(settings.seed)
 
-    def trained(observation):
-        shots.append(model.predict(observation, deterministic=True)[0])
+    def trained(observations):
+        shots.append(model.predict(observations, deterministic=True)[0])
         return shots[-1]
 
     figures = {"trained": evaluate(settings, trained, settings.eval_visits)}
+    shots = np.concatenate(shots)
     average = np.mean(shots, axis=0)
     figures["average_shot"] = evaluate(settings, lambda _: average, settings.eval_visits)
-    figures["random"] = evaluate(settings, lambda _: rng.uniform(-1.0, 1.0, average.shape).astype(np.float32), settings.eval_visits)
+    figures["random"] = evaluate(settings, lambda seen: rng.uniform(-1.0, 1.0, (len(seen), len(average))), settings.eval_visits)
     style = {"action_mean": average.tolist(), "action_sd": np.std(shots, axis=0).tolist()}
     style["cue_speed_mean"] = MIN_SPEED + 0.5 * (style["action_mean"][0] + 1.0) * (MAX_SPEED - MIN_SPEED)
     return {"layout": EVAL_LAYOUT, "first_seed": EVAL_SEED, "agents": figures, "style": style}

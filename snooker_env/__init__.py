@@ -18,4 +18,6 @@ __all__ = [
 
 # A string entry point keeps this import light and the spec JSON-able; a second import (a reload) stays silent.
 if "Snooker-v0" not in _gymnasium.registry:
-    _gymnasium.register(id="Snooker-v0", entry_point="snooker_env.envs.snooker:SnookerEnv")
+    _gymnasium.register(
+        id="Snooker-v0", entry_point="snooker_env.envs.snooker:SnookerEnv", vector_entry_point="snooker_env.envs.vector:SnookerVectorEnv"
+    )

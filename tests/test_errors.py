@@ -459,6 +459,10 @@ STATES = [
     case(lambda s: {"points": None}, "state.points", "None", "must be an integer"),
     case(lambda s: {"in_hand": "no"}, "state.in_hand", "'no'", "must be True or False"),
     case(lambda s: {"over": 2}, "state.over", "2", "must be True or False"),
+    case(lambda s: {"stream": None}, "state.stream", "None", "must be two integers"),
+    case(lambda s: {"stream": [1, 2, 3]}, "state.stream", "[1, 2, 3]", "must be two integers"),
+    case(lambda s: {"stream": [1, -2]}, "state.stream[1]", "-2", "must be an integer in [0, 18446744073709551615]"),
+    case(lambda s: {"stream": [2**64, 0]}, "state.stream[0]", "18446744073709551616", "must be an integer"),
     case(lambda s: {"rng": None}, "state.rng", "None", "must be"),
     case(lambda s: {"rng": {}}, "state.rng", "{}", "must be"),
     case(lambda s: {"on_table": [False, *s["on_table"][1:]]}, "state.on_table", "False", "cue ball"),
@@ -475,13 +479,13 @@ def test_wrong_states(saved, how, change, field, value, allowed):
     refused(lambda: env.set_state(state) if how == "set_state" else env.reset(options={"state": state}), field, value, allowed)
 
 
-@pytest.mark.parametrize("key", ["positions", "on_table", "ball_on", "in_hand", "points", "over", "rng"])
+@pytest.mark.parametrize("key", ["positions", "on_table", "ball_on", "in_hand", "points", "over", "stream", "rng"])
 def test_a_state_with_a_part_missing(saved, key):
     state = {k: v for k, v in saved.items() if k != key}
     refused(lambda: SnookerEnv().set_state(state), "state", "'rng'" if key != "rng" else "'over'", f"missing ['{key}']")
 
 
-@pytest.mark.parametrize("change", [{"ball_on": 99}, {"points": "x"}, {"rng": {}}])
+@pytest.mark.parametrize("change", [{"ball_on": 99}, {"points": "x"}, {"stream": [0]}, {"rng": {}}])
 def test_a_refused_state_leaves_the_environment_as_it_was(saved, change):
     env = SnookerEnv(layout="random:5")
     env.reset(seed=11)

@@ -217,7 +217,7 @@ FOULED = {"phase": "choice", "striker": 0, "scores": (0, 4)}
 def test_after_a_foul_the_action_decides(decision, own):
     """Without a miss called, "replace" is no option and means to play."""
     env = put(frame_env(opponent="ghost_ball"), PLACES, FOULED)
-    assert env._observe()[-3] == 1.0  # a decision is open
+    assert env.frames.observe()[-3] == 1.0  # a decision is open
     _, _, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, decision])
     assert (info["events"] > 0) == own
     assert own or info["opponent_strokes"] > 0
@@ -232,6 +232,7 @@ def test_replacing_after_a_miss_brings_the_balls_back():
     shooter = shooter_of("absolute", False, True, True, "none", "paper", "match", "standard")
     table, rng = FrameTable(shooter, miss="clear_path"), np.random.default_rng(0)
     table.start(*frames.break_off(rng), breaker=0, in_hand=True)
+    table.place(*SPOTS[CUE])
     before = table.positions.tobytes()
     table.play((1.0, 0.0, 0.0, -np.pi / 2, 0.0), rng)  # at the bottom cushion, hitting nothing
     assert table.frame.choices == ("play", "play_again", "replace") and table.positions.tobytes() != before
@@ -244,7 +245,7 @@ def test_replacing_after_a_miss_brings_the_balls_back():
 def test_a_free_ball_is_seen_and_scores():
     places = {CUE: (0.3, 1.1), BLUE: (0.6, 1.4), 1: (-0.5, -1.2), PINK: SPOTS[PINK], BLACK: (0.0, 0.0)}
     env = put(frame_env(opponent="ghost_ball"), places, FOULED | {"free_ball": True})
-    assert env.on >> BLUE & 1 and env.on >> 1 & 1 and env._observe()[-4] == 1.0
+    assert env.on >> BLUE & 1 and env.on >> 1 & 1 and env.frames.observe()[-4] == 1.0
     _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
     assert (reward, info["points"], env.ball_on) == (1.0, 1.0, BallOn.ANY_COLOUR)
     assert np.array_equal(env.positions[BLUE], SPOTS[BLACK])  # it came back; its own spot is taken
@@ -370,7 +371,7 @@ def test_a_saved_state_plays_on_bit_for_bit(opponent):
     text = json.dumps(env.get_state())
     other = frame_env(**options)
     obs, _ = other.reset(options={"state": json.loads(text)})
-    assert data_equivalence(obs, env._observe(), exact=True) and json.dumps(other.get_state()) == text
+    assert data_equivalence(obs, env.frames.observe(), exact=True) and json.dumps(other.get_state()) == text
     for _ in range(30):
         if env.over:
             break

@@ -33,6 +33,7 @@ SHORT = {
     "benchmarks.frames": ["--frames", "2", "--jobs", "1"],
     "benchmarks.layouts_picture": ["--out", "{tmp}/layouts.png"],
     "benchmarks.pictures": ["--out", "{tmp}/shot.png"],
+    "benchmarks.vector": ["--seconds", "0.1", "--repeats", "1", "--tables", "64", "--ppo-steps", "2048"],
 }
 
 

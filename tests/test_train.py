@@ -21,6 +21,7 @@ pytest.importorskip("tensorboard")
 import train  # noqa: E402
 from agents import visits  # noqa: E402
 from snooker_env.envs.actions import line  # noqa: E402
+from snooker_env.envs.observations import observe  # noqa: E402
 
 TINY = ["--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512"]
 
@@ -89,8 +90,8 @@ def test_pot_view_shows_the_line_that_the_aim_is_read_against():
     env = visits.make_env(train.Settings(), "held_out")
     for seed in range(20):
         observation, _ = env.reset(seed=seed)
-        table, rows = env.unwrapped, observation[121:].reshape(visits.PotView.MOST, 8)
-        assert np.array_equal(observation[:121], table._observe())
+        table, rows = env.unwrapped, observation[121:].reshape(visits.MOST_POTS, visits.POT_ENTRIES)
+        assert np.array_equal(observation[:121], observe("flat", table.positions, table.on_table, table.ball_on, table.on, 0, 0))
         direction = line(table.positions, table.on_table, table.on)
         assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=1e-6)
         shown = rows[rows[:, 0] == 1]
@@ -119,8 +120,8 @@ def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, 
 
 
 def launch(out, *options):
-    """``python train.py`` in a session of its own, its tables in processes, once its first checkpoint is there."""
-    command = [sys.executable, str(ROOT / "train.py"), *TINY, "--parallel", "processes", "--out", str(out), *options]
+    """``python train.py`` in a session of its own, once its first checkpoint is there."""
+    command = [sys.executable, str(ROOT / "train.py"), *TINY, "--parallel", "auto", "--out", str(out), *options]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True, cwd=out.parent)
     deadline = time.monotonic() + 120
     while not (out / "checkpoint.pkl").exists():
@@ -146,12 +147,12 @@ def test_kill_9_leaves_a_run_that_resume_finishes(finished, tmp_path):
         process.kill()
         process.communicate()
     assert process.returncode == -signal.SIGKILL and not (out / "results.json").exists()
-    assert run(out, "--resume") == 0  # in one process now: it plays the same shots
+    assert run(out, "--resume") == 0  # in one thread now: it plays the same shots
     assert results(out)["steps"] == 512
     assert np.array_equal(weights(out), weights(finished / "ppo"))
 
 
-def test_ctrl_c_reaches_the_workers_too_and_nothing_breaks(tmp_path):
+def test_ctrl_c_ends_it_in_order(tmp_path):
     process = launch(tmp_path / "run", "--steps", "100000")
     os.killpg(process.pid, signal.SIGINT)  # what a terminal does
     output, _ = process.communicate(timeout=120)
@@ -205,8 +206,8 @@ def test_failed_write_leaves_the_old_file(tmp_path, monkeypatch, broken):
 def test_evaluation_deals_every_agent_the_same_tables():
     settings, seen = train.Settings(noise="professional"), []
 
-    def act(observation):
-        seen.append(observation)
+    def act(observations):
+        seen.append(observations)
         return np.full(4, 0.5, np.float32)
 
     first, second = visits.evaluate(settings, act, 3), visits.evaluate(settings, act, 3)

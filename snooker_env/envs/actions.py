@@ -5,9 +5,10 @@ from math import atan2, hypot, pi, radians, sqrt
 import numpy as np
 
 from .._check import choice, refuse, refuse_what, truth
-from ..game.balls import BAULK_Y, D_RADIUS
-from ..game.pots import pots
-from ..physics.cue import squirt
+from .._jit import entry, kernel
+from ..game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, N_BALLS
+from ..game.pots import POT_COLUMNS, find_pots
+from ..physics import cue
 
 AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
@@ -15,6 +16,71 @@ MIN_SPEED, MAX_SPEED = 0.2, 7.0
 TARGET_SPAN = radians(3.0)
 """Aim "target": how far +-1 turns the aim off the potting line [rad]. The largest throw and the noise of a club player are within it."""
 MAX_ELEVATION = radians(30.0)
+
+# Places in the packed options.
+(A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET) = range(5)
+
+squirt = kernel(cue.squirt)
+
+
+@kernel
+def tip_on_disc(side, top, max_offset):
+    """A tip offset over R, drawn back onto the disc of the miscue limit if it lies outside."""
+    far = hypot(side, top) / max_offset
+    return (side / far, top / far) if far > 1.0 else (side, top)
+
+
+@kernel
+def place_of(a, options):
+    """Where in the D the two components of the placement put the cue ball: (x, y)."""
+    at = 5 if options[A_ELEVATION] else 4
+    x, back = a[at], 0.5 * (a[at + 1] + 1.0)
+    return D_RADIUS * x, BAULK_Y - D_RADIUS * sqrt(max(0.0, 1.0 - x * x)) * back
+
+
+@kernel
+def line_of(positions, on_table, on, found):
+    """Direction [rad] of the best potting line, see ``line``; ``found`` (1, POT_COLUMNS) is work space."""
+    x, y = positions[0, 0], positions[0, 1]
+    if find_pots(positions, on_table, on, BALL_RADIUS, found):
+        return atan2(found[0, 3] - y, found[0, 2] - x)
+    near, tx, ty = np.inf, x, y
+    for i in range(1, N_BALLS):
+        if (on >> i) & 1:
+            far = hypot(positions[i, 0] - x, positions[i, 1] - y)
+            if far < near:
+                near, tx, ty = far, positions[i, 0], positions[i, 1]
+    return atan2(ty - y, tx - x)
+
+
+@kernel
+def shot_of(a, positions, on_table, on, options, found):
+    """(speed, side, top, aim, elevation) of an action (k,), the aim being the cue's direction [rad]; ``options``: ``Actions.pack``."""
+    speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
+    side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], options[A_MAX_OFFSET])
+    elevation = 0.5 * (a[4] + 1.0) * MAX_ELEVATION if options[A_ELEVATION] else 0.0
+    direction = line_of(positions, on_table, on, found) + TARGET_SPAN * a[3] if options[A_TARGET] else pi * a[3]
+    return speed, side, top, direction - squirt(side, options[A_END_MASS]), elevation
+
+
+@entry
+def _tip(side, top, max_offset):
+    return tip_on_disc(side, top, max_offset)
+
+
+@entry
+def _place(a, options):
+    return place_of(a, options)
+
+
+@entry
+def _line(positions, on_table, on):
+    return line_of(positions, on_table, on, np.empty((1, POT_COLUMNS)))
+
+
+@entry
+def _shot(a, positions, on_table, on, options):
+    return shot_of(a, positions, on_table, on, options, np.empty((1, POT_COLUMNS)))
 
 
 class Actions:
@@ -59,11 +125,31 @@ class Actions:
             raise refuse("action", a.tolist(), "must be finite and within [-1, 1]")
         return a.tolist()
 
+    def check_many(self, actions, n):
+        """The actions of n tables as a fresh float64 array (n, size); ValueError as ``check``, naming the first table that is wrong."""
+        allowed = f"must have shape ({n}, {self.size}), real numbers"
+        try:
+            a = np.asarray(actions)
+        except ValueError:
+            raise refuse("actions", actions, allowed) from None
+        if a.dtype.kind not in "iuf":
+            raise refuse_what("actions", f"array of {a.dtype}", allowed)
+        if a.shape != (n, self.size):
+            raise refuse_what("actions", f"array of shape {a.shape}", allowed)
+        a = a.astype(np.float64, order="C")
+        if not (np.abs(a) <= 1.0).all():  # NaN fails too
+            k = int(np.argmin((np.abs(a) <= 1.0).all(axis=1)))
+            raise refuse(f"actions[{k}]", a[k].tolist(), "must be finite and within [-1, 1]")
+        return a
+
+    def pack(self):
+        """What the kernels must know: float64, places ``A_*`` of this module."""
+        world = self.physics
+        return np.array([self.aim == "target", self.elevation, self.placement, world.end_mass_ratio, world.max_offset], np.float64)
+
     def place(self, a):
         """Where in the D the two components of the placement put the cue ball: (x, y)."""
-        at = 4 + self.elevation
-        x, back = a[at], 0.5 * (a[at + 1] + 1.0)
-        return D_RADIUS * x, BAULK_Y - D_RADIUS * sqrt(max(0.0, 1.0 - x * x)) * back
+        return _place(np.array(a, np.float64), self.pack())
 
     def decide(self, a):
         """What an action list says after a foul: "play", "play_again" or "replace"; always "play" without ``decision``."""
@@ -72,24 +158,14 @@ class Actions:
 
     def shot(self, a, positions, on_table, on):
         """(speed, side, top, aim, elevation) of an action list, the aim being the cue's direction [rad]."""
-        speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
-        side, top = self.tip(0.5 * a[1], 0.5 * a[2])
-        elevation = 0.5 * (a[4] + 1.0) * MAX_ELEVATION if self.elevation else 0.0
-        direction = pi * a[3] if self.aim == "absolute" else line(positions, on_table, on) + TARGET_SPAN * a[3]
-        return speed, side, top, direction - squirt(side, self.physics.end_mass_ratio), elevation
+        return _shot(np.array(a, np.float64), np.array(positions, np.float64), np.array(on_table, np.bool_), int(on), self.pack())
 
     def tip(self, side, top):
         """A tip offset, drawn back onto the disc of the miscue limit if it lies outside."""
-        far = hypot(side, top) / self.physics.max_offset
-        return (side / far, top / far) if far > 1.0 else (side, top)
+        return _tip(float(side), float(top), self.physics.max_offset)
 
 
 def line(positions, on_table, on):
     """Direction [rad] of the best potting line: from the cue ball to the ghost of the direct pot with the widest tolerance (``game.pots``)
     among the balls on; if there is none, to the centre of the nearest ball on."""
-    best = pots(positions, on_table, on, most=1)
-    x, y = positions[0]
-    if len(best):
-        return atan2(best[0, 3] - y, best[0, 2] - x)
-    near = min((i for i in range(1, len(positions)) if on >> i & 1), key=lambda i: hypot(positions[i, 0] - x, positions[i, 1] - y))
-    return atan2(positions[near, 1] - y, positions[near, 0] - x)
+    return _line(np.array(positions, np.float64), np.array(on_table, np.bool_), int(on))

@@ -8,6 +8,7 @@ from pettingzoo import AECEnv
 
 from .._check import choice, integer
 from ..game.layouts import layout as make_layout
+from ..game.layouts import plan_of
 from . import observations
 from .frame_table import FrameTable
 from .frame_task import frame_text
@@ -59,7 +60,7 @@ class MatchEnv(AECEnv):
     ):  # fmt: skip
         super().__init__()
         shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity)
-        make_layout(layout, np.random.default_rng(0))  # an unknown name fails here and not in reset
+        plan_of(layout)  # an unknown name fails here and not in reset
         self.layout, self.observation = layout, observation
         self.reward = FRAME_REWARDS[choice("reward", reward, FRAME_REWARDS)]
         self.max_strokes = None if max_strokes is None else integer("max_strokes", max_strokes, 1, 10**9)

@@ -6,10 +6,45 @@ speed is professional 1.5 to 2 %, club 3 to 5 %. For their tip offsets and eleva
 """
 
 from dataclasses import asdict, dataclass, fields
-from math import radians
+from math import radians, sqrt
+
+import numpy as np
 
 from .._check import choice, number, refuse
+from .._jit import entry, kernel
+from ..game.stream import normals
 from ..physics.cue import MAX_ELEVATION
+
+# Places in the packed deviations: 1 if there is no noise, then speed [m/s] and over the speed, tip offset over R, aim and elevation [rad].
+(N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION) = range(6)
+
+
+@kernel
+def _executed(speed, side, top, aim, elevation, z, noise):
+    """The shot as executed, from five standard normal numbers z."""
+    return (
+        max(0.0, speed + z[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
+        side + z[1] * noise[N_TIP],
+        top + z[2] * noise[N_TIP],
+        aim + z[3] * noise[N_AIM],
+        min(MAX_ELEVATION, max(0.0, elevation + z[4] * noise[N_ELEVATION])),
+    )
+
+
+@kernel
+def executed(speed, side, top, aim, elevation, noise, stream):
+    """The shot as executed: three blocks are drawn from ``stream``, nothing if ``noise``, as ``Noise.pack`` gives it, is silent."""
+    if noise[N_SILENT]:
+        return speed, side, top, aim, elevation
+    a, b = normals(stream)
+    c, d = normals(stream)
+    e, _ = normals(stream)
+    return _executed(speed, side, top, aim, elevation, (a, b, c, d, e), noise)
+
+
+@entry
+def _draw(speed, side, top, aim, elevation, z, noise):
+    return _executed(speed, side, top, aim, elevation, (z[0], z[1], z[2], z[3], z[4]), noise)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,14 +93,12 @@ class Noise:
         if self.silent:
             return speed, side, top, aim, elevation
         z = rng.standard_normal(5)
+        return _draw(float(speed), float(side), float(top), float(aim), float(elevation), z, self.pack(R))
+
+    def pack(self, R):
+        """What the kernels must know: float64, places ``N_*`` of this module; R the ball's radius [m]."""
         tip = self.offset_mm * 1e-3 / R
-        return (
-            max(0.0, speed + z[0] * (self.speed_abs**2 + (self.speed_rel * speed) ** 2) ** 0.5),
-            side + z[1] * tip,
-            top + z[2] * tip,
-            aim + z[3] * radians(self.aim_deg),
-            min(MAX_ELEVATION, max(0.0, elevation + z[4] * radians(self.elevation_deg))),
-        )
+        return np.array([self.silent, self.speed_abs, self.speed_rel, tip, radians(self.aim_deg), radians(self.elevation_deg)], np.float64)
 
 
 LEVELS = {

@@ -4,7 +4,8 @@ import numpy as np
 from gymnasium import spaces
 
 from .._check import choice
-from ..game.balls import HALF_LENGTH, HALF_WIDTH, N_BALLS, REDS_MASK, VALUES
+from .._jit import entry, kernel
+from ..game.balls import HALF_LENGTH, HALF_WIDTH, N_BALLS, REDS_MASK, VALUES, bits, count
 
 OBSERVATIONS = ("flat", "balls")
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
@@ -22,8 +23,10 @@ FRAME_ENTRIES = (
 (all cut to [-1, 1]), then flags: it is his turn, the striker has a free ball, the other has just fouled (a decision is open), the foul
 was called a miss, the black was re-spotted. With a free ball "ball_on" is 1 for every colour too."""
 
-_SCALE = np.array([HALF_WIDTH, HALF_LENGTH])
-_BITS = 1 << np.arange(N_BALLS)
+_COLUMNS = len(BALL_COLUMNS)
+BALLS_SIZE = N_BALLS * _COLUMNS
+SIZE = BALLS_SIZE + len(STATE_ENTRIES)
+"""Numbers in the flat observation of a visit, and how many of them, at the front, are the table of balls."""
 
 
 def space(kind, *, frame=False):
@@ -40,26 +43,45 @@ def space(kind, *, frame=False):
     return spaces.Box(-1.0, 1.0, (N_BALLS * len(BALL_COLUMNS) + entries,), np.float32)
 
 
-def observe(kind, positions, on_table, ball_on, on, in_hand, points, more=()):
-    """A fresh observation. ``ball_on``: a BallOn, ``on``: the mask of the balls on, ``points``: the break so far, ``more``: the
-    entries that a frame adds."""
-    balls = np.zeros((N_BALLS, len(BALL_COLUMNS)), np.float32)
-    balls[:, :2] = np.where(on_table[:, None], positions / _SCALE, 0.0)
-    balls[:, 2] = on_table
-    balls[:, 3] = VALUES / 7.0
-    balls[:, 4] = (on & _BITS) != 0
-    state = np.zeros(len(STATE_ENTRIES), np.float32)
-    state[0] = np.count_nonzero(on_table & ((REDS_MASK & _BITS) != 0)) / 15.0
+@kernel
+def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
+    """Write the flat observation (SIZE,) float32. ``ball_on``: a BallOn, ``on``: the mask of the balls on, ``points``: the break so far."""
+    for i in range(N_BALLS):
+        at, here = i * _COLUMNS, on_table[i]
+        row[at] = min(1.0, max(-1.0, positions[i, 0] / HALF_WIDTH)) if here else 0.0
+        row[at + 1] = min(1.0, max(-1.0, positions[i, 1] / HALF_LENGTH)) if here else 0.0
+        row[at + 2] = 1.0 if here else 0.0
+        row[at + 3] = VALUES[i] / 7.0
+        row[at + 4] = (on >> i) & 1
+    for at in range(BALLS_SIZE, SIZE):
+        row[at] = 0.0
+    row[BALLS_SIZE] = count(bits(on_table) & REDS_MASK) / 15.0
     if ball_on >= 0:
-        state[1 + ball_on] = 1.0
-    state[9] = in_hand
-    state[10] = points / 155.0
-    np.clip(balls[:, :2], -1.0, 1.0, out=balls[:, :2])
-    if more:
-        state = np.concatenate([state, np.clip(np.array(more, np.float32), -1.0, 1.0)])
-    if kind == "balls":
-        return {"balls": balls, "state": state}
-    return np.concatenate([balls.ravel(), state])
+        row[BALLS_SIZE + 1 + ball_on] = 1.0
+    row[BALLS_SIZE + 9] = in_hand
+    row[BALLS_SIZE + 10] = points / 155.0
+
+
+@entry
+def _observe(row, positions, on_table, ball_on, on, in_hand, points):
+    observe_into(row, positions, on_table, ball_on, on, in_hand, points)
+
+
+def shaped(kind, rows):
+    """Flat observations (..., SIZE or more), which are taken over, as the observations of that kind."""
+    if kind == "flat":
+        return rows
+    lead = rows.shape[:-1]
+    balls = rows[..., :BALLS_SIZE].reshape(*lead, N_BALLS, _COLUMNS)
+    return {"balls": np.array(balls), "state": np.array(rows[..., BALLS_SIZE:])}
+
+
+def observe(kind, positions, on_table, ball_on, on, in_hand, points, more=()):
+    """A fresh observation: the numbers of ``observe_into``, then ``more``, the entries that a frame adds, cut to [-1, 1]."""
+    row = np.empty(SIZE + len(more), np.float32)
+    _observe(row[:SIZE], positions, on_table, int(ball_on), int(on), int(in_hand), int(points))
+    row[SIZE:] = np.clip(np.array(more, np.float32), -1.0, 1.0)
+    return shaped(kind, row)
 
 
 def observe_frame(kind, table, player):

@@ -1,12 +1,18 @@
 """What is a stroke worth to the learner? Named rewards, of the referee's verdict on a visit's stroke, or of a step in a frame."""
 
-REWARDS = {
-    "points": lambda verdict: float(verdict.points),
-    "points_and_fouls": lambda verdict: float(verdict.points - verdict.penalty),
-    "pots": lambda verdict: 1.0 if verdict.points else 0.0,
-}
+from .._jit import kernel
+
+REWARDS = ("points", "points_and_fouls", "pots")
 """``"points"``: points scored, 0 for a miss or foul, range [0, 15]. ``"points_and_fouls"``: less the penalty, [-7, 15]. ``"pots"``: 1 for a
 scoring stroke, else 0."""
+
+
+@kernel
+def reward_of(kind, points, penalty):
+    """The reward of a visit's stroke; ``kind`` is the place in ``REWARDS``."""
+    if kind == 2:
+        return 1.0 if points else 0.0
+    return float(points - penalty) if kind == 1 else float(points)
 
 
 def _points(before, after, player):

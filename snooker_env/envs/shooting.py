@@ -1,9 +1,12 @@
 """How is a shot carried out, and what does the referee see of it? Noise, strike and engine in one; the event log read as a ``Stroke``."""
 
+from math import cos, sin
+
 import numpy as np
 
 from .._check import refuse
-from ..game.balls import BALL_RADIUS, CUE, N_BALLS, TOUCH, mask_of
+from .._jit import entry, kernel
+from ..game.balls import BALL_RADIUS, CUE, N_BALLS, TOUCH, bits
 from ..game.referee import Stroke
 from ..physics import cue
 from ..physics.contact import parse_fidelity
@@ -11,13 +14,59 @@ from ..physics.engine import EventKind
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..simulation import play
-from .actions import Actions
+from .actions import Actions, squirt
 from .noise import Noise
 
 AT_ONCE = 1e-9
 """Contacts nearer than this [s] are simultaneous."""
 
 _BITS = 1 << np.arange(N_BALLS)
+_BALL_BALL = int(EventKind.BALL_BALL)
+
+
+@kernel
+def strike(speed, aim, side, top, elevation, end_mass_ratio):
+    """``physics.cue.strike`` for a snooker ball and an offset known to be no miscue: vx, vy [m/s] and wx, wy, wz [rad/s]."""
+    aim += squirt(side, end_mass_ratio)
+    c, s, ce, se = cos(aim), sin(aim), cos(elevation), sin(elevation)
+    q = 2.5 * speed / BALL_RADIUS
+    w = (q * (side * se * c - top * s), q * (side * se * s + top * c), q * side * ce)
+    return speed * ce * c, speed * ce * s, w[0], w[1], w[2]
+
+
+@kernel
+def touching_balls(positions, on_table):
+    """The mask of the object balls that touch the cue ball."""
+    reach = 2.0 * BALL_RADIUS + TOUCH
+    mask = 0
+    for i in range(1, N_BALLS):
+        dx, dy = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
+        if on_table[i] and dx * dx + dy * dy < reach * reach:
+            mask |= 1 << i
+    return mask
+
+
+@kernel
+def first_struck(event_time, event_what, n_events, touching, speed):
+    """From the log of a shot played at cue speed ``speed`` [m/s]: the masks of the balls that the cue ball struck first, and of those of
+    the balls ``touching`` it before that it moved in leaving."""
+    first, start = 0, np.inf
+    for e in range(n_events):
+        if event_time[e] > start + AT_ONCE:
+            break
+        if event_what[e, 0] == _BALL_BALL and event_what[e, 1] == CUE:
+            start = min(start, event_time[e])
+            first |= 1 << event_what[e, 2]
+    # A touching ball that the cue ball is played away from is not struck; one it is played into is struck before the cue ball has
+    # gone ten times the gap that still counts as touching.
+    return first, touching & first if start * speed <= 10 * TOUCH else 0
+
+
+@entry
+def _seen(event_time, event_what, positions, on_table, potted, speed):
+    touching = touching_balls(positions, on_table)
+    first, moved = first_struck(event_time, event_what, len(event_time), touching, speed)
+    return first, touching, moved, bits(potted)
 
 
 def mask(balls):
@@ -58,15 +107,8 @@ def stroke_of(shot, positions, on_table, speed):
 
     No ball leaves the table and the cue ball jumps none: the simulation is planar.
     """
-    gaps = np.hypot(*(positions - positions[CUE]).T) - 2 * BALL_RADIUS
-    touching = mask(on_table & (gaps < TOUCH)) & ~1
-    events = shot.events
-    hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
-    first = moved = 0
-    if len(hits):
-        start = hits["time"][0]
-        first = mask_of(hits["j"][hits["time"] <= start + AT_ONCE].tolist())
-        # A touching ball that the cue ball is played away from is not struck; one it is played into is struck before the cue ball has
-        # gone ten times the gap that still counts as touching.
-        moved = touching & first if start * speed <= 10 * TOUCH else 0
-    return Stroke(first=first, potted=mask(shot.potted >= 0), touching=touching, moved=moved)
+    what = np.stack([shot.events[name] for name in ("kind", "i", "j")], axis=1)
+    first, touching, moved, potted = _seen(
+        shot.events["time"].copy(), what, np.array(positions), np.array(on_table), shot.potted >= 0, float(speed)
+    )
+    return Stroke(first=first, potted=potted, touching=touching, moved=moved)

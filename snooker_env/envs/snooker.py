@@ -1,28 +1,35 @@
 """What is ``Snooker-v0``? The Gymnasium environment: composes action, noise, strike, engine, referee, observation and reward."""
 
+from typing import Any
+
 import gymnasium
 import numpy as np
 from gymnasium import spaces
 
 from .._check import choice, refuse
-from ..game.balls import CUE, N_BALLS, REDS_MASK, BallOn, balls_on, next_on
-from ..game.in_hand import place_cue
-from ..game.layouts import layout as make_layout
-from ..game.referee import Situation
-from ..game.ruling import VisitEnd
-from ..game.settle import settle_table
+from ..game.balls import REDS_MASK, BallOn, balls_on
+from ..game.layouts import plan_of
 from . import observations
 from .frame_task import FrameTask
 from .pictures import FPS, MODES, Pictures
 from .rewards import REWARDS
-from .shooting import mask, shooter_of, stroke_of
-from .state import KEYS, check_keys, check_rng, checked
+from .shooting import mask, shooter_of
+from .state import FRAME_KEYS, check_keys, check_rng, checked
+from .visit import BALL_ON, IN_HAND, OVER, POINTS, Returned, Rules, Visits, Work
 
 TASKS = ("visit", "frame")
 FRAME_ONLY = {"opponent": "none", "miss": "off", "decision": False}
 """Arguments that mean something in the frame task only, and the values that they must have in a visit."""
 LAYOUTS = {"visit": "opened", "frame": "break_off"}
 """What layout="default" is in each task."""
+
+
+def visit_only(reward, opponent, miss, decision):
+    """Raise ValueError unless these arguments make sense in a visit."""
+    choice("reward", reward, REWARDS)
+    for name, value in (("opponent", opponent), ("miss", miss), ("decision", decision)):
+        if value != FRAME_ONLY[name]:
+            raise refuse(name, value, f'must be {FRAME_ONLY[name]!r} with task="visit"; it belongs to task="frame"')
 
 
 class SnookerEnv(gymnasium.Env):
@@ -118,33 +125,62 @@ class SnookerEnv(gymnasium.Env):
     ):  # fmt: skip
         whole = choice("task", task, TASKS) == "frame"
         layout = LAYOUTS[task] if isinstance(layout, str) and layout == "default" else layout
-        make_layout(layout, np.random.default_rng(0))  # an unknown name fails here and not in reset
+        plan = plan_of(layout)
         self.layout, self.observation, self.reward = layout, observation, reward
         self.shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity)
         self.actions, self.noise, self.physics = self.shooter.actions, self.shooter.noise, self.shooter.physics
         self.table, self.fidelity = self.shooter.table, self.shooter.fidelity
         self.action_space = spaces.Box(-1.0, 1.0, (self.actions.size,), np.float32)
         self.observation_space = observations.space(observation, frame=whole)
-        self.frames = None
+        self.frames: Any = None
         """The ``FrameTask``; None in a visit."""
+        self.visits: Any = None
+        """The ``Visits`` of one table; None in a frame."""
+        self._unbegun = True
         if whole:
             self.frames = FrameTask(self.shooter, opponent=opponent, miss=miss, reward=reward, observation=observation)
         else:
-            choice("reward", reward, REWARDS)
-            for name, value in (("opponent", opponent), ("miss", miss), ("decision", decision)):
-                if value != FRAME_ONLY[name]:
-                    raise refuse(name, value, f'must be {FRAME_ONLY[name]!r} with task="visit"; it belongs to task="frame"')
+            visit_only(reward, opponent, miss, decision)
+            self.visits = Visits(Rules(self.shooter, plan, reward), 1)
+            self._work, self._seeded = Work(1, path=render_mode is not None), False
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
         self._pictures = Pictures(self.table, render_mode)
         self.last_shot = None
         """The ``Shot`` of the last step, with its path when a render mode is set; None before the first."""
-        self.positions = np.zeros((N_BALLS, 2))
-        self.on_table = np.zeros(N_BALLS, bool)
-        self.ball_on, self.in_hand, self.points, self.over = BallOn.NOTHING, False, 0, True
 
     # the state of the table ------------------------------------------------------------------------------------------------
+
+    @property
+    def positions(self):
+        """Where the balls lie: (22, 2) [m]."""
+        return self.frames.table.positions if self.visits is None else self.visits.positions[0].copy()
+
+    @property
+    def on_table(self):
+        """Which balls are on the table: (22,) bool."""
+        return self.frames.table.on_table if self.visits is None else self.visits.on_table[0].copy()
+
+    @property
+    def ball_on(self):
+        """What is on, a ``BallOn``."""
+        return self.frames.table.frame.ball_on if self.visits is None else BallOn(self.visits.game[0, BALL_ON])
+
+    @property
+    def in_hand(self):
+        """Whether the cue ball is in hand."""
+        return self.frames.table.frame.in_hand if self.visits is None else bool(self.visits.game[0, IN_HAND])
+
+    @property
+    def points(self):
+        """Points of the visit so far."""
+        return self.frames.table.frame.break_points if self.visits is None else int(self.visits.game[0, POINTS])
+
+    @property
+    def over(self):
+        """Whether the visit or frame has ended, or not yet begun."""
+        return self._unbegun or self.frames.table.over if self.visits is None else bool(self.visits.game[0, OVER])
 
     @property
     def on(self):
@@ -152,32 +188,26 @@ class SnookerEnv(gymnasium.Env):
         return balls_on(self.ball_on, mask(self.on_table)) if self.frames is None else self.frames.table.on
 
     def get_state(self):
-        """The whole state as JSON types: table, game and random generator. ``set_state`` brings it back exactly."""
-        state = {
+        """The whole state as JSON types: table, game and random numbers. ``set_state`` brings it back exactly."""
+        rng = {"rng": self.np_random.bit_generator.state}
+        if self.visits is not None:
+            return self.visits.get_state(0) | rng
+        return rng | {
             "positions": self.positions.tolist(), "on_table": self.on_table.tolist(), "ball_on": int(self.ball_on),
-            "in_hand": self.in_hand, "points": self.points, "over": self.over, "rng": self.np_random.bit_generator.state,
+            "in_hand": self.in_hand, "points": self.points, "over": self.over, "frame": self.frames.table.frame.to_dict(),
         }  # fmt: skip
-        return state if self.frames is None else state | {"frame": self.frames.table.frame.to_dict()}
 
     def set_state(self, state):
         """Take over a state from ``get_state``; the next shot plays on identically. ValueError if it is not sound."""
-        if self.frames is not None:
-            check_keys(state, (*KEYS, "frame"))
+        if self.visits is None:
+            check_keys(state, FRAME_KEYS)
             check_rng(state["rng"], self.np_random)
             self.frames.table.set_state(state)
-            self._take_frame()
-            self.np_random.bit_generator.state = state["rng"]
-            return
-        sound = checked(state, self.table, self.physics.R, self.np_random)
-        self.positions, self.on_table, self.ball_on, self.in_hand, self.points, self.over, rng = sound
-        self.np_random.bit_generator.state = rng
-
-    def _take_frame(self):
-        """Take over from the frame what a visit keeps by itself."""
-        assert self.frames is not None
-        table = self.frames.table
-        self.positions, self.on_table, self.over = table.positions, table.on_table, table.over
-        self.ball_on, self.in_hand, self.points = table.frame.ball_on, table.frame.in_hand, table.frame.break_points
+            self._unbegun = False
+        else:
+            self.visits.set_state(0, checked(state, self.table, self.physics.R, self.np_random))
+            self._seeded = True
+        self.np_random.bit_generator.state = state["rng"]
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
@@ -189,20 +219,33 @@ class SnookerEnv(gymnasium.Env):
         for key in options or {}:
             choice("options", key, ("state",))
         self.last_shot = None
+        fresh = True
         if options and "state" in options:
             self.set_state(options["state"])
             if self.over:
                 raise refuse("state.over", True, "must be False: there is no shot to play from this state")
-        elif self.frames is not None:
-            self.frames.start(self.layout, self.np_random, self._watch if self.render_mode is not None else None)
-            self._take_frame()
+            fresh = False
+        if self.visits is None:
+            observation, info = self._reset_frame(fresh)
         else:
-            self.positions, self.on_table = make_layout(self.layout, self.np_random)
-            self.ball_on = BallOn(next_on(mask(self.on_table)))
-            self.in_hand, self.points, self.over = self.layout == "break_off", 0, False
+            observation, info = self._reset_visit(fresh, seed)
         if self.render_mode == "human":
             self._show()
-        return self._observe(), self._no_info()
+        return observation, info
+
+    def _reset_visit(self, fresh, seed):
+        if fresh and (seed is not None or not self._seeded):
+            self.visits.seed(0, self.np_random)
+            self._seeded = True
+        out = Returned(1)
+        self.visits.begin(np.array([fresh]), out, others=True)
+        return observations.shaped(self.observation, out.observations[0]), out.info(0)
+
+    def _reset_frame(self, fresh):
+        if fresh:
+            self._unbegun = False
+            self.frames.start(self.layout, self.np_random, self._watch if self.render_mode is not None else None)
+        return self.frames.observe(), self._frame_info(None)
 
     def step(self, action):
         """Play one shot. ValueError if the action is not finite and within [-1, 1]."""
@@ -212,37 +255,23 @@ class SnookerEnv(gymnasium.Env):
         return self._visit_step(a) if self.frames is None else self._frame_step(a)
 
     def _visit_step(self, a):
-        if self.in_hand and self.actions.placement:
-            self._place(a)
-        intended = self.actions.shot(a, self.positions, self.on_table, self.on)
-        shot = self.shooter.shoot(intended, self.positions, self.on_table, self.np_random, path=self.render_mode is not None)
-        self.last_shot = shot
-        ball_on = self.ball_on
-        stroke = stroke_of(shot, self.positions, self.on_table, intended[0])
-        situation = Situation(on_table=mask(self.on_table), ball_on=ball_on, lead=self.points)
-        verdict, self.positions, self.on_table = settle_table(shot.positions, self.on_table, situation, stroke, jaws=self.table.jaws[:, :3])
-        self.ball_on, self.in_hand = verdict.ball_on, verdict.in_hand
-        self.points += verdict.points
-        self.over = verdict.visit_end != VisitEnd.CONTINUES
+        out = Returned(1)
+        self.visits.play(np.array([a]), np.zeros(1, np.bool_), out, self._work)
+        self.last_shot = (self._work.enlarged or self._work).shot(0, self.physics)
         if self.render_mode == "human":
             self._show(film=True)
-        return self._observe(), REWARDS[self.reward](verdict), bool(self.over), False, self._info(shot, stroke, ball_on, verdict)
+        observation = observations.shaped(self.observation, out.observations[0])
+        return observation, float(out.rewards[0]), bool(out.terminated[0]), False, out.info(0)
 
     def _frame_step(self, a):
-        assert self.frames is not None
         reward, played = self.frames.step(a, self.np_random, self._watch if self.render_mode is not None else None)
-        self._take_frame()
-        if played is None:
-            info = self._no_info()
-        else:
-            self.last_shot = played.shot if self.render_mode is None else self.last_shot
-            info = self._info(played.shot, played.stroke, played.ball_on, played.verdict)
-        return self._observe(), reward, self.over, False, info
+        if played is not None and self.render_mode is None:
+            self.last_shot = played.shot
+        return self.frames.observe(), reward, self.over, False, self._frame_info(played)
 
     def _watch(self, shot):
         """Called after each stroke of a frame, of either player, when there is something to see."""
         self.last_shot = shot
-        self._take_frame()
         if self.render_mode == "human":
             self._show(film=True)
 
@@ -254,34 +283,20 @@ class SnookerEnv(gymnasium.Env):
         """Close the window, if there is one."""
         self._pictures.close()
 
-    # one shot --------------------------------------------------------------------------------------------------------------
-
-    def _place(self, a):
-        """Put the cue ball in hand where the action says; if a ball is in the way, at the nearest free place of the D."""
-        self.on_table[CUE] = False
-        self.positions[CUE] = place_cue(self.positions, self.on_table, *self.actions.place(a))
-        self.on_table[CUE] = True
-
-    def _observe(self):
-        if self.frames is not None:
-            return self.frames.observe()
-        return observations.observe(self.observation, self.positions, self.on_table, self.ball_on, self.on, self.in_hand, self.points)
-
-    def _info(self, shot, stroke, ball_on, verdict):
-        info = {
-            "points": float(verdict.points), "break": float(self.points), "foul": bool(verdict.fouls), "penalty": int(verdict.penalty),
-            "pots": (stroke.potted & ~1).bit_count(), "fouls": int(verdict.fouls), "ball_on": int(ball_on),
-            "first_ball": (stroke.first & -stroke.first).bit_length() - 1, "events": len(shot.events), "seconds": shot.duration,
-        }  # fmt: skip
-        return info if self.frames is None else info | self.frames.info()
-
-    def _no_info(self):
-        """The same keys before any shot."""
+    def _frame_info(self, played):
+        """What a step of a frame tells: of the agent's own stroke, if there was one, and of the frame; always the same keys."""
         info = {
             "points": 0.0, "break": float(self.points), "foul": False, "penalty": 0, "pots": 0, "fouls": 0, "ball_on": int(self.ball_on),
             "first_ball": -1, "events": 0, "seconds": 0.0,
         }  # fmt: skip
-        return info if self.frames is None else info | self.frames.info()
+        if played is not None:
+            stroke, verdict, shot = played.stroke, played.verdict, played.shot
+            info |= {
+                "points": float(verdict.points), "foul": bool(verdict.fouls), "penalty": int(verdict.penalty),
+                "pots": (stroke.potted & ~1).bit_count(), "fouls": int(verdict.fouls), "ball_on": int(played.ball_on),
+                "first_ball": (stroke.first & -stroke.first).bit_length() - 1, "events": len(shot.events), "seconds": shot.duration,
+            }  # fmt: skip
+        return info | self.frames.info()
 
     # pictures --------------------------------------------------------------------------------------------------------------
 

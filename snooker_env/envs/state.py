@@ -17,10 +17,14 @@ class State(NamedTuple):
     in_hand: bool
     points: int
     over: bool
+    stream: list
+    """Key and counter of the table's stream of random numbers."""
     rng: dict
 
 
 KEYS = State._fields
+FRAME_KEYS = (*(key for key in KEYS if key != "stream"), "frame")
+"""In a frame everything is drawn from the environment's own generator, "rng"."""
 
 
 def check_keys(state, keys):
@@ -48,6 +52,13 @@ def check_rng(rng, generator):
         raise refuse("state.rng", rng, f"must be the state of a {type(trial).__name__} generator") from None
 
 
+def check_stream(stream):
+    """Key and counter of a stream as a list of two ints; ValueError if they are none."""
+    if not isinstance(stream, list | tuple) or len(stream) != 2:
+        raise refuse("state.stream", stream, "must be two integers, key and counter")
+    return [integer(f"state.stream[{k}]", word, 0, 2**64 - 1) for k, word in enumerate(stream)]
+
+
 def checked(state, table, R, generator):
     """The ``State`` that a dict describes; ValueError names the first part that is wrong.
 
@@ -68,5 +79,5 @@ def checked(state, table, R, generator):
         if ball_on > BallOn.RED and mask & REDS_MASK:
             raise refuse("state.ball_on", ball_on.name, "must be RED or ANY_COLOUR while reds are on the table")
     check_rng(state["rng"], generator)
-    points = integer("state.points", state["points"], 0, 155)
-    return State(positions, on_table, ball_on, in_hand, points, over, state["rng"])
+    points, stream = integer("state.points", state["points"], 0, 155), check_stream(state["stream"])
+    return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"])

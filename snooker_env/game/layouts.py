@@ -1,17 +1,21 @@
-"""How can a table stand at the start of a task? Layouts from a random generator: geometry only, no shot is simulated.
+"""How can a table stand at the start of a task? Layouts from a stream of random numbers: geometry only, no shot is simulated.
 
-Each function returns ``positions`` (22, 2) [m] and ``on_table`` (22,) bool and draws only from the generator it is given: the same
-generator state, the same table. A ball off the table keeps its row of ``balls.SPOTS``. Balls that are not racked or on a spot stand
-at least ``GAP`` from any other.
+A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool. It depends on the stream alone: same key and counter, same table. A
+ball off the table keeps its row of ``balls.SPOTS``. Balls that are not racked or on a spot stand at least ``GAP`` from any other.
 """
+
+from dataclasses import dataclass
+from math import atan2, cos, hypot, sin
 
 import numpy as np
 
-from .._check import integer, refuse
-from .balls import BALL_RADIUS, BAULK_Y, BLACK, CUE, D_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, N_REDS, POCKETS, REDS_MASK, SPOTS, YELLOW
-from .opened import held_out, opened
-from .pots import pots
-from .snookered import is_snookered
+from .._check import refuse
+from .._jit import entry, kernel
+from .balls import BALL_RADIUS, BAULK_Y, CUE, D_RADIUS, GREEN, HALF_LENGTH, HALF_WIDTH, N_BALLS, N_REDS, POCKETS, REDS_MASK, SPOTS, YELLOW
+from .opened import HELD_OUT, NO_BANK, bank
+from .pots import POT_COLUMNS, find_pots
+from .snookered import NO_JAWS, snookered_from
+from .stream import normals, pair, stream_of
 
 GAP = 0.001
 """Least gap [m] between a ball placed at random and any other."""
@@ -20,127 +24,95 @@ CUSHION_GAP = 0.05
 POCKET_GAP = 0.15
 """Least distance [m] of such a ball's centre from a pocket's nominal place: clear of the jaws."""
 
-
-def _generator(rng):
-    if not isinstance(rng, np.random.Generator):
-        raise refuse("rng", rng, "must be a numpy.random.Generator")
-    return rng
+OPENED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
+"""Kinds of layouts, for the kernels."""
 
 
-def _table(reds):
-    """Fresh arrays: the first ``reds`` reds and all colours on the table, every ball on its spot, no cue ball yet."""
-    on_table = np.zeros(N_BALLS, dtype=np.bool_)
-    on_table[1 : 1 + reds] = True
-    on_table[YELLOW:] = True
-    return SPOTS.copy(), on_table
-
-
-def _clear(positions, on_table, place):
+@kernel
+def clear(positions, on_table, x, y):
     """Is a place clear of the balls on the table, cushions and pockets?"""
-    return (
-        np.all(np.hypot(*(positions[on_table] - place).T) >= 2 * BALL_RADIUS + GAP)
-        and np.all(np.abs(place) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - CUSHION_GAP)
-        and np.all(np.hypot(*(POCKETS - place).T) >= POCKET_GAP)
-    )
+    room = BALL_RADIUS + CUSHION_GAP
+    if abs(x) > HALF_WIDTH - room or abs(y) > HALF_LENGTH - room:
+        return False
+    for k in range(POCKETS.shape[0]):
+        if hypot(POCKETS[k, 0] - x, POCKETS[k, 1] - y) < POCKET_GAP:
+            return False
+    free = True
+    for i in range(N_BALLS):
+        free = free and not (on_table[i] and hypot(positions[i, 0] - x, positions[i, 1] - y) < 2 * BALL_RADIUS + GAP)
+    return free
 
 
-def _put(positions, on_table, ball, draw):
-    """Put a ball at the first place from ``draw()`` that is clear of other balls, cushions and pockets."""
+@kernel
+def _put(positions, on_table, ball, kind, stream):
+    """Put a ball at the first place drawn that is clear of the others; the cue ball within the bounds of its kind of layout."""
+    left, bottom, right, top = -HALF_WIDTH, -HALF_LENGTH, HALF_WIDTH, HALF_LENGTH
+    if ball == CUE and kind == BREAK_OFF:
+        left, bottom, right, top = -D_RADIUS, BAULK_Y - D_RADIUS, D_RADIUS, BAULK_Y
+    elif ball == CUE and kind == LINE_UP:
+        left, bottom, right, top = -0.6, -0.3, 0.6, 1.5
     while True:
-        place = draw()
-        if _clear(positions, on_table, place):
-            positions[ball] = place
+        u, v = pair(stream)
+        x, y = left + u * (right - left), bottom + v * (top - bottom)
+        if ball == CUE and kind == BREAK_OFF and hypot(x, y - BAULK_Y) > D_RADIUS:
+            continue
+        if ball == CUE and kind == COLOURS and not 0.25 <= hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1]) <= 1.2:
+            continue  # not too near the first ball on, nor too far
+        if clear(positions, on_table, x, y):
+            positions[ball, 0], positions[ball, 1] = x, y
             on_table[ball] = True
             return
 
 
-def _box(rng, low, high):
-    """A draw, uniform in a box."""
-    return lambda: rng.uniform(low, high)
+@kernel
+def _opened(positions, on_table, tables, first, last, stream):
+    """One of the tables ``first`` to ``last`` of the bank, every second one mirrored in the long axis."""
+    u, v = pair(stream)
+    table = tables[first + int(u * (last - first))]
+    for i in range(N_BALLS):
+        j = i
+        if v < 0.5 and YELLOW <= i <= GREEN:
+            j = YELLOW + GREEN - i  # so that each keeps its side of the table
+        positions[i, 0], positions[i, 1] = -table[j, 0] if v < 0.5 else table[j, 0], table[j, 1]
+        on_table[i] = True
 
 
-def _in_d(rng):
-    """A draw, uniform in the D."""
-
-    def draw():
-        while True:
-            x, y = rng.uniform([-D_RADIUS, -D_RADIUS], [D_RADIUS, 0.0])
-            if x * x + y * y <= D_RADIUS * D_RADIUS:
-                return np.array([x, BAULK_Y + y])
-
-    return draw
-
-
-def break_off(rng):
-    """The start of a frame: reds racked, colours on their spots, the cue ball at a random place in the D."""
-    positions, on_table = _table(N_REDS)
-    _put(positions, on_table, CUE, _in_d(_generator(rng)))
-    return positions, on_table
-
-
-def line_up(rng):
-    """The practice line-up: 15 reds on the centre line, two below the blue, seven from blue to pink, four on to the black, two above it.
-
-    They stand about 112 mm apart, so that a ball just passes between two. The cue ball is placed at random beside the line.
-    """
-    positions, on_table = _table(N_REDS)
+@kernel
+def _line_up_y(k):
+    """Where red k of 15 of the practice line-up stands on the centre line: two below the blue, seven from blue to pink, four on to the
+    black, two above it. They stand about 112 mm apart, so that a ball just passes between two."""
     blue, pink, black = SPOTS[19, 1], SPOTS[20, 1], SPOTS[21, 1]
     low, high = (pink - blue) / 8, (black - pink) / 5
-    ys = [blue - 2 * low, blue - low, *(blue + low * np.arange(1, 8)), *(pink + high * np.arange(1, 5)), black + high, black + 2 * high]
-    positions[1 : 1 + N_REDS] = np.column_stack([np.zeros(N_REDS), ys])
-    _put(positions, on_table, CUE, _box(_generator(rng), [-0.6, -0.3], [0.6, 1.5]))
-    return positions, on_table
-
-
-def colours(rng):
-    """Only the six colours, on their spots; the cue ball at a random place 0.25 m to 1.2 m from the yellow, the first ball on."""
-    positions, on_table = _table(0)
-    box = _box(_generator(rng), [-HALF_WIDTH, -HALF_LENGTH], [HALF_WIDTH, HALF_LENGTH])
-
-    def draw():
-        while True:
-            place = box()
-            if 0.25 <= np.hypot(*(place - SPOTS[YELLOW])) <= 1.2:
-                return place
-
-    _put(positions, on_table, CUE, draw)
-    return positions, on_table
-
-
-def random(rng, n):
-    """``n`` reds (0 to 15) and the cue ball sprinkled over the whole table, all colours on their spots."""
-    positions, on_table = _table(0)
-    draw = _box(_generator(rng), [-HALF_WIDTH, -HALF_LENGTH], [HALF_WIDTH, HALF_LENGTH])
-    for red in range(1, 1 + integer("n", n, 0, N_REDS)):
-        _put(positions, on_table, red, draw)
-    _put(positions, on_table, CUE, draw)
-    return positions, on_table
+    if k <= 9:
+        return blue + low * (k - 3 if k <= 2 else k - 2)
+    return pink + high * (k - 9) if k <= 13 else black + high * (k - 13)
 
 
 SNOOKERED_REDS = 3
-"""At most so many reds are on the table in ``snookered``."""
+"""At most so many reds are on the table in ``"snookered"``."""
 BEHIND = (0.08, 0.5)
 """How far from the snookering colour its cue ball lies [m]: from about a ball's width to a third of the table's width."""
 
 
-def snookered(rng):
-    """The cue ball snookered on every red: one to three reds sprinkled, all colours on their spots, red on.
+@kernel
+def _hide(positions, on_table, reds, stream):
+    """Try to snooker the cue ball on every red (of 1 to ``reds``), by a colour drawn: is it now placed so?
 
-    By construction and trial: behind a colour as seen from a red, then kept only if the rule's tangent test (``snookered.is_snookered``)
+    By construction and trial: behind the colour as seen from a red, kept only if the rule's tangent test (``snookered.is_snookered``)
     finds no red that can be struck at both edges. A way out needs a cushion, swerve, or a touch on a red's one open edge.
     """
-    rng = _generator(rng)
-    while True:
-        positions, on_table = random(rng, int(rng.integers(1, SNOOKERED_REDS + 1)))
-        red, colour = 1 + rng.integers(np.count_nonzero(on_table[1:YELLOW])), rng.integers(YELLOW, BLACK + 1)
-        away = positions[colour] - positions[red]
-        angle = np.arctan2(away[1], away[0]) + rng.normal(0.0, 0.03)
-        place = positions[colour] + rng.uniform(*BEHIND) * np.array([np.cos(angle), np.sin(angle)])
-        on_table[CUE] = False
-        if _clear(positions, on_table, place):
-            positions[CUE], on_table[CUE] = place, True
-            if is_snookered(positions, on_table, REDS_MASK)[0]:
-                return positions, on_table
+    u, v = pair(stream)
+    far, _ = pair(stream)
+    turn, _ = normals(stream)
+    red, colour = 1 + int(u * reds), YELLOW + int(v * (N_BALLS - YELLOW))
+    angle = atan2(positions[colour, 1] - positions[red, 1], positions[colour, 0] - positions[red, 0]) + 0.03 * turn
+    far = BEHIND[0] + far * (BEHIND[1] - BEHIND[0])
+    x, y = positions[colour, 0] + far * cos(angle), positions[colour, 1] + far * sin(angle)
+    if not clear(positions, on_table, x, y):
+        return False
+    positions[CUE, 0], positions[CUE, 1] = x, y
+    on_table[CUE] = True
+    return snookered_from(positions, on_table, REDS_MASK, x, y, NO_JAWS, BALL_RADIUS)[0]
 
 
 POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e-3)}
@@ -148,35 +120,108 @@ POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e
 no allowance for throw, 300 of each went in 69, 61 and 45 % of the time with an aim of 0.025 deg, and 68, 52 and 22 % with 0.1 deg."""
 
 
-def single_pot(rng, difficulty):
-    """One red and the cue ball alone on the table, anywhere, with a direct pot; its widest is of that ``difficulty`` (``POT_WINDOWS``)."""
-    rng = _generator(rng)
-    if difficulty not in POT_WINDOWS:
-        raise refuse("difficulty", difficulty, "must be one of " + ", ".join(map(repr, POT_WINDOWS)))
-    low, high = POT_WINDOWS[difficulty]
-    draw = _box(rng, [-HALF_WIDTH, -HALF_LENGTH], [HALF_WIDTH, HALF_LENGTH])
+@kernel
+def _deal(code, tables, stream, positions, on_table, found):
+    """One layout: first the racked and spotted balls, then the loose reds, last the cue ball; again until what is asked for holds."""
+    kind, reds, low, high = int(code[0]), int(code[1]), code[2], code[3]
+    if kind == OPENED:
+        _opened(positions, on_table, tables, int(low), int(high), stream)
+        return
+    racked = reds if kind == BREAK_OFF or kind == LINE_UP else 0
+    loose = reds - racked
     while True:
-        positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, dtype=np.bool_)
-        _put(positions, on_table, 1, draw)
-        _put(positions, on_table, CUE, draw)
-        found = pots(positions, on_table, REDS_MASK, most=1)
-        if len(found) and low <= found[0, 5] < high:
-            return positions, on_table
+        if kind == SNOOKERED:
+            u, _ = pair(stream)
+            loose = 1 + int(u * reds)
+        for i in range(N_BALLS):
+            positions[i, 0], positions[i, 1] = SPOTS[i, 0], SPOTS[i, 1]
+            on_table[i] = 1 <= i <= racked or (i >= YELLOW and kind != POT)
+            if kind == LINE_UP and 1 <= i <= racked:
+                positions[i, 0], positions[i, 1] = 0.0, _line_up_y(i)
+        for ball in range(loose, 0 if kind == SNOOKERED else -1, -1):
+            _put(positions, on_table, ball, kind, stream)
+        if kind == SNOOKERED:
+            if _hide(positions, on_table, loose, stream):
+                return
+        elif kind == POT:
+            if find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, found) and low <= found[0, 5] < high:
+                return
+        else:
+            return
 
 
+@entry
+def deal_tables(wanted, code, tables, streams, positions, on_table):
+    """Deal a new layout on each table k that is ``wanted``, from its own stream: positions (n, 22, 2), on_table (n, 22), in place.
+
+    ``code`` and ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64.
+    """
+    found = np.empty((1, POT_COLUMNS))
+    for k in range(wanted.shape[0]):
+        if wanted[k]:
+            _deal(code, tables, streams[k], positions[k], on_table[k], found)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A layout's name as the kernels read it. A copy is made anew from the name: the bank of tables is never copied."""
+
+    name: str
+    code: np.ndarray
+    """Kind, number of reds, and two numbers: the first and last table of the bank, or the window of a pot."""
+    tables: np.ndarray
+    """The bank of opened tables, or none."""
+
+    @property
+    def in_hand(self):
+        """Whether the cue ball may be moved within the D."""
+        return self.name == "break_off"
+
+    def __reduce__(self):
+        return plan_of, (self.name,)
+
+
+_NAMES = {"break_off": (BREAK_OFF, N_REDS), "line_up": (LINE_UP, N_REDS), "colours": (COLOURS, 0), "snookered": (SNOOKERED, SNOOKERED_REDS)}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
-LAYOUTS = {"opened": opened, "held_out": held_out, "break_off": break_off, "line_up": line_up, "colours": colours, "snookered": snookered}
+LAYOUTS = ("opened", "held_out", *_NAMES)
+
+
+def plan_of(name):
+    """The ``Plan`` of a layout: one of ``LAYOUTS``, ``"random:N"`` with N reds, or ``"pots:D"`` with D one of ``POT_WINDOWS``."""
+    head, _, which = name.partition(":") if isinstance(name, str) else ("", "", "")
+    tables, code = NO_BANK, None
+    if name in ("opened", "held_out"):
+        tables = bank()
+        code = (OPENED, N_REDS, *((0, len(tables) - HELD_OUT) if name == "opened" else (len(tables) - HELD_OUT, len(tables))))
+    elif isinstance(name, str) and name in _NAMES:
+        code = (*_NAMES[name], 0, 0)
+    elif head == "random" and which in _COUNTS:
+        code = (RANDOM, int(which), 0, 0)
+    elif head == "pots" and which in POT_WINDOWS:
+        code = (POT, 1, *POT_WINDOWS[which])
+    if code is None:
+        known = ", ".join(map(repr, LAYOUTS))
+        allowed = f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard" or "random:N" with N from 0 to {N_REDS}'
+        raise refuse("layout", name, allowed)
+    return Plan(name, np.array(code, np.float64), tables)
 
 
 def layout(name, rng):
-    """The layout of that name: one of ``LAYOUTS``, ``"random:N"`` with N reds, or ``"pots:D"`` with D one of ``POT_WINDOWS``."""
-    if isinstance(name, str):
-        if name in LAYOUTS:
-            return LAYOUTS[name](rng)
-        head, _, which = name.partition(":")
-        if head == "random" and which in _COUNTS:
-            return random(rng, int(which))
-        if head == "pots" and which in POT_WINDOWS:
-            return single_pot(rng, which)
-    known = ", ".join(map(repr, LAYOUTS))
-    raise refuse("layout", name, f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard" or "random:N" with N from 0 to {N_REDS}')
+    """A layout by its name (see ``plan_of``): ``positions`` (22, 2) [m] and ``on_table`` (22,) bool, fresh.
+
+    ``rng``: a numpy Generator, of which one number is drawn: the key of the layout's stream.
+    """
+    plan = plan_of(name)
+    positions, on_table = np.empty((1, N_BALLS, 2)), np.empty((1, N_BALLS), np.bool_)
+    deal_tables(np.ones(1, np.bool_), plan.code, plan.tables, stream_of(rng)[None], positions, on_table)
+    return positions[0], on_table[0]
+
+
+def break_off(rng):
+    """The start of a frame: reds racked, colours on their spots, the cue ball at a random place in the D."""
+    return layout("break_off", rng)
+
+
+def opened(rng):
+    """A table opened by play, all 22 balls on it."""
+    return layout("opened", rng)

@@ -10,9 +10,31 @@ from .._check import array, refuse
 from .._jit import entry, kernel
 from .balls import BALL_RADIUS, N_BALLS, balls_on_kernel, bits, check_table, mask_of
 from .referee import check, numbers_of, verdict_of
-from .ruling import FLAG, OUTCOME, ruling
+from .ruling import AUTO, FLAG, OUTCOME, ruling
 from .snookered import NO_JAWS, snookered
 from .spotting import spot
+
+
+@kernel
+def _put_in_order(positions, on_table, result, gone, radius):
+    """Balls in the mask ``gone`` leave, colours come back, the cue ball to hand, as the ``Ruling`` says; arrays in place."""
+    for i in range(N_BALLS):
+        if (gone >> i) & 1:
+            on_table[i] = False
+    if result.in_hand:
+        on_table[0] = False
+    spot(positions, on_table, result.respotted, radius)
+
+
+@kernel
+def settle_visit(positions, on_table, ball_on, lead, first, touching, moved, potted, radius):
+    """``settle`` for a visit by itself: nobody plays on after a foul, so nobody looks for a snooker and there is no free ball.
+
+    Arrays in place and numbers as in ``settle``; the simulation sees no ball off the table and no flag. Returns a ``Ruling``.
+    """
+    result = ruling(bits(on_table), ball_on, 0, lead, first, touching, moved, potted, 0, AUTO, 0)
+    _put_in_order(positions, on_table, result, potted, radius)
+    return result
 
 
 @kernel
@@ -27,12 +49,7 @@ def settle(positions, on_table, ball_on, free_ball, lead, first, touching, moved
     flags = flags & ~(FLAG.SNOOKERED | FLAG.BEHIND_FREE_BALL)
     before = bits(on_table)
     result = ruling(before, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags)
-    for i in range(N_BALLS):
-        if ((potted | off) >> i) & 1:
-            on_table[i] = False
-    if result.in_hand:
-        on_table[0] = False
-    spot(positions, on_table, result.respotted, radius)
+    _put_in_order(positions, on_table, result, potted | off, radius)
     # A snooker matters after a foul (a free ball) and when a free ball was played without a pot (it must not be behind that ball).
     if result.outcome == OUTCOME.PLAYING and (result.fouls or (free_ball and result.nominated and not result.points)):
         hidden, effective = snookered(positions, on_table, balls_on_kernel(result.ball_on, result.on_table), jaws, radius)

@@ -47,12 +47,10 @@ def test_every_layout_is_playable(name, seed):
         ((HALF_WIDTH - 0.9 * layouts.POCKET_GAP, 0.0), (HALF_WIDTH - 1.1 * layouts.POCKET_GAP, 0.0)),
     ],
 )
-def test_a_place_too_near_is_passed_over(too_near, near):
+def test_a_place_too_near_is_not_clear(too_near, near):
     positions, on_table = np.full((22, 2), 5.0), np.zeros(22, dtype=bool)
     positions[1], on_table[1] = (0.0, 0.3), True
-    draws = iter([np.array(too_near), np.array(near)])
-    layouts._put(positions, on_table, 0, lambda: next(draws))
-    assert tuple(positions[0]) == near and on_table[0]
+    assert not layouts.clear(positions, on_table, *too_near) and layouts.clear(positions, on_table, *near)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -70,13 +68,13 @@ def test_number_of_reds(name, reds):
 
 
 def test_break_off_is_played_from_the_d():
-    places = np.array([layouts.break_off(np.random.default_rng(seed))[0][0] for seed in range(200)]) - [0.0, BAULK_Y]
+    places = np.array([layouts.layout("break_off", np.random.default_rng(seed))[0][0] for seed in range(200)]) - [0.0, BAULK_Y]
     assert np.all(places[:, 1] <= 0) and np.all(np.hypot(*places.T) <= D_RADIUS)
     assert np.ptp(places[:, 0]) > 1.5 * D_RADIUS
 
 
 def test_line_up_is_a_line_through_which_a_ball_passes():
-    positions, _ = layouts.line_up(np.random.default_rng(0))
+    positions, _ = layouts.layout("line_up", np.random.default_rng(0))
     on_line = np.sort(np.append(positions[1:16, 1], SPOTS[19:22, 1]))
     assert np.all(positions[1:16, 0] == 0.0)
     assert np.diff(on_line).min() > 4 * BALL_RADIUS
@@ -91,7 +89,7 @@ def test_unknown_names_are_refused(name):
 
 def test_other_generators_are_refused():
     with pytest.raises(ValueError, match="Generator"):
-        layouts.break_off(np.random.RandomState(0))
+        layouts.layout("break_off", np.random.RandomState(0))
 
 
 # Snookers and single pots
@@ -132,12 +130,7 @@ def test_the_difficulties_leave_no_gap_and_do_not_overlap():
     assert [w[1] for w in windows[:2]] == [w[0] for w in windows[1:]] and windows[-1][1] == np.inf
 
 
-@pytest.mark.parametrize("name", ["pots", "pots:", "pots:Easy", "Snookered"])
+@pytest.mark.parametrize("name", ["pots", "pots:", "pots:Easy", "pots:very hard", "Snookered"])
 def test_unknown_drills_are_refused(name):
     with pytest.raises(ValueError, match=r"^layout = "):
         layouts.layout(name, np.random.default_rng(0))
-
-
-def test_unknown_difficulties_are_refused():
-    with pytest.raises(ValueError, match=r"^difficulty = "):
-        layouts.single_pot(np.random.default_rng(0), "very hard")

@@ -90,7 +90,7 @@ def test_what_the_stroke_says_of_snookers_does_not_count():
 def test_it_is_the_referees_verdict():
     rng = np.random.default_rng(0)
     for _ in range(50):
-        positions, on_table = layouts.random(rng, 5)
+        positions, on_table = layouts.layout("random:5", rng)
         situation = Situation(on_table=mask_of(np.flatnonzero(on_table)), ball_on=BallOn(int(rng.integers(0, 2))))
         balls = [0, *range(1, 6), *range(YELLOW, 22)]
         stroke = Stroke(first=1 << int(rng.choice(balls[1:])), potted=mask_of(rng.choice(balls, int(rng.integers(0, 3)), replace=False)))

@@ -1,0 +1,228 @@
+"""How fast are whole steps, and what are they spent on? The vector environment on one and two threads, single tables, and PPO's split.
+
+    python -m benchmarks.vector [--seconds 2] [--repeats 5] [--tables 1024] [--json FILE]
+
+Random actions on opened 22-ball tables; a step is one shot with everything around it (SAME_STEP: a visit that ends is followed by a new
+one within the step, so every step holds a shot). Steps a second are medians over ``--repeats`` rounds in which the kinds take turns, so
+that a busy machine slows all alike. Outside the engine: the same shots, from the same strikes, by the engine's kernel alone, and what is
+left of the step. Threads: what two threads give must be read against the control, plain arithmetic on two threads at the same time.
+"""
+
+import argparse
+import json
+import os
+import platform
+import threading
+import time
+
+import gymnasium
+import numba
+import numpy as np
+from gymnasium.vector import AutoresetMode
+
+import snooker_env
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.envs.visit import Visits, Work
+
+SIZES = (1, 4, 16, 64, 256, 1024, 4096)
+
+
+@numba.njit(nogil=True)
+def _spin(n):
+    x = 0.5
+    for _ in range(n):
+        x = np.sin(x) + 0.1
+    return x
+
+
+def control(n=3_000_000):
+    """How many times as much plain arithmetic two threads do in the time of one."""
+    _spin(1)
+    times = []
+    for count in (1, 2):
+        threads = [threading.Thread(target=_spin, args=(n,)) for _ in range(count)]
+        start = time.perf_counter()
+        for t in threads:
+            t.start()
+        for t in threads:
+            t.join()
+        times.append(time.perf_counter() - start)
+    return 2.0 * times[0] / times[1]
+
+
+def rate(step, tables, seconds):
+    """Steps of a table a second; ``step(k)`` plays all tables once."""
+    start, k = time.perf_counter(), 0
+    while True:
+        step(k)
+        k += 1
+        took = time.perf_counter() - start
+        if took >= seconds:
+            return k * tables / took
+
+
+def stepper(env, seed=0):
+    """``step(k)`` of a vector environment with random actions, drawn beforehand."""
+    env.reset(seed=seed)
+    actions = np.random.default_rng(seed).uniform(-1.0, 1.0, (16, *env.action_space.shape)).astype(np.float32)
+    env.step(actions[0])
+    return lambda k: env.step(actions[k % 16])
+
+
+def single(seed=0):
+    """``step(k)`` of one ``SnookerEnv``, with a reset after each end."""
+    env = SnookerEnv()
+    env.reset(seed=seed)
+    actions = np.random.default_rng(seed).uniform(-1.0, 1.0, (1024, 4)).astype(np.float32)
+
+    def step(k):
+        if env.step(actions[k % 1024])[2]:
+            env.reset()
+
+    step(0)
+    return step
+
+
+def native(n, threads):
+    """The vector environment of n tables."""
+    return SnookerVectorEnv(n, threads=threads, autoreset_mode=AutoresetMode.SAME_STEP)
+
+
+def rates(tables, seconds, repeats):
+    """Medians of steps a second of every kind, the kinds taking turns."""
+    mode = {"autoreset_mode": AutoresetMode.SAME_STEP}
+    sync = gymnasium.make_vec("Snooker-v0", 16, vectorization_mode="sync", vector_kwargs=mode)
+    kinds = {
+        "one thread": (stepper(native(tables, 1)), tables), "two threads": (stepper(native(tables, 2)), tables),
+        "SyncVectorEnv, 16 tables": (stepper(sync), 16), "single table": (single(), 1),
+    }  # fmt: skip
+    rounds = [{name: rate(step, n, seconds) for name, (step, n) in kinds.items()} | {"control": control()} for _ in range(repeats)]
+    out = {name: float(np.median([r[name] for r in rounds])) for name in rounds[0]}
+    out["two threads over one"] = float(np.median([r["two threads"] / r["one thread"] for r in rounds]))
+    return out
+
+
+class Recorded:
+    """Notes what the engine is given, so that the same shots can be played by it alone."""
+
+    def __init__(self):
+        self.original, self.shots = Visits._run, []
+
+    def __enter__(self):
+        def run(visits, work, m):
+            self.shots.append([a[:m].copy() for a in (work.r, work.v, work.w, work.here)])
+            self.original(visits, work, m)
+
+        setattr(Visits, "_run", run)  # noqa: B010 - the parameter is not called self
+        return self
+
+    def __exit__(self, *_):
+        setattr(Visits, "_run", self.original)  # noqa: B010
+
+
+def outside(tables, repeats):
+    """Microseconds of a step, of the same shots by the engine alone, and the share outside it; medians of neighbouring timings."""
+    env = native(tables, 1)
+    step, pairs = stepper(env), []
+    for k in range(1, repeats + 1):
+        visits = env.visits
+        before = [a.copy() for a in (visits.positions, visits.on_table, visits.game, visits.streams)]
+        with Recorded() as recorded:
+            step(k)
+        for a, old in zip((visits.positions, visits.on_table, visits.game, visits.streams), before, strict=True):
+            a[:] = old
+        work = Work(len(recorded.shots[0][0]))
+        engine = 0.0
+        for shots in recorded.shots:
+            for target, source in zip((work.r, work.v, work.w, work.here), shots, strict=True):
+                target[: len(source)] = source
+            start = time.perf_counter()
+            visits._run(work, len(shots[0]))
+            engine += time.perf_counter() - start
+        start = time.perf_counter()
+        step(k)
+        whole = time.perf_counter() - start
+        pairs.append((whole / tables * 1e6, engine / tables * 1e6, 1.0 - engine / whole))
+    step_us, engine_us, share = np.median(pairs, axis=0).tolist()
+    return {"step [us]": step_us, "engine alone [us]": engine_us, "outside the engine": share}
+
+
+def sizes(seconds):
+    """Steps a second on one thread by number of tables."""
+    return {n: rate(stepper(native(n, 1)), n, seconds) for n in SIZES}
+
+
+def ppo(steps, envs):
+    """Seconds that PPO spends in the environment, in its updates and in the rest, for ``steps`` shots; None without SB3."""
+    try:
+        import torch
+        from stable_baselines3 import PPO
+
+        from snooker_env.sb3 import SnookerVecEnv
+    except ImportError:
+        return None
+    torch.set_num_threads(1)
+    spent = {"environment": 0.0, "update": 0.0, "whole": 0.0}
+
+    class Timed(SnookerVecEnv):
+        def step_wait(self):
+            start = time.perf_counter()
+            out = super().step_wait()
+            spent["environment"] += time.perf_counter() - start
+            return out
+
+    class TimedPPO(PPO):
+        def train(self):
+            start = time.perf_counter()
+            super().train()
+            spent["update"] += time.perf_counter() - start
+
+    tables = Timed(envs, aim="target", threads=1)
+    model = TimedPPO("MlpPolicy", tables, n_steps=max(8, 2048 // envs), batch_size=256, n_epochs=10, seed=0, device="cpu")
+    start = time.perf_counter()
+    model.learn(steps)
+    spent["whole"] = time.perf_counter() - start
+    spent["policy and bookkeeping"] = spent["whole"] - spent["environment"] - spent["update"]
+    return {"shots": model.num_timesteps, "tables": envs, **spent}
+
+
+def show(found):
+    """Print the figures."""
+    r, o = found["rates"], found["outside"]
+    print(f"\nrandom actions, opened 22-ball tables, {found['tables']} tables           steps/s")
+    for name in ("one thread", "two threads", "SyncVectorEnv, 16 tables", "single table"):
+        print(f"  {name:<58}{r[name]:>9,.0f}")
+    print(f"  two threads over one {r['two threads over one']:.2f} (plain arithmetic on two threads over one: {r['control']:.2f})")
+    share = 100 * o["outside the engine"]
+    print(f"a step {o['step [us]']:.1f} us, the engine alone {o['engine alone [us]']:.1f} us: {share:.1f} % outside it")
+    print("tables:  " + "".join(f"{n:>9}" for n in found["sizes"]))
+    print("steps/s: " + "".join(f"{x:>9,.0f}" for x in found["sizes"].values()))
+    for p in found["ppo"] or ():
+        parts = ", ".join(f"{name} {100 * p[name] / p['whole']:.0f} %" for name in ("environment", "policy and bookkeeping", "update"))
+        print(f"PPO, {p['tables']:>3} tables, one thread: {p['shots'] / p['whole']:,.0f} shots/s: {parts}")
+
+
+def main():
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seconds", type=float, default=2.0, help="of each timing")
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--tables", type=int, default=1024)
+    parser.add_argument("--ppo-steps", type=int, default=16384)
+    parser.add_argument("--json")
+    args = parser.parse_args()
+    snooker_env.warmup()
+    found = {
+        "machine": platform.platform(), "processors": os.cpu_count(), "tables": args.tables,
+        "rates": rates(args.tables, args.seconds, args.repeats), "outside": outside(args.tables, 4 * args.repeats),
+        "sizes": sizes(args.seconds), "ppo": [p for p in (ppo(args.ppo_steps, n) for n in (16, 64)) if p],
+    }  # fmt: skip
+    show(found)
+    if args.json:
+        with open(args.json, "w") as file:
+            json.dump(found, file, indent=1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,98 @@
+"""How does Stable-Baselines3 train on many tables at once? ``SnookerVecEnv``: its ``VecEnv`` on the native vector environment.
+
+    from snooker_env.sb3 import SnookerVecEnv
+    PPO("MlpPolicy", SnookerVecEnv(64, aim="target")).learn(100_000)
+"""
+
+import time
+
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.vec_env import VecEnv
+
+from ._check import choice, refuse
+from .envs.vector import SnookerVectorEnv
+from .envs.visit import COUNTS, REALS
+
+
+class SnookerVecEnv(VecEnv):
+    """``num_envs`` tables as SB3 takes them; all other arguments are those of ``SnookerVectorEnv``.
+
+    A step that ends a visit starts the next one. Its info holds ``terminal_observation``, ``TimeLimit.truncated`` and, as a ``Monitor``
+    around each table would give it, ``episode`` with the reward "r", the length "l" and the time "t" [s]. Other infos are left out, ten
+    entries for each table at each step being slow, but for those named in ``info_keys``.
+    """
+
+    def __init__(self, num_envs, *, info_keys=(), **kwargs):
+        if "autoreset_mode" in kwargs:
+            raise refuse("autoreset_mode", kwargs["autoreset_mode"], "must be left out: Stable-Baselines3 needs SAME_STEP")
+        self.tables = SnookerVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **kwargs)
+        self.info_keys = tuple(choice("info_keys", key, (*REALS, *COUNTS, "foul")) for key in info_keys)
+        super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
+        self._actions = None
+        self._returns, self._lengths = np.zeros(num_envs), np.zeros(num_envs, np.int64)
+        self._start = time.time()
+
+    def reset(self):
+        """New visits on all tables, with the seeds and options set before."""
+        options = None
+        if any(self._options):
+            if not all(set(own) == {"state"} for own in self._options):
+                raise refuse("options", self._options[0], 'must be {"state": ...} for each table, or nothing')
+            options = {"states": [own["state"] for own in self._options]}
+        observation, info = self.tables.reset(seed=self._seeds, options=options)
+        self.reset_infos = [{key: info[key][k] for key in self.info_keys} for k in range(self.num_envs)]
+        self._reset_seeds()
+        self._reset_options()
+        self._returns[:], self._lengths[:] = 0.0, 0
+        return observation
+
+    def step_async(self, actions):
+        """Note the actions."""
+        self._actions = actions
+
+    def step_wait(self):
+        """Play them: observations, rewards (float32), ends, infos."""
+        observation, rewards, terminated, truncated, info = self.tables.step(self._actions)
+        done = terminated | truncated
+        self._returns += rewards
+        self._lengths += 1
+        infos = [{} for _ in range(self.num_envs)]
+        for key in self.info_keys:
+            values = np.where(done, info["final_info"][key], info[key]) if "final_info" in info else info[key]
+            for own, value in zip(infos, values.tolist(), strict=True):
+                own[key] = value
+        now = round(time.time() - self._start, 6)
+        for k in np.flatnonzero(done).tolist():
+            episode = {"r": round(float(self._returns[k]), 6), "l": int(self._lengths[k]), "t": now}
+            infos[k]["episode"], infos[k]["terminal_observation"] = episode, info["final_obs"][k]
+            infos[k]["TimeLimit.truncated"] = bool(truncated[k] and not terminated[k])
+        self._returns[done], self._lengths[done] = 0.0, 0
+        return observation, rewards.astype(np.float32), done, infos
+
+    def close(self):
+        """End the threads."""
+        self.tables.close()
+
+    def get_images(self):
+        """A picture of each table."""
+        return self.tables.render()
+
+    def get_attr(self, attr_name, indices=None):
+        """An attribute of the vector environment, the same for each table asked for."""
+        return [getattr(self.tables, attr_name) for _ in self._get_indices(indices)]
+
+    def set_attr(self, attr_name, value, indices=None):
+        """Not to be had: the tables share everything."""
+        raise AttributeError(f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv")
+
+    def env_method(self, method_name, *method_args, indices=None, **method_kwargs):
+        """``get_state`` of the tables asked for; no other method belongs to one table."""
+        choice("method_name", method_name, ("get_state",))
+        states = self.tables.get_state()
+        return [states[k] for k in self._get_indices(indices)]
+
+    def env_is_wrapped(self, wrapper_class, indices=None):
+        """No table is wrapped, but each reports its episodes as a ``Monitor`` would."""
+        return [issubclass(wrapper_class, Monitor) for _ in self._get_indices(indices)]

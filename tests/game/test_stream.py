@@ -1,0 +1,102 @@
+"""Are the random numbers of the kernels the generator's that they say, uniform, normal, and independent between streams?"""
+
+import numba
+import numpy as np
+import pytest
+from scipy import stats
+
+from snooker_env.game import stream
+
+
+@numba.njit
+def block(words):
+    return stream.philox(words[0], words[1], words[2], words[3], words[4], words[5])
+
+
+@numba.njit
+def pairs(state, out):
+    for k in range(len(out)):
+        out[k, 0], out[k, 1] = stream.pair(state)
+
+
+@numba.njit
+def gaussians(state, out):
+    for k in range(len(out)):
+        out[k, 0], out[k, 1] = stream.normals(state)
+
+
+def drawn(fill, key, n, counter=0):
+    out = np.empty((n, 2))
+    fill(np.array([key, counter], np.uint64), out)
+    return out
+
+
+@pytest.mark.parametrize(
+    ("counter", "key", "expected"),
+    [
+        ("00000000 00000000 00000000 00000000", "00000000 00000000", "6627e8d5 e169c58d bc57ac4c 9b00dbd8"),
+        ("ffffffff ffffffff ffffffff ffffffff", "ffffffff ffffffff", "408f276d 41c83b0e a20bc7c6 6d5451fd"),
+        ("243f6a88 85a308d3 13198a2e 03707344", "a4093822 299f31d0", "d16cfe09 94fdcceb 5001e420 24126ea1"),
+    ],
+)
+def test_blocks_are_those_of_the_authors(counter, key, expected):
+    """Known answers of Random123, the authors' own library (kat_vectors, philox4x32 10)."""
+    words = np.array([int(word, 16) for word in f"{counter} {key}".split()], np.uint64)
+    assert [f"{int(word):08x}" for word in block(words)] == expected.split()
+
+
+def test_blocks_are_those_of_a_plain_reading_of_the_paper():
+    def plain(c, k):
+        for _ in range(10):
+            p0, p1 = 0xD2511F53 * c[0], 0xCD9E8D57 * c[2]
+            c = [(p1 >> 32) ^ c[1] ^ k[0], p1 % 2**32, (p0 >> 32) ^ c[3] ^ k[1], p0 % 2**32]
+            k = [(k[0] + 0x9E3779B9) % 2**32, (k[1] + 0xBB67AE85) % 2**32]
+        return c
+
+    for words in np.random.default_rng(0).integers(0, 2**32, (50, 6), dtype=np.uint64):
+        assert [int(w) for w in block(words)] == plain([int(w) for w in words[:4]], [int(w) for w in words[4:]])
+
+
+def test_a_draw_takes_one_block_and_can_be_found_again():
+    state = np.array([7, 2**40], np.uint64)
+    out = np.empty((3, 2))
+    pairs(state, out)
+    assert state.tolist() == [7, 2**40 + 3]
+    assert np.array_equal(drawn(pairs, 7, 1, 2**40 + 2)[0], out[2])
+    words = [int(w) for w in block(np.array([0, 2**8, 0, 0, 7, 0], np.uint64))]  # counter 2^40 = 2^8 in the upper word
+    assert out[0].tolist() == [(words[0] + (words[1] << 32) >> 11) * 2.0**-53, (words[2] + (words[3] << 32) >> 11) * 2.0**-53]
+
+
+def test_uniform_numbers_are_uniform():
+    """200 000 of them: chi-square over 100 bins, each coordinate and the two together; each at 0.1 %."""
+    x = drawn(pairs, 12345, 100_000)
+    assert x.min() >= 0.0 and x.max() < 1.0
+    for column in x.T:
+        assert stats.chisquare(np.histogram(column, 100, (0, 1))[0]).pvalue > 1e-3
+        assert abs(np.corrcoef(column[1:], column[:-1])[0, 1]) < 4 / np.sqrt(len(column))
+    assert stats.chisquare(np.histogram2d(*x.T, 20, ((0, 1), (0, 1)))[0].ravel()).pvalue > 1e-3
+
+
+def test_normal_numbers_are_normal():
+    z = drawn(gaussians, 2**63 + 5, 100_000)
+    for column in z.T:
+        assert stats.kstest(column, "norm").pvalue > 1e-3
+    n = z.size
+    moments = [(z**k).mean() for k in (1, 2, 3, 4)]
+    assert moments == pytest.approx([0, 1, 0, 3], abs=4 * np.sqrt(96 / n))  # the fourth power has variance 96, the others less
+    assert abs(np.corrcoef(z.T)[0, 1]) < 4 / np.sqrt(len(z))
+
+
+def test_streams_of_neighbouring_keys_are_unrelated():
+    first = np.array([drawn(pairs, key, 1)[0, 0] for key in range(20_000)])
+    assert stats.kstest(first, "uniform").pvalue > 1e-3
+    assert abs(np.corrcoef(first[1:], first[:-1])[0, 1]) < 4 / np.sqrt(len(first))
+
+
+def test_keys_come_from_the_generator():
+    one, two = stream.stream_of(np.random.default_rng(1)), stream.stream_of(np.random.default_rng(1))
+    assert np.array_equal(one, two) and one.dtype == np.uint64 and one[1] == 0
+    rng = np.random.default_rng(1)
+    assert stream.stream_of(rng)[0] != stream.stream_of(rng)[0]
+    with pytest.raises(ValueError, match="Generator"):
+        stream.stream_of(np.random.RandomState(0))

@@ -1,0 +1,144 @@
+"""Is ``SnookerVecEnv`` to Stable-Baselines3 what ``DummyVecEnv`` of monitored single tables is, and does PPO run on it?"""
+
+import warnings
+
+import numpy as np
+import pytest
+
+pytest.importorskip("stable_baselines3")
+from stable_baselines3 import PPO, SAC
+from stable_baselines3.common.env_util import make_vec_env
+from stable_baselines3.common.evaluation import evaluate_policy
+
+from agents import visits
+from snooker_env.envs.visit import COUNTS, REALS
+from snooker_env.sb3 import SnookerVecEnv
+from train import Settings
+
+KEYS = (*REALS, *COUNTS, "foul")
+
+
+def both(n, **options):
+    ours = SnookerVecEnv(n, info_keys=KEYS, **options)
+    ours.seed(5)
+    return ours, make_vec_env("Snooker-v0", n, env_kwargs=options, seed=5)
+
+
+def equal(a, b):
+    if isinstance(a, dict):
+        return set(a) == set(b) and all(equal(a[key], b[key]) for key in a)
+    return np.array_equal(a, b) and getattr(a, "dtype", None) == getattr(b, "dtype", None)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"aim": "target", "noise": "club", "layout": "random:5"},
+        {"aim": "target", "observation": "balls", "layout": "random:5", "reward": "points_and_fouls"},
+        {"aim": "target", "max_episode_steps": 2, "layout": "random:3"},
+    ],
+    ids=["flat", "balls", "limit"],
+)
+def test_it_gives_what_dummy_vec_env_gives(options):
+    """Observations, rewards, ends, infos, terminal observations, episodes: all but the clock."""
+    ours, theirs = both(6, **options)
+    assert ours.observation_space == theirs.observation_space and ours.action_space == theirs.action_space
+    assert equal(ours.reset(), theirs.reset())
+    rng, ends, cut = np.random.default_rng(0), 0, 0
+    for _ in range(40):
+        a = rng.uniform(-1, 1, (6, 4)).astype(np.float32)
+        a[:, 1:4] *= 0.2
+        (o, r, d, infos), (o2, r2, d2, infos2) = ours.step(a), theirs.step(a)
+        assert equal(o, o2) and equal(r, r2) and equal(d, d2)
+        for k in range(6):
+            info, other = infos[k], dict(infos2[k])
+            if not d[k]:
+                assert other.pop("TimeLimit.truncated") is False
+            else:
+                ends, cut = ends + 1, cut + info["TimeLimit.truncated"]
+                assert info["episode"].pop("t") >= 0 and other["episode"].pop("t") >= 0
+            assert set(info) == set(other) and all(equal(info[key], other[key]) for key in info)
+            assert all(type(info[key]) is type(other[key]) for key in KEYS)
+    assert ends > 60 and (cut > 5) == ("max_episode_steps" in options)
+
+
+def test_infos_are_empty_unless_something_is_to_say():
+    env = SnookerVecEnv(8)
+    env.reset()
+    _, _, done, infos = env.step(np.zeros((8, 4), np.float32))
+    assert [set(info) for info in infos] == [{"episode", "terminal_observation", "TimeLimit.truncated"} if d else set() for d in done]
+    assert env.reset_infos == [{}] * 8
+
+
+def test_terminal_observations_stay_what_they_were():
+    env = SnookerVecEnv(8)
+    env.reset()
+    a = np.full((8, 4), -1.0, np.float32)
+    infos = env.step(a)[3]
+    kept = [info["terminal_observation"].copy() for info in infos]
+    following = env.step(a)[3]
+    assert all(np.array_equal(info["terminal_observation"], old) for info, old in zip(infos, kept, strict=True))
+    assert not np.array_equal(following[0]["terminal_observation"], kept[0])
+
+
+def test_states_are_saved_and_restored():
+    env = SnookerVecEnv(3, noise="club")
+    env.seed(1)
+    env.reset()
+    states = env.env_method("get_state")
+    a = np.full((3, 4), 0.2, np.float32)
+    want = env.step(a)[:3]
+    env.set_options([{"state": state} for state in states])
+    env.reset()
+    assert all(map(np.array_equal, want, env.step(a)[:3]))
+    assert env.env_method("get_state", indices=[1])[0]["stream"] == env.env_method("get_state")[1]["stream"]
+    env.set_options({"layout": 1})
+    with pytest.raises(ValueError, match="options"):
+        env.reset()
+
+
+def test_attributes():
+    env = SnookerVecEnv(2)
+    assert env.get_attr("num_envs") == [2, 2] and env.has_attr("shooter") and not env.has_attr("no_such")
+    with pytest.raises(AttributeError, match="cannot be set"):
+        env.set_attr("observation", "balls")
+    with pytest.raises(ValueError, match="method_name"):
+        env.env_method("step")
+    with pytest.raises(ValueError, match="autoreset_mode"):
+        SnookerVecEnv(2, autoreset_mode="NextStep")
+    with pytest.raises(ValueError, match="info_keys"):
+        SnookerVecEnv(2, info_keys=("score",))
+
+
+@pytest.mark.parametrize("observation", ["flat", "balls"])
+def test_ppo_and_sac_learn_on_it_without_a_warning(observation):
+    policy = "MlpPolicy" if observation == "flat" else "MultiInputPolicy"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env = SnookerVecEnv(8, observation=observation, aim="target")
+        model = PPO(policy, env, n_steps=16, batch_size=64, n_epochs=1, seed=0, device="cpu").learn(256)
+        assert model.num_timesteps == 256 and len(model.ep_info_buffer) > 0 and "l" in model.ep_info_buffer[0]
+        SAC(policy, env, learning_starts=16, buffer_size=100, seed=0, device="cpu").learn(64)
+        evaluate_policy(model, env, n_eval_episodes=4)
+    env.close()
+
+
+def test_the_pots_are_shown_for_all_tables_as_for_one():
+    settings = Settings(envs=5, noise="club")
+    many, one = visits.make_envs(settings), visits.make_env(settings)
+    many.seed(11)
+    shown = many.reset()
+    assert many.observation_space == one.observation_space
+    assert np.array_equal(shown[0], one.reset(seed=11)[0])
+    rng = np.random.default_rng(0)
+    ended = 0
+    for _ in range(10):
+        a = rng.uniform(-0.3, 0.3, (5, 4)).astype(np.float32)
+        shown, _, done, infos = many.step(a)
+        mine, _, over, _, _ = one.step(a[0])
+        if over:
+            ended += 1
+            assert np.array_equal(infos[0]["terminal_observation"], mine)
+            mine, _ = one.reset()
+        assert done[0] == over and np.array_equal(shown[0], mine)
+    assert ended > 2

@@ -1,0 +1,364 @@
+"""Does the native vector environment play, bit for bit, what ``SyncVectorEnv`` plays, in every mode and for any number of threads?"""
+
+import copy
+import pickle
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import data_equivalence
+from gymnasium.vector import AutoresetMode
+
+import snooker_env as sn
+from snooker_env.envs import vector, visit
+from snooker_env.envs.shooting import strike
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import SnookerVectorEnv
+
+MODES = list(AutoresetMode)
+
+
+def native(n, **options):
+    return gymnasium.make_vec("Snooker-v0", n, vectorization_mode="vector_entry_point", **options)
+
+
+def sync(n, mode, **options):
+    return gymnasium.make_vec("Snooker-v0", n, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **options)
+
+
+def same(a, b):
+    """Equal in every bit, type and key; arrays of objects element by element."""
+    if isinstance(a, dict):
+        return isinstance(b, dict) and set(a) == set(b) and all(same(a[key], b[key]) for key in a)
+    if isinstance(a, np.ndarray) and a.dtype == object:
+        return b.dtype == object and all((x is None) == (y is None) and (x is None or same(x, y)) for x, y in zip(a, b, strict=True))
+    if isinstance(a, tuple | list):
+        return len(a) == len(b) and all(map(same, a, b))
+    return data_equivalence(a, b, exact=True)
+
+
+def actions_of(env, rng, aim):
+    """Random actions; with a target mostly such that some pots come."""
+    a = rng.uniform(-1.0, 1.0, env.action_space.shape).astype(np.float32)
+    if aim == "target":
+        a[:, 1:4] *= 0.2
+    return a
+
+
+def check_equal(n, mode, steps, *, threads=None, seed=3, **options):
+    """Play both side by side; returns how many visits ended, and how many were truncated."""
+    ours, theirs = native(n, autoreset_mode=mode, threads=threads, **options), sync(n, mode, **options)
+    assert ours.observation_space == theirs.observation_space and ours.action_space == theirs.action_space
+    assert ours.single_observation_space == theirs.single_observation_space
+    assert same(ours.reset(seed=seed), theirs.reset(seed=seed))
+    rng, done, ends, cut, scored = np.random.default_rng(1), np.zeros(n, bool), 0, 0, 0.0
+    for step in range(steps):
+        if mode == AutoresetMode.DISABLED and done.any():
+            got = ours.reset(options={"reset_mask": done.copy()})
+            assert same(got, theirs.reset(options={"reset_mask": done.copy()})), step
+        a = actions_of(ours, rng, options.get("aim"))
+        got, want = ours.step(a), theirs.step(a)
+        for x, y, name in zip(got, want, ("observations", "rewards", "terminated", "truncated", "infos"), strict=True):
+            assert same(x, y), (step, name, x, y)
+        done = got[2] | got[3]
+        ends, cut, scored = ends + done.sum(), cut + got[3].sum(), scored + np.maximum(got[1], 0.0).sum()
+    ours.close(), theirs.close()
+    return ends, cut, scored
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"aim": "target", "noise": "club", "layout": "random:5", "reward": "points_and_fouls"},
+        {"aim": "target", "observation": "balls", "layout": "break_off", "placement": True, "elevation": True, "reward": "pots"},
+        {"aim": "target", "noise": "olympiad", "layout": "pots:easy", "physics": "match", "table": "tight"},
+        {"aim": "target", "max_episode_steps": 2, "layout": "random:3", "observation": "balls"},
+        {"noise": {"aim_deg": 0.3}, "layout": "snookered", "fidelity": "fast"},
+    ],
+    ids=["plain", "noise", "balls", "match", "limit", "snookered"],
+)
+def test_it_equals_sync_vector_env(mode, options):
+    ends, cut, scored = check_equal(9, mode, 60, **options)
+    assert ends > 50 and (cut > 5) == ("max_episode_steps" in options)
+    assert scored > 0 or options.get("aim") != "target" or options["layout"] == "break_off"
+
+
+@pytest.mark.parametrize("layout", ["held_out", "line_up", "colours", "random:0", "pots:hard"])
+def test_every_layout_is_dealt_alike(layout):
+    assert check_equal(5, AutoresetMode.SAME_STEP, 20, layout=layout, aim="target", noise="professional")[0] > 10
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_hundreds_of_steps_for_any_number_of_threads(threads):
+    assert check_equal(33, AutoresetMode.SAME_STEP, 250, threads=threads, aim="target", noise="amateur", layout="random:4")[0] > 4000
+
+
+def test_numbers_of_tables_and_threads_do_not_matter(monkeypatch):
+    """Table k of few is table k of many, whatever the chunks."""
+    runs = []
+    for n, threads, chunk in [(9, 1, 128), (9, 1, 2), (300, 1, 128), (300, 3, 7), (300, 8, 64)]:
+        monkeypatch.setattr(vector, "CHUNK", chunk)
+        env = native(n, threads=threads, noise="club", aim="target", autoreset_mode=AutoresetMode.SAME_STEP)
+        out = [env.reset(seed=5)[0][:9]]
+        for step in range(10):
+            out += [part[:9] for part in env.step(np.full((n, 4), 0.1 * step - 0.5))[:4]]
+        runs.append(pickle.dumps([part.tobytes() for part in out]))
+        env.close()
+    assert len(set(runs)) == 1
+
+
+# Seeds
+
+
+def test_seeds_none_int_and_list():
+    env = native(4)
+    a, _ = env.reset(seed=7)
+    b, _ = env.reset(seed=[7, 8, 9, 10])
+    assert np.array_equal(a, b)
+    for k in range(4):
+        assert np.array_equal(SnookerEnv().reset(seed=7 + k)[0], a[k])
+    assert env.np_random_seed == (7, 8, 9, 10)
+    c, _ = env.reset(seed=[7, None, 9, None])
+    assert np.array_equal(a[[0, 2]], c[[0, 2]]) and not (a[1] == c[1]).all() and not (a[3] == c[3]).all()
+    d, _ = env.reset()
+    assert not any((x == y).all() for x, y in zip(c, d, strict=True))
+    for look in (lambda env: None, lambda env: env.np_random, lambda env: env.get_state()):  # before the first reset, and without a seed
+        env = native(50, layout="random:3")
+        look(env)
+        assert len({row.tobytes() for row in env.reset()[0]}) == 50
+    with pytest.raises(ValueError, match="seed = 3 seeds"):
+        native(4).reset(seed=[1, 2, 3])
+
+
+def test_a_mask_resets_only_those():
+    for mode in MODES:
+        env, other = native(6, autoreset_mode=mode, aim="target", layout="random:6"), sync(6, mode, aim="target", layout="random:6")
+        assert same(env.reset(seed=1), other.reset(seed=1))
+        a = np.zeros((6, 4), np.float32)
+        assert same(env.step(a), other.step(a))
+        mask = np.array([True, False, True, False, False, True])
+        assert same(env.reset(seed=20, options={"reset_mask": mask.copy()}), other.reset(seed=20, options={"reset_mask": mask.copy()}))
+
+
+@pytest.mark.parametrize("mask", [[True, False], np.array([True]), np.array([1, 0]), np.zeros(2, bool)])
+def test_wrong_masks_are_refused(mask):
+    env = native(2)
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match="reset_mask"):
+        env.reset(options={"reset_mask": mask})
+
+
+# The contract
+
+
+@pytest.mark.parametrize("observation", ["flat", "balls"])
+@pytest.mark.parametrize("mode", MODES)
+def test_what_is_returned_is_the_callers_own(observation, mode):
+    """Spoiling every array that was returned changes nothing that comes later."""
+    options = {"observation": observation, "autoreset_mode": mode, "noise": "club", "layout": "random:3", "max_episode_steps": 3}
+    clean, spoiled = native(8, **options), native(8, **options)
+    want, got = clean.reset(seed=1), spoiled.reset(seed=1)
+
+    def spoil(x):
+        if isinstance(x, dict):
+            for value in x.values():
+                spoil(value)
+        elif isinstance(x, np.ndarray) and x.dtype == object:
+            for value in x:
+                spoil(value)
+        elif isinstance(x, np.ndarray):
+            x[...] = True if x.dtype == bool else 1
+
+    a = np.random.default_rng(0).uniform(-1, 1, (10, 8, 4))
+    for k in range(10):
+        assert same(want, got)
+        done = (want[2] | want[3]).copy() if len(want) == 5 else np.zeros(8, bool)
+        for part in got:
+            spoil(part)
+        mine = a[k].copy()
+        if mode == AutoresetMode.DISABLED and done.any():
+            clean.reset(options={"reset_mask": done.copy()})
+            for part in spoiled.reset(options={"reset_mask": done}):
+                spoil(part)
+            done[:] = True
+        want, got = clean.step(a[k]), spoiled.step(mine)
+        mine[:] = 9.0
+    assert same(want, got)
+
+
+def test_spaces_types_and_metadata():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env = native(5, aim="target")
+    assert isinstance(env, SnookerVectorEnv) and env.num_envs == 5 and env.spec.id == "Snooker-v0"
+    assert env.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP is env.autoreset_mode
+    assert native(2, autoreset_mode="SameStep").metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
+    assert "autoreset_mode" not in SnookerEnv.metadata
+    observations, infos = env.reset(seed=0)
+    assert observations in env.observation_space and observations.dtype == np.float32
+    observations, rewards, terminated, truncated, infos = env.step(env.action_space.sample())
+    assert observations in env.observation_space and rewards.dtype == np.float64 and rewards.shape == (5,)
+    assert terminated.dtype == truncated.dtype == bool and infos["seconds"].dtype == np.float64 and infos["pots"].dtype == np.int64
+    assert gymnasium.make_vec(env.spec).num_envs == 5
+    gymnasium.wrappers.vector.RecordEpisodeStatistics(env).reset(seed=1)
+
+
+def test_it_must_be_reset_first():
+    env = native(3)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(np.zeros((3, 4)))
+    with pytest.raises(gymnasium.error.ResetNeeded, match="table 1"):
+        env.reset(options={"reset_mask": np.array([True, False, True])})
+    env = native(3, autoreset_mode=AutoresetMode.DISABLED)
+    env.reset(seed=0)
+    env.step(np.full((3, 4), -1.0))  # as soft as can be: all miss
+    with pytest.raises(gymnasium.error.ResetNeeded, match="table 0 is over"):
+        env.step(np.zeros((3, 4)))
+
+
+def wrong(**changes):
+    a = np.zeros((3, 4))
+    for at, value in changes.items():
+        a[int(at[1]), int(at[2])] = value
+    return a
+
+
+@pytest.mark.parametrize(
+    ("actions", "message"),
+    [
+        (wrong(a21=float("nan")), r"actions\[2\] = \[0\.0, nan, 0\.0, 0\.0\]: must be finite and within \[-1, 1\]"),
+        (wrong(a13=1.0001), r"actions\[1\] = "), (wrong(a00=-np.inf, a11=2.0), r"actions\[0\] = "),
+        (np.zeros((2, 4)), r"shape \(2, 4\): must have shape \(3, 4\)"), (np.zeros((3, 5)), r"must have shape \(3, 4\)"),
+        (np.zeros(4), "must have shape"), (None, "must have shape"),
+        ([["a"] * 4] * 3, "real numbers"), ([[0.0] * 4, [0.0]], "must have shape"),
+        (np.zeros((3, 4), bool), "real numbers"),
+    ],
+)  # fmt: skip
+def test_wrong_actions_name_the_table_and_change_nothing(actions, message):
+    env = native(3, noise="club")
+    env.reset(seed=0)
+    before = env.get_state()
+    with pytest.raises(ValueError, match=message):
+        env.step(actions)
+    assert env.get_state() == before
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"task": "frame"}, 'task = \'frame\': must be "visit" here; .*"sync" or "async"'), ({"task": "x"}, "task"),
+        ({"layout": "moon"}, "layout"), ({"threads": 0}, "threads"), ({"max_episode_steps": 0}, "max_episode_steps"),
+        ({"render_mode": "human"}, "render_mode"), ({"reward": "win"}, "reward"), ({"opponent": "random"}, "opponent"),
+        ({"autoreset_mode": "never"}, "never"), ({"observation": "x"}, "observation"), ({"num_envs": 0}, "num_envs"),
+    ],
+)  # fmt: skip
+def test_wrong_arguments(options, message):
+    with pytest.raises(ValueError, match=message):
+        SnookerVectorEnv(**options)
+
+
+# States, copies, pictures, errors
+
+
+def test_states_pass_between_single_tables_and_many():
+    env = native(3, aim="target", noise="club", layout="random:6")
+    env.reset(seed=2)
+    env.step(np.zeros((3, 4)))
+    states = env.get_state()
+    going = [k for k in range(3) if not states[k]["over"]]
+    single = SnookerEnv(aim="target", noise="club", layout="random:6")
+    a = np.full((3, 4), 0.1)
+    for k in going:
+        single.set_state(states[k])
+        assert single.get_state() == states[k]
+    many = native(3, aim="target", noise="club", layout="random:6")
+    single.reset(seed=4)
+    many.reset(options={"states": [single.get_state()] * 3})
+    one, three = single.step(a[0]), many.step(a)
+    assert all(np.array_equal(row, one[0]) for row in three[0]) and three[1].tolist() == [one[1]] * 3
+    many.reset(seed=1, options={"state": states[going[0]]} if going else None)
+    with pytest.raises(ValueError, match="states"):
+        many.reset(options={"states": [states[0]]})
+    with pytest.raises(ValueError, match="options"):
+        many.reset(options={"layout": 3})
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))], ids=["deepcopy", "pickle"])
+def test_copies_play_on_alike(copied):
+    env = native(20, noise="club", threads=2)
+    env.reset(seed=3)
+    a = np.random.default_rng(0).uniform(-1, 1, (20, 4))
+    env.step(a)
+    twin = copied(env)
+    assert twin.visits.rules.plan.tables is env.visits.rules.plan.tables  # the bank is not copied
+    for _ in range(3):
+        assert same(env.step(a), twin.step(a))
+
+
+def test_pictures_of_all_tables():
+    pytest.importorskip("pygame")
+    env = native(2, render_mode="rgb_array")
+    env.reset(seed=0)
+    first, second = env.render()
+    assert first.dtype == np.uint8 and first.ndim == 3 and not np.array_equal(first, second)
+    env = native(2, render_mode="ansi")
+    env.reset(seed=0)
+    assert "break 0" in env.render()[0]
+
+
+def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
+    """The same shots with room for three events at first as with room for 512."""
+    original, runs = visit.Work.__init__, []
+    for log in (512, 3):
+        with monkeypatch.context() as patch:
+            patch.setattr(visit.Work, "__init__", lambda self, m, first=log, **more: original(self, m, first, **more))
+            env = native(20, noise="club", aim="target", autoreset_mode=AutoresetMode.SAME_STEP)
+            env.reset(seed=3)
+            runs.append([env.step(np.full((20, 4), 0.1))[:4] for _ in range(4)])
+            single = SnookerEnv(noise="club", aim="target")
+            single.reset(seed=3)
+            single.step(np.full(4, 0.1))
+            runs[-1].append((single.last_shot.events.tobytes(), single.last_shot.positions))
+    assert same(*runs)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_shot_that_cannot_be_computed_names_its_table(monkeypatch, threads):
+    monkeypatch.setattr(visit, "MAX_EVENTS", 40)
+    env = native(40, threads=threads)
+    env.reset(seed=0)
+    before = env.visits.positions.copy()
+    with pytest.raises(sn.SimulationError, match=r"the shot on table \d+ did not come to rest") as info:
+        env.step(np.full((40, 4), 0.9))
+    k = int(str(info.value).split("table ")[1].split()[0])
+    assert np.array_equal(env.visits.positions[k], before[k])
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(np.zeros((40, 4)))
+    env.reset()
+
+
+def test_a_strike_is_that_of_the_physics_bit_for_bit():
+    rng = np.random.default_rng(0)
+    for _ in range(300):
+        speed, aim, side, top, elevation = rng.uniform((0, -4, -0.35, -0.35, 0), (7, 4, 0.35, 0.35, 1.5))
+        v, w = sn.strike(speed, aim, side, top, elevation)
+        assert strike(speed, aim, side, top, elevation, sn.Physics().end_mass_ratio) == (v[0], v[1], w[0], w[1], w[2])
+
+
+def test_processes_forked_while_threads_are_kept_play_on():
+    """AsyncVectorEnv forks; the threads of a vector environment in the parent do no harm."""
+    env = native(32, threads=2)
+    env.reset(seed=0)
+    a = np.zeros((32, 4), np.float32)
+    want = env.step(a)[0]
+    forked = gymnasium.vector.AsyncVectorEnv([lambda: gymnasium.make("Snooker-v0")] * 2, context="fork")
+    try:
+        forked.reset(seed=0)
+        assert np.array_equal(forked.step(a[:2])[0], want[:2])
+    finally:
+        forked.close()
+    env.step(a)
+    env.close()
