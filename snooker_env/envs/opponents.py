@@ -51,16 +51,20 @@ class GhostBall:
 
     Without a pot it rolls full at the nearest ball on that it sees; seeing none, it strikes anywhere and hopes. In hand it takes the best
     of ten places. After a foul it always plays the table as it lies. It knows neither throw nor position. Its speed is drawn within a
-    tenth of what it wants: two exact players could repeat one failing stroke for ever.
+    tenth of what it wants, and after the other's foul it strikes anywhere one time in ten: two exact players could repeat one failing
+    stroke for ever.
     """
 
     def play(self, table, observe, rng, path):
         """One turn."""
-        if table.frame.phase == "choice":
+        fouled = table.frame.phase == "choice"
+        if fouled:
             table.choose("play")
         if table.frame.in_hand:
             self._place(table)
-        speed, aim = self.aim(table.positions, table.on_table, table.on, rng)
+        speed, aim = 3.0, rng.uniform(-pi, pi)
+        if not (fouled and rng.random() < 0.1):
+            speed, aim = self.aim(table.positions, table.on_table, table.on, rng)
         return table.play((speed * rng.uniform(0.9, 1.1), 0.0, 0.0, aim, 0.0), rng, path=path)
 
     @staticmethod

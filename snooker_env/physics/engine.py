@@ -181,13 +181,14 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
     n = positions.shape[0]
     R = phys[P_R]
     clear = clear_box(noses, jaws, falls, R)
-    n_segments = n_events = 0
+    n_segments = n_events = np.int64(0)  # (typed: a literal would have numba compile every callee twice)
     for i in range(n):
         potted[i] = -1
         best_time[i], best_ball[i], own_time[i] = inf, -1, inf
         pair[i, :] = inf
         if on_table[i]:
-            _begin(motion, state, i, 0.0, positions[i], velocities[i], spins[i], phys)
+            r, v, w = positions[i], velocities[i], spins[i]
+            _begin(motion, state, i, 0.0, (r[0], r[1]), (v[0], v[1]), (w[0], w[1], w[2]), phys)
         else:
             state[i] = GONE
             motion[i, :] = 0.0
@@ -199,7 +200,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
     status = _OK
     end = 0.0
     while True:
-        t, kind, i, j = inf, 9, -1, -1
+        t, kind, i, j = inf, np.int64(9), np.int64(-1), np.int64(-1)
         for k in range(n):
             s = best_time[k]
             if s < t or (s == t and s < inf and kind > _BALL_BALL):
