@@ -12,7 +12,6 @@ from gymnasium.vector import AutoresetMode
 
 import snooker_env as sn
 from snooker_env.envs import vector, visit
-from snooker_env.envs.shooting import strike
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 
@@ -338,14 +337,6 @@ def test_a_shot_that_cannot_be_computed_names_its_table(monkeypatch, threads):
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(np.zeros((40, 4)))
     env.reset()
-
-
-def test_a_strike_is_that_of_the_physics_bit_for_bit():
-    rng = np.random.default_rng(0)
-    for _ in range(300):
-        speed, aim, side, top, elevation = rng.uniform((0, -4, -0.35, -0.35, 0), (7, 4, 0.35, 0.35, 1.5))
-        v, w = sn.strike(speed, aim, side, top, elevation)
-        assert strike(speed, aim, side, top, elevation, sn.Physics().end_mass_ratio) == (v[0], v[1], w[0], w[1], w[2])
 
 
 def test_processes_forked_while_threads_are_kept_play_on():

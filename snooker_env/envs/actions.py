@@ -8,7 +8,7 @@ from .._check import choice, refuse, refuse_what, truth
 from .._jit import entry, kernel
 from ..game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, N_BALLS
 from ..game.pots import POT_COLUMNS, find_pots
-from ..physics import cue
+from ..physics.cue import squirt
 
 AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
@@ -19,8 +19,6 @@ MAX_ELEVATION = radians(30.0)
 
 # Places in the packed options.
 (A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET) = range(5)
-
-squirt = kernel(cue.squirt)
 
 
 @kernel

@@ -1,7 +1,5 @@
 """How is a shot carried out, and what does the referee see of it? Noise, strike and engine in one; the event log read as a ``Stroke``."""
 
-from math import cos, sin
-
 import numpy as np
 
 from .._check import refuse
@@ -14,7 +12,7 @@ from ..physics.engine import EventKind
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..simulation import play
-from .actions import Actions, squirt
+from .actions import Actions
 from .noise import Noise
 
 AT_ONCE = 1e-9
@@ -22,16 +20,6 @@ AT_ONCE = 1e-9
 
 _BITS = 1 << np.arange(N_BALLS)
 _BALL_BALL = int(EventKind.BALL_BALL)
-
-
-@kernel
-def strike(speed, aim, side, top, elevation, end_mass_ratio):
-    """``physics.cue.strike`` for a snooker ball and an offset known to be no miscue: vx, vy [m/s] and wx, wy, wz [rad/s]."""
-    aim += squirt(side, end_mass_ratio)
-    c, s, ce, se = cos(aim), sin(aim), cos(elevation), sin(elevation)
-    q = 2.5 * speed / BALL_RADIUS
-    w = (q * (side * se * c - top * s), q * (side * se * s + top * c), q * side * ce)
-    return speed * ce * c, speed * ce * s, w[0], w[1], w[2]
 
 
 @kernel

@@ -17,14 +17,14 @@ from ..game.pots import POT_COLUMNS
 from ..game.ruling import VISIT
 from ..game.settle import settle_visit
 from ..game.stream import stream_of
-from ..physics import cloth, engine
+from ..physics import cloth, cue, engine
 from ..physics.engine import Status
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from .actions import A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, place_of, shot_of, tip_on_disc
 from .noise import executed
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
-from .shooting import Shooter, first_struck, strike, touching_balls
+from .shooting import Shooter, first_struck, touching_balls
 
 # Columns of the game's state. STEPS counts the strokes of the visit, for a limit on them.
 (BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
@@ -66,7 +66,9 @@ def _address(actions, waiting, positions, on_table, game, streams, options, nois
         speed, side, top, aim, elevation = executed(*intended, noise, streams[k])
         side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
         shot = shots[k]
-        shot[VX], shot[VY], shot[WX], shot[WY], shot[WZ] = strike(speed, aim, side, top, elevation, options[A_END_MASS])
+        (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = cue.struck(
+            speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS]
+        )
         shot[SPEED] = intended[0]
         for i in range(N_BALLS):
             r[k, i, 0], r[k, i, 1], here[k, i] = p[i, 0], p[i, 1], on[i]

@@ -3,23 +3,41 @@
 from math import atan, cos, hypot, sin, sqrt
 
 from .._check import number, refuse
+from .._jit import entry, kernel
 
 MAX_ELEVATION = 1.5
 """Highest elevation of the butt [rad]: just under the vertical."""
 
 
+@kernel
 def squirt(side, end_mass_ratio):
     """Angle [rad] by which the ball leaves the line of aim, anticlockwise for right side: tan a = (5/2) b sqrt(1 - b^2) / (1 + m_r +
     (5/2) (1 - b^2)), b the side offset over R, m_r ball mass over the cue's end mass [Alciatore, TP A.31]."""
     return atan(2.5 * side * sqrt(1.0 - side * side) / (1.0 + end_mass_ratio + 2.5 * (1.0 - side * side)))
 
 
-def strike(speed, aim, side, top, elevation, physics):
-    """Cue ball's (vx, vy, vz), (wx, wy, wz) just after the strike; see ``snooker_env.strike``.
+@kernel
+def struck(speed, aim, side, top, elevation, R, end_mass_ratio):
+    """Cue ball's (vx, vy, vz), (wx, wy, wz) just after the strike; the offset is known to be no miscue.
 
     Spin w = (5/2) (speed / R) offset x cue direction, offset and direction being unit-scaled vectors [TP A.30]; with the cue level this
     is w = (5/2) v b / R^2. The cloth takes the downward part of an elevated strike: the ball leaves along the cloth.
     """
+    aim += squirt(side, end_mass_ratio)
+    c, s, ce, se = cos(aim), sin(aim), cos(elevation), sin(elevation)
+    q = 2.5 * speed / R
+    # offset = side * right + top * up, with right = (s, -c, 0), up = (se c, se s, ce), and the cue along (ce c, ce s, -se)
+    w = (q * (side * se * c - top * s), q * (side * se * s + top * c), q * side * ce)
+    return (speed * ce * c, speed * ce * s, 0.0), w
+
+
+@entry
+def _struck(speed, aim, side, top, elevation, R, end_mass_ratio):
+    return struck(speed, aim, side, top, elevation, R, end_mass_ratio)
+
+
+def strike(speed, aim, side, top, elevation, physics):
+    """``struck`` from Python, with its input checked; see ``snooker_env.strike``."""
     speed = number("speed", speed, 0)
     aim = number("aim", aim)
     side, top = number("side", side), number("top", top)
@@ -27,9 +45,4 @@ def strike(speed, aim, side, top, elevation, physics):
     if hypot(side, top) > physics.max_offset * (1 + 1e-12):
         allowed = f"tip offset {hypot(side, top):.4g} R is a miscue, must be within {physics.max_offset} R of the ball's centre"
         raise refuse("(side, top)", (side, top), allowed)
-    aim += squirt(side, physics.end_mass_ratio)
-    c, s, ce, se = cos(aim), sin(aim), cos(elevation), sin(elevation)
-    q = 2.5 * speed / physics.R
-    # offset = side * right + top * up, with right = (s, -c, 0), up = (se c, se s, ce), and the cue along (ce c, ce s, -se)
-    w = (q * (side * se * c - top * s), q * (side * se * s + top * c), q * side * ce)
-    return (speed * ce * c, speed * ce * s, 0.0), w
+    return _struck(speed, aim, side, top, elevation, physics.R, physics.end_mass_ratio)

@@ -14,7 +14,7 @@ from math import inf, sqrt
 
 import numpy as np
 
-from .._jit import entry, kernel
+from .._jit import entry, inlined, kernel
 from . import cloth
 from .cloth import GONE, REST, T0, T_END, WZ
 from .contact import collide_balls, collide_cushion, cushion_restitution
@@ -73,7 +73,7 @@ def _scaled(w, k):
     return w[0] * k, w[1] * k, w[2] * k
 
 
-@kernel
+@inlined
 def _meet(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
     """Ball-ball impact inside a shot: ``collide_balls`` or, below ``PART``, a hop; the vertical velocity is dropped (as the paper does)."""
     closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
@@ -87,7 +87,7 @@ def _meet(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
     return (a[0], a[1]), wa, (b[0], b[1]), wb, solved
 
 
-@kernel
+@inlined
 def _rebound(v, w, nx, ny, phys, fidelity, n_steps):
     """Ball-cushion impact inside a shot, by the same rules; (nx, ny) points into the cushion."""
     closing = v[0] * nx + v[1] * ny
@@ -170,7 +170,7 @@ def _record(segments, n_segments, motion, state, i):
     return n_segments + 1
 
 
-@kernel
+@inlined
 def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, fidelity, n_steps, max_events,
         event_time, event_what, segments, motion, state, pair, best_time, own_time, best_ball, own_kind, own_index):  # fmt: skip
     """One shot to rest. In place: positions, velocities, spins become the final ones, on_table and potted are updated.

@@ -9,6 +9,7 @@ from snooker_env.game import layouts
 from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKETS, SPOTS, YELLOW
 from snooker_env.game.pots import pots
 from snooker_env.game.snookered import is_snookered
+from tests.kernels import from_python
 
 NAMES = ["break_off", "line_up", "colours", "random:0", "random:6", "random:15"]
 
@@ -50,7 +51,8 @@ def test_every_layout_is_playable(name, seed):
 def test_a_place_too_near_is_not_clear(too_near, near):
     positions, on_table = np.full((22, 2), 5.0), np.zeros(22, dtype=bool)
     positions[1], on_table[1] = (0.0, 0.3), True
-    assert not layouts.clear(positions, on_table, *too_near) and layouts.clear(positions, on_table, *near)
+    clear = from_python(layouts.clear)
+    assert not clear(positions, on_table, *too_near) and clear(positions, on_table, *near)
 
 
 @pytest.mark.parametrize("name", NAMES)

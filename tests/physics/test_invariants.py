@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 
 import snooker_env as sn
 from snooker_env import EventKind
-from snooker_env.physics.detection import SKIN, distance_crossing
+from snooker_env.physics import detection
+from snooker_env.physics.detection import SKIN
+from tests.kernels import from_python
 
 R, g = 0.02625, 9.81
 D = 2 * R
@@ -385,4 +387,4 @@ def test_cushion_impacts_that_once_did_not_end(case):
 @pytest.mark.parametrize("depth", [0.9, 1.1, 1.49, 1.51])
 def test_touching_balls_that_creep_together_meet_however_deep(depth):
     """Pressed between 1 and 1.5 skins deep they once never met, and went on into each other."""
-    assert distance_crossing(D - depth * SKIN, 0.0, -4e-5, 0.0, 0.0, 0.0, D, 1.0) < 1e-3
+    assert from_python(detection.distance_crossing)(D - depth * SKIN, 0.0, -4e-5, 0.0, 0.0, 0.0, D, 1.0) < 1e-3

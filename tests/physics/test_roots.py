@@ -6,8 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from snooker_env.physics.detection import distance_crossing
-from snooker_env.physics.roots import quadratic_crossing, quartic_crossing
+from snooker_env.physics import detection, roots
+from tests.kernels import from_python
+
+distance_crossing = from_python(detection.distance_crossing)
+quadratic_crossing, quartic_crossing = from_python(roots.quadratic_crossing), from_python(roots.quartic_crossing)
 
 
 def numbers(low, high):
