@@ -13,6 +13,7 @@ BALLS = (2, 3, 4, 6, 8, 11, 15, 22)
 BATCHES = tuple(4**k for k in range(9))  # 1 to 65,536
 THREAD_BATCH = 4096
 _ENOUGH = 0.3  # s of repeats for one figure
+_LEAST = 256  # shots played for one figure: small batches are played one after the other
 
 
 def kernel_call(p, v, w, threads=1, fidelity="standard"):
@@ -31,12 +32,17 @@ def public_call(p, v, w, threads=1):
     return time.perf_counter() - start
 
 
-def per_shot(call, shots, *options):
-    """Microseconds a shot: the median over repeats of ``call``, as many as fit into a fraction of a second, at least one."""
+def per_shot(call, shots, *options, batch=None):
+    """Microseconds a shot: the median over repeats, as many as fit into a fraction of a second, at least one.
+
+    A repeat is one ``call`` of all shots, or (``batch``) one call after the other of so many: every size then plays the same shots.
+    """
+    n = len(shots[0])
+    slices = [tuple(a[k : k + (batch or n)] for a in shots) for k in range(0, n, batch or n)]
     found = []
     while not found or (sum(found) < _ENOUGH and len(found) < 1000):
-        found.append(call(*shots, *options))
-    return float(np.median(found)) / len(shots[0]) * 1e6
+        found.append(sum(call(*part, *options) for part in slices))
+    return float(np.median(found)) / n * 1e6
 
 
 def growth(make, kernel_times, n, largest):
@@ -46,8 +52,9 @@ def growth(make, kernel_times, n, largest):
     counts = {b: sn.simulate_batch(*shots, threads=1).event_count for b, shots in sets.items()}
     rack, table = make("break-off", n), sets[22]
     batches = [b for b in BATCHES if b <= largest]
-    kernel = {b: per_shot(kernel_call, _resized(table, b)) for b in batches}
-    public = {b: per_shot(public_call, _resized(table, b)) for b in batches}
+    sized = {b: _resized(table, max(b, _LEAST)) for b in batches}
+    kernel = {b: per_shot(kernel_call, sized[b], batch=b) for b in batches}
+    public = {b: per_shot(public_call, sized[b], batch=b) for b in batches}
     many = _resized(table, min(THREAD_BATCH, largest))
     threads = sorted({1, 2, os.cpu_count() or 1})
     return {
@@ -111,7 +118,7 @@ def draw(found, file):
     median, low, high = np.array([row["us"] for row in found["balls"]]).T
     by_balls.fill_between(balls, low, high, alpha=0.2, lw=0, label="5 % to 95 % of shots")
     by_balls.plot(balls, median, "o-", label="median")
-    by_balls.set(xlabel="balls on the table", ylabel="us a shot", title="Random shots", ylim=(0, None))
+    by_balls.set(xlabel="balls on the table", ylabel="us a shot", title="Random shots", ylim=(0, None), xticks=balls)
     for kind, of in found["events"].items():
         events, us = np.array(of["events"]), np.array(of["us"])
         line = by_event.plot(*by_events(events, us), "o-", label=f"{kind}, medians", zorder=3)

@@ -1,8 +1,9 @@
 """How long does pooltool take for the same shots? Installs it in a virtual environment of its own and plays them there.
 
 Part of ``python -m benchmarks.speed --against pooltool``. Both get the same balls at the same places, with the same velocities and
-spins, on a bed of the same size; then each plays by its own physics, pockets and cushions. Only times are compared. The child (this file,
-run by the other Python) plays some shots first, to compile, and times ``pooltool.simulate`` alone, each shot once.
+spins, on a bed of the same size with the same constants; then each plays by its own models, pockets and cushions. Only times are
+compared. The child (this file, run by the other Python) plays some shots first, to compile, and times ``pooltool.simulate`` alone, each
+shot once.
 """
 
 import json
@@ -27,8 +28,8 @@ _WARM_UP = 5  # shots of each kind
 _CHILD_SECONDS = 1500
 
 
-class NotInstalledError(RuntimeError):
-    """The peer cannot be had here; the message says why, in one line."""
+class PeerError(RuntimeError):
+    """The peer cannot be had, or does not run, here; the message says why, in one line."""
 
 
 def _pip(python, *arguments):
@@ -36,7 +37,7 @@ def _pip(python, *arguments):
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
         errors = [text for text in done.stderr.splitlines() if text.startswith("ERROR")] or done.stderr.splitlines() or ["no message"]
-        raise NotInstalledError(f"pooltool {VERSION} cannot be installed here: {errors[-1]}")
+        raise PeerError(f"pooltool {VERSION} cannot be installed here: {errors[-1]}")
 
 
 def environment():
@@ -53,26 +54,38 @@ def environment():
     return python
 
 
-def play(file):
-    """Play the shots of an npz file (kind_p, kind_v, kind_w for each kind) with pooltool: the child's JSON."""
+def _constants(world):
+    """The constants of our physics by pooltool's names; its spinning friction decays spin at (5/2) u_sp g / R."""
+    return {
+        "m": world.M, "R": world.R, "g": world.g, "u_s": world.mu_s, "u_r": world.mu_r, "u_b": world.mu_bb, "e_b": world.e_b,
+        "e_c": world.e_c, "f_c": world.mu_c, "u_sp_proportionality": world.spin_decel / (2.5 * world.g),
+    }  # fmt: skip
+
+
+def play(file, world):
+    """Play the shots of an npz file (kind_p, kind_v, kind_w for each kind) with pooltool and our constants: the child's JSON."""
     python = environment()
-    home = tempfile.mkdtemp(prefix="snooker_env_pooltool_home")  # pooltool reads its physics from the home folder: give it its defaults
-    command = [str(python), str(Path(__file__).resolve()), str(file)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=_CHILD_SECONDS, env=os.environ | {"HOME": home}, cwd=home)
+    with tempfile.TemporaryDirectory() as home:  # pooltool reads its models from the home folder: in an empty one it has its defaults
+        command = [str(python), str(Path(__file__).resolve()), str(file), json.dumps(_constants(world))]
+        try:
+            done = subprocess.run(
+                command, capture_output=True, text=True, timeout=_CHILD_SECONDS, env=os.environ | {"HOME": home}, cwd=home
+            )
+        except subprocess.TimeoutExpired as slow:
+            raise PeerError(f"pooltool {VERSION} did not end within {_CHILD_SECONDS} s; try fewer --peer-shots") from slow
     if done.returncode:
-        raise NotInstalledError(f"pooltool {VERSION} does not run here: {(done.stderr.strip().splitlines() or ['no message'])[-1]}")
+        raise PeerError(f"pooltool {VERSION} does not run here: {(done.stderr.strip().splitlines() or ['no message'])[-1]}")
     return json.loads(done.stdout.splitlines()[-1])
 
 
-def _child(file):
+def _child(file, constants):
     import attrs
     import numpy as np
     import pooltool as pt
     from pooltool.objects.table.collection import TABLE_SPECS, TableName
 
     specs = attrs.evolve(TABLE_SPECS[TableName.SNOOKER_GENERIC], w=1.778, l=3.569)
-    params = pt.BallParams(m=0.1406, R=0.02625, u_s=0.21, u_r=0.01, e_b=0.89, e_c=0.85, f_c=0.14)
-    sliding = pt.constants.sliding
+    params, sliding = pt.BallParams(**constants), pt.constants.sliding
 
     def system(p, v, w):
         balls = {}
@@ -108,4 +121,4 @@ def _child(file):
 
 
 if __name__ == "__main__":
-    _child(sys.argv[1])
+    _child(sys.argv[1], json.loads(sys.argv[2]))

@@ -248,9 +248,8 @@ def measure_breakdown(n, repeats, detailed):
         of = _speed_profile.profile(*shots_, passes=repeats)
         whole, pieces = of["kernel_us"], sum(row["us"] for row in of["rows"])
         found[kind] = of | {"pieces_us": pieces, "remainder_us": whole - pieces}
-        print(
-            f"  {kind}: untouched kernel {whole:.2f} us, pieces {pieces:.2f} us, remainder {whole - pieces:+.2f} us ({whole / pieces - 1:+.0%})"
-        )
+        rest = f"remainder {whole - pieces:+.2f} us ({whole / pieces - 1:+.0%})"
+        print(f"  {kind}: untouched kernel {whole:.2f} us, pieces {pieces:.2f} us, {rest}")
         for group in _speed_profile.GROUPS:
             rows = [row for row in of["rows"] if row["group"] == group]
             us = sum(row["us"] for row in rows)
@@ -276,9 +275,9 @@ def measure_against(n, repeats):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "shots.npz"
         np.savez(file, allow_pickle=False, **{f"{kind}_{part}": a for kind, of in sets.items() for part, a in zip("pvw", of, strict=True)})
-        theirs = _speed_pooltool.play(file)
+        theirs = _speed_pooltool.play(file, sn.Physics.preset("paper"))
     found = {}
-    print(f"\npooltool {_speed_pooltool.VERSION} on the same {n} shots of each kind, each its own physics; us a shot, medians; one core")
+    print(f"\npooltool {_speed_pooltool.VERSION} on the same {n} shots of each kind, each by its own models; us a shot, medians; one core")
     print(f"  ratio of the kernel: must {PEER_GOAL[0]}, aim {PEER_GOAL[1]}")
     print(f"  {'':16s} {'pooltool':>10s} events failed   kernel  events    ratio   sn.simulate    ratio")
     for kind, (p, v, w) in sets.items():
@@ -340,13 +339,16 @@ def main():
         _speed_growth.print_growth(found)
         _speed_growth.draw(found, options.out)
         print(f"  picture: {options.out}")
+    problem = None
     if options.against:
         try:
             figures["against pooltool"] = measure_against(options.peer_shots, options.repeats)
-        except _speed_pooltool.NotInstalledError as problem:
-            print(f"\n{problem}")
+        except _speed_pooltool.PeerError as why:
+            problem = f"\n{why}"
     if options.json:
         options.json.write_text(json.dumps(figures, indent=1) + "\n")
+    if problem:
+        raise SystemExit(problem)
 
 
 if __name__ == "__main__":
