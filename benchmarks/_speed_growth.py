@@ -12,7 +12,7 @@ from snooker_env.simulation import MAX_EVENTS, _run
 BALLS = (2, 3, 4, 6, 8, 11, 15, 22)
 BATCHES = tuple(4**k for k in range(9))  # 1 to 65,536
 THREAD_BATCH = 4096
-_ENOUGH = 0.3  # s of repeats for one figure
+_ENOUGH = 1.0  # s of repeats for one figure
 _LEAST = 256  # shots played for one figure: small batches are played one after the other
 
 
@@ -32,20 +32,20 @@ def public_call(p, v, w, threads=1):
     return time.perf_counter() - start
 
 
-def per_shot(call, shots, *options, batch=None):
-    """Microseconds a shot: the median over repeats, as many as fit into a fraction of a second, at least one.
+def per_shot(call, shots, *options, repeats, batch=None):
+    """Microseconds a shot: the quickest of ``repeats``, or of as many as fit into a second.
 
     A repeat is one ``call`` of all shots, or (``batch``) one call after the other of so many: every size then plays the same shots.
     """
     n = len(shots[0])
     slices = [tuple(a[k : k + (batch or n)] for a in shots) for k in range(0, n, batch or n)]
     found = []
-    while not found or (sum(found) < _ENOUGH and len(found) < 1000):
+    while not found or (len(found) < repeats and sum(found) < _ENOUGH):
         found.append(sum(call(*part, *options) for part in slices))
-    return float(np.median(found)) / n * 1e6
+    return float(min(found)) / n * 1e6
 
 
-def growth(make, kernel_times, n, largest):
+def growth(make, kernel_times, n, largest, repeats):
     """Figures. make(kind, n): sets of shots; kernel_times(p, v, w): each shot's own us; ``largest``: no batch above it."""
     sets = {b: make(f"random {b} balls", n) for b in BALLS}
     times = {b: kernel_times(*shots) for b, shots in sets.items()}
@@ -53,10 +53,13 @@ def growth(make, kernel_times, n, largest):
     rack, table = make("break-off", n), sets[22]
     batches = [b for b in BATCHES if b <= largest]
     sized = {b: _resized(table, max(b, _LEAST)) for b in batches}
-    kernel = {b: per_shot(kernel_call, sized[b], batch=b) for b in batches}
-    public = {b: per_shot(public_call, sized[b], batch=b) for b in batches}
-    many = _resized(table, min(THREAD_BATCH, largest))
-    threads = sorted({1, 2, os.cpu_count() or 1})
+    kernel = {b: per_shot(kernel_call, sized[b], repeats=repeats, batch=b) for b in batches}
+    public = {b: per_shot(public_call, sized[b], repeats=repeats, batch=b) for b in batches}
+    many, with_threads = _resized(table, min(THREAD_BATCH, largest)), []
+    for t in sorted({1, 2, os.cpu_count() or 1}):
+        both = {"kernel us": per_shot(kernel_call, many, t, repeats=repeats)}
+        both["simulate_batch us"] = per_shot(public_call, many, t, repeats=repeats)
+        with_threads.append({"threads": t, "shots": len(many[0])} | both)
     return {
         "balls": [{"balls": b, "us": spread(times[b]), "events": float(counts[b].mean())} for b in BALLS],
         "events": {
@@ -64,11 +67,7 @@ def growth(make, kernel_times, n, largest):
             "break-off": {"events": sn.simulate_batch(*rack, threads=1).event_count.tolist(), "us": kernel_times(*rack).tolist()},
         },
         "batch": [{"shots": b, "kernel us": kernel[b], "simulate_batch us": public[b]} for b in batches],
-        "threads": [
-            {"threads": t, "shots": len(many[0])}
-            | {"kernel us": per_shot(kernel_call, many, t), "simulate_batch us": per_shot(public_call, many, t)}
-            for t in threads
-        ],
+        "threads": with_threads,
     }  # fmt: skip
 
 

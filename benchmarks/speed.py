@@ -6,9 +6,9 @@
 
 Times are kernel times on one core, each shot (or impact) timed by itself: one kernel plays the whole set in order, each shot once, and
 reads the processor's cycle counter before and after each (``_speed_clock.py``). The set is played ``--repeats`` times after one unseen
-time; a figure is the median over these passes of the median (mean, percentile) over the set. Where there is no x86 counter, each shot is
-called from Python ``--repeats`` times, its best time taken and the call's own cost taken off. An event is one entry of the shot's log.
-Errors are against ``reference``, in units of the incoming speed; "set" is the time an impact when the set runs as a whole.
+time; a shot's time is its median over these passes. "set" (a set of impacts in one call, the counter unread), batches and threads are the
+quickest of their repeats. Where there is no x86 counter, each shot is called from Python ``--repeats`` times, its best time taken and the
+call's own cost taken off. An event is one entry of the shot's log. Errors are against ``reference``, in units of the incoming speed.
 
 ``breakdown``: see ``_speed_profile.py``; ``start``: ``_speed_start.py``; ``growth``, with its picture: ``_speed_growth.py``; ``--against``
 (needs the network): ``_speed_pooltool.py``. With ``--profile`` or ``--against`` and no ``--parts``, only these are done.
@@ -20,10 +20,10 @@ import tempfile
 import time
 from pathlib import Path
 
-import numba
 import numpy as np
 
 import snooker_env as sn
+from snooker_env._jit import entry
 from snooker_env.game.balls import SPOTS
 from snooker_env.physics import contact
 from snooker_env.physics.engine import EventKind
@@ -44,18 +44,7 @@ PARTS = ("impacts", "shots", "breakdown", "start", "growth")
 FILE = Path(__file__).parent / "pictures" / "speed.png"
 
 
-@numba.njit(nogil=True)
-def _impacts(x, normals, phys, code, n_steps):
-    total = 0.0
-    for k in range(len(x)):
-        v1, w1 = (x[k, 0], x[k, 1], 0.0), (x[k, 2], x[k, 3], x[k, 4])
-        still = (0.0, 0.0, 0.0)
-        out = contact.collide_balls(v1, w1, still, still, normals[k, 0], normals[k, 1], phys, phys[P_E_B], code, n_steps)
-        total += out[0][0]
-    return total
-
-
-@numba.njit(nogil=True)
+@entry
 def _same_impact(x, normal, times, phys, code, n_steps):
     v1, w1, still, total = (x[0], x[1], 0.0), (x[2], x[3], x[4]), (0.0, 0.0, 0.0), 0.0
     for _ in range(times):
@@ -130,17 +119,6 @@ def shots(kind, n, seed=0):
     return p, v, w
 
 
-def timed(work, repeats, items):
-    """Microseconds an item: (median, min, max) over the repeats, after one warm-up."""
-    work()
-    found = []
-    for _ in range(repeats):
-        t = time.perf_counter()
-        work()
-        found.append((time.perf_counter() - t) / items * 1e6)
-    return float(np.median(found)), min(found), max(found)
-
-
 def one_by_one(p, v, w, fidelity, repeats, physics=None):
     """Each shot's own best time [us]: the batch kernel on a slice of one."""
     code = contact.parse_fidelity(fidelity)
@@ -172,11 +150,11 @@ def kernel_times(p, v, w, fidelity="standard", repeats=1):
 
 
 def summary(times):
-    """Median over the passes of the figures of a set; times (passes, items)."""
-    figures = {"median": np.median(times, axis=1), "mean": times.mean(axis=1)}
-    figures |= {f"p{q}": np.percentile(times, q, axis=1) for q in (5, 25, 75, 95, 99)}
-    found = {name: float(np.median(values)) for name, values in figures.items()}
-    return found | {"median_low": float(np.min(figures["median"])), "median_high": float(np.max(figures["median"]))}
+    """Figures of a set; times (passes, items). An item's time is its median over the passes, so that no interruption enters a mean."""
+    each, medians = np.median(times, axis=0), np.median(times, axis=1)
+    found = {"median": float(np.median(each)), "mean": float(each.mean())}
+    found |= {f"p{q}": float(np.percentile(each, q)) for q in (5, 25, 75, 95, 99)}
+    return found | {"median_low": float(medians.min()), "median_high": float(medians.max())}
 
 
 def print_goals(name, us):
@@ -193,7 +171,7 @@ def measure_impacts(n, repeats):
     print(f"\n{n} impacts, us: median (lowest, highest of {repeats} passes), 5 %, 95 %, set; error: median, 99 %, worst")
     for fidelity in IMPACT_FIDELITIES:
         code, n_steps = contact.parse_fidelity(fidelity)
-        whole = timed(lambda c=code, n=n_steps: _impacts(x, normals, phys, c, n), repeats, len(x))[0]
+        whole = _speed_clock.time_impact_set(x, normals, phys, fidelity, repeats)
         if _speed_clock.HAS_COUNTER:
             row: dict = summary(_speed_clock.time_impacts(x, normals, phys, fidelity, repeats))
         else:
@@ -212,7 +190,7 @@ def measure_shots(n, repeats):
     """Table of shots."""
     found = {}
     print(f"\n{n} shots, us a shot: median (lowest, highest of {repeats} passes), percentiles, mean; a shot: events, ball-ball impacts;")
-    print("ns an event: mean time over mean events; 1 and 2 threads: mean us a shot of the set as one batch")
+    print("ns an event: mean time over mean events; 1 and 2 threads: mean us a shot of the set as one batch, quickest")
     print(f"  {'':27s}  median {'':20s} 5 %     25 %     75 %     95 %     99 %     mean  events  hits ns/event  1 thread 2 threads")
     for kind in KINDS:
         shots_ = shots(kind, n)
@@ -224,7 +202,7 @@ def measure_shots(n, repeats):
             row["ball_ball"] = float(np.mean([(e["kind"] == EventKind.BALL_BALL).sum() for e in batch.events]))
             row["ns_event"] = 1e3 * row["mean"] / row["events"]
             for threads in (1, 2):
-                row[f"threads_{threads}"] = _speed_growth.per_shot(_speed_growth.kernel_call, shots_, threads, fidelity)
+                row[f"threads_{threads}"] = _speed_growth.per_shot(_speed_growth.kernel_call, shots_, threads, fidelity, repeats=repeats)
             found[f"{kind} {fidelity}"] = row
             print(
                 f"  {kind:16s} {fidelity:10s} {row['median']:7.1f} ({row['median_low']:7.1f}, {row['median_high']:7.1f})"
@@ -334,7 +312,7 @@ def main():
         def middle(p, v, w):
             return np.median(kernel_times(p, v, w, "standard", options.repeats), axis=0)
 
-        found = _speed_growth.growth(shots, middle, min(options.shots, 300), options.largest_batch)
+        found = _speed_growth.growth(shots, middle, min(options.shots, 300), options.largest_batch, options.repeats)
         figures["growth"] = found
         _speed_growth.print_growth(found)
         _speed_growth.draw(found, options.out)
