@@ -99,7 +99,8 @@ def find_pots(positions, on_table, on, radius, pots):
                 continue
             at = min(count, pots.shape[0] - 1)
             while at > 0 and pots[at - 1, 5] < tolerance:
-                pots[at, :] = pots[at - 1, :]
+                for c in range(POT_COLUMNS):
+                    pots[at, c] = pots[at - 1, c]
                 at -= 1
             row = pots[at]
             row[0], row[1], row[2], row[3], row[4], row[5] = ball, k, gx, gy, cos_cut, tolerance

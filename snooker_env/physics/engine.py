@@ -16,7 +16,7 @@ import numpy as np
 
 from .._jit import entry, inlined, kernel
 from . import cloth
-from .cloth import GONE, REST, T0, T_END, WZ
+from .cloth import GONE, REST, T0, T_END, WZ, X, Y
 from .contact import collide_balls, collide_cushion, cushion_restitution
 from .detection import TOUCH, boundary_event, clear_box, may_meet, pair_time
 from .parameters import P_E_B, P_R, P_SPIN
@@ -151,8 +151,8 @@ def _leave(state, i, pair, best_time, best_ball, own_time):
     """Ball i is off the table: no more events for it, and none with it."""
     state[i] = GONE
     n = pair.shape[0]
-    pair[i, :] = inf
-    pair[:, i] = inf
+    for j in range(n):
+        pair[i, j] = pair[j, i] = inf
     best_time[i], best_ball[i], own_time[i] = inf, -1, inf
     for j in range(n):
         if best_ball[j] == i:
@@ -160,17 +160,25 @@ def _leave(state, i, pair, best_time, best_ball, own_time):
 
 
 @kernel
+def _lie(motion, i, x, y):
+    """Ball i is out of play, at (x, y)."""
+    for c in range(cloth.COLUMNS):
+        motion[i, c] = 0.0
+    motion[i, X], motion[i, Y] = x, y
+
+
+@kernel
 def _record(segments, n_segments, motion, state, i):
     """Append ball i's present phase to the path log: its motion row, then ball and state."""
     if segments.shape[0] == 0:
         return n_segments
-    row = segments[n_segments]
-    row[: cloth.COLUMNS] = motion[i]
-    row[cloth.COLUMNS], row[cloth.COLUMNS + 1] = i, state[i]
+    for c in range(cloth.COLUMNS):
+        segments[n_segments, c] = motion[i, c]
+    segments[n_segments, cloth.COLUMNS], segments[n_segments, cloth.COLUMNS + 1] = i, state[i]
     return n_segments + 1
 
 
-@inlined
+@kernel
 def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, fidelity, n_steps, max_events,
         event_time, event_what, segments, motion, state, pair, best_time, own_time, best_ball, own_kind, own_index):  # fmt: skip
     """One shot to rest. In place: positions, velocities, spins become the final ones, on_table and potted are updated.
@@ -185,14 +193,14 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
     for i in range(n):
         potted[i] = -1
         best_time[i], best_ball[i], own_time[i] = inf, -1, inf
-        pair[i, :] = inf
+        for j in range(n):
+            pair[i, j] = inf
         if on_table[i]:
-            r, v, w = positions[i], velocities[i], spins[i]
-            _begin(motion, state, i, 0.0, (r[0], r[1]), (v[0], v[1]), (w[0], w[1], w[2]), phys)
+            r, v = (positions[i, 0], positions[i, 1]), (velocities[i, 0], velocities[i, 1])
+            _begin(motion, state, i, 0.0, r, v, (spins[i, 0], spins[i, 1], spins[i, 2]), phys)
         else:
             state[i] = GONE
-            motion[i, :] = 0.0
-            motion[i, 0], motion[i, 1] = positions[i, 0], positions[i, 1]
+            _lie(motion, i, positions[i, 0], positions[i, 1])
         n_segments = _record(segments, n_segments, motion, state, i)
     for i in range(n):
         if state[i] > REST:
@@ -236,8 +244,8 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
             r, v, w = cloth.evaluate(motion, state, i, t, phys)
             potted[i] = j
             _leave(state, i, pair, best_time, best_ball, own_time)
-            motion[i, :] = 0.0
-            motion[i, 0], motion[i, 1], motion[i, T0], motion[i, T_END] = r[0], r[1], t, inf
+            _lie(motion, i, r[0], r[1])
+            motion[i, T0], motion[i, T_END] = t, inf
             n_segments = _record(segments, n_segments, motion, state, i)
             continue
         else:
