@@ -59,7 +59,7 @@ def _open_direction(positions, on_table, on, target, angle, radius):
     return True
 
 
-@kernel
+@entry  # np.sort makes an array, which an inner kernel may not
 def clear_path(positions, on_table, on, radius):
     """Is there a straight path to any part of a ball on (mask ``on``) from where the cue ball lies?
 
