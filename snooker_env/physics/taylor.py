@@ -30,21 +30,21 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
     k1, k2, c1, c2, d_a, d_b, d_y, n0, n2, _la, _ly = c
     w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7] = x[0], x[1], x[2], x[3], x[4], x[5], x[6], y
     s0 = sqrt(a1 * a1 + a2 * a2)
-    per_s = 0.5 / s0
     mu0 = friction_coefficient(s0, law)
-    marlow = mu0 - law[0]
+    varies = mu0 - law[0]
     f1, f2, s = -mu0 * a1, -mu0 * a2, s0
+    n0, n2 = mu_s * n0, mu_s * n2  # N in units of what the cloth's friction can be
     load0 = n0 * s0 + n2 * f2
     if starts:
         b1, b2 = c1 * f1, d_b * s0 + c2 * f2
     size0 = hypot(b1, b2)
     e1_0, e2_0 = b1 / size0, b2 / size0
-    most = KB * mu_s * load0
     if starts:
-        size0 -= most
-    g1, g2 = -mu_s * load0 * e1_0, -mu_s * load0 * e2_0
-    w[_S], w[_A1], w[_A2], w[_E1], w[_E2], w[_B], w[_N], w[_MU] = s0, a1, a2, e1_0, e2_0, size0, load0, marlow
-    per_size = 1.0 / size0
+        size0 -= KB * load0
+    g1, g2 = -load0 * e1_0, -load0 * e2_0
+    w[_S], w[_A1], w[_A2], w[_E1], w[_E2], w[_B], w[_N], w[_MU] = s0, a1, a2, e1_0, e2_0, size0, load0, varies
+    per_s, per_size = 1.0 / s0, 1.0 / size0
+    h1, h2 = a1 / s0, a2 / s0
     power = y * s0
     size, last, t, t_power = 0.0, 0.0, p_left / s0, 1.0
     for k in range(1, order + 1):
@@ -52,76 +52,81 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
         m = ROW * k
         f1 *= r
         f2 *= r
+        p = s * r
         g1 *= r
         g2 *= r
-        p = s * r
-        y_k = d_y * p - d_a * f2 - d_b * g2
-        w[m], w[m + 1], w[m + 2], w[m + 3], w[m + 4], w[m + 5], w[m + 6], w[m + 7] = f1, f2, g1, g2, p, power * r, 0.0, y_k
-        u1, u2 = k1 * f1 + c1 * g1, d_a * p + k2 * f2 + c2 * g2
-        v1, v2 = c1 * f1 + KB * g1, d_b * p + c2 * f2 + KB * g2
+        power *= r
+        y_k = (d_y * p - d_a * f2) - d_b * g2
+        u1, u2 = k1 * f1 + c1 * g1, (d_a * p + k2 * f2) + c2 * g2
+        v1, v2 = c1 * f1 + KB * g1, (d_b * p + c2 * f2) + KB * g2
+        w[m], w[m + 1], w[m + 2], w[m + 3], w[m + 4], w[m + 5], w[m + 6], w[m + 7] = f1, f2, g1, g2, p, power, 0.0, y_k
         w[m + _A1], w[m + _A2] = u1, u2
         if k == 1:  # the time that the impact takes if the slip goes on to change at this rate
-            s_end = s0 + (a1 * u1 + a2 * u2) / (s0 * s0) * p_left
+            s_end = s0 + (h1 * u1 + h2 * u2) / s0 * p_left
             t = 2.0 * p_left / (s0 + max(s_end, 0.2 * s0))
-        last, size = size, max(abs(u1) + abs(u2), abs(v1) + abs(v2))
+        last, size = size, max(max(abs(u1) + abs(u2), abs(v1) + abs(v2)), abs(power))
         t_power *= t
         if k >= _MIN_ORDER and size * t_power <= tol and last * t_power <= tol * t:
             return k, t
         if k == order:
             break
-        # products of the orders 1 to k - 1
-        squares = ys = 0.0
-        ee = be1 = be2 = ne1 = ne2 = 0.0
-        i, j = ROW, m - ROW
-        for _ in range(k - 1):
+        # products of the orders 1 to k - 1, the newest last
+        squares = ys = ee = be1 = be2 = ne1 = ne2 = 0.0
+        i = ROW * (k >> 1)
+        j = m - i
+        if i == j:
+            e1, e2 = w[i + _E1], w[i + _E2]
+            squares = 0.5 * (w[i + _A1] * w[i + _A1] + w[i + _A2] * w[i + _A2] - w[i + _S] * w[i + _S])
+            ys = w[i + 7] * w[i + _S]
+            ee = 0.5 * (e1 * e1 + e2 * e2)
+            be1, be2 = w[i + _B] * e1, w[i + _B] * e2
+            ne1, ne2 = w[i + _N] * e1, w[i + _N] * e2
+            i -= ROW
+            j += ROW
+        while i > 0:
+            e1, e2, d1, d2 = w[i + _E1], w[i + _E2], w[j + _E1], w[j + _E2]
             squares += w[i + _A1] * w[j + _A1] + w[i + _A2] * w[j + _A2] - w[i + _S] * w[j + _S]
-            ys += w[i + 7] * w[j + _S]
-            e1, e2 = w[j + _E1], w[j + _E2]
-            ee += w[i + _E1] * e1 + w[i + _E2] * e2
-            be1 += w[i + _B] * e1
-            be2 += w[i + _B] * e2
-            ne1 += w[i + _N] * e1
-            ne2 += w[i + _N] * e2
-            i += ROW
-            j -= ROW
-        s = (squares + 2.0 * (a1 * u1 + a2 * u2)) * per_s
-        power = ys + y * s + y_k * s0
+            ys += w[i + 7] * w[j + _S] + w[j + 7] * w[i + _S]
+            ee += e1 * d1 + e2 * d2
+            be1 += w[i + _B] * d1 + w[j + _B] * e1
+            be2 += w[i + _B] * d2 + w[j + _B] * e2
+            ne1 += w[i + _N] * d1 + w[j + _N] * e1
+            ne2 += w[i + _N] * d2 + w[j + _N] * e2
+            i -= ROW
+            j += ROW
+        s = squares * per_s + (h1 * u1 + h2 * u2)
         f1, f2 = -mu0 * u1, -mu0 * u2
-        if marlow > 0.0:
-            mu = k * s * marlow
+        if varies > 0.0:
+            mu = k * s * varies
             i, j = ROW, m - ROW
             for n in range(1, k):
                 mu += n * w[i + _S] * w[j + _MU]
+                f1 -= w[i + _A1] * w[j + _MU]
+                f2 -= w[i + _A2] * w[j + _MU]
                 i += ROW
                 j -= ROW
             mu *= -law[2] * r
             w[m + _MU] = mu
             f1 -= mu * a1
             f2 -= mu * a2
-            i, j = ROW, m - ROW
-            for _ in range(k - 1):
-                f1 -= w[i + _MU] * w[j + _A1]
-                f2 -= w[i + _MU] * w[j + _A2]
-                i += ROW
-                j -= ROW
+        power = (ys + y_k * s0) + y * s
         load = n0 * s + n2 * f2
         ne1 += load * e1_0
         ne2 += load * e2_0
+        scale = size0
         if starts:
             r = 1.0 / (k + 1)
-            scale = size0 + most * r
-            v1 = (c1 * f1 - KB * mu_s * ne1) * r
-            v2 = (d_b * s + c2 * f2 - KB * mu_s * ne2) * r
+            scale = size0 + KB * load0 * r
+            v1 = (c1 * f1 - KB * ne1) * r
+            v2 = (d_b * s + c2 * f2 - KB * ne2) * r
             per_size = 1.0 / scale
-        else:
-            scale = size0
         v1 -= be1
         v2 -= be2
-        along, across = -0.5 * ee, (v2 * e1_0 - v1 * e2_0) * per_size
-        e1, e2 = along * e1_0 - across * e2_0, along * e2_0 + across * e1_0
+        across = (v2 * e1_0 - v1 * e2_0) * per_size
+        e1, e2 = -ee * e1_0 - across * e2_0, -ee * e2_0 + across * e1_0
         w[m + _S], w[m + _E1], w[m + _E2], w[m + _N] = s, e1, e2, load
-        w[m + _B] = v1 * e1_0 + v2 * e2_0 - scale * along
-        g1, g2 = -mu_s * (load0 * e1 + ne1), -mu_s * (load0 * e2 + ne2)
+        w[m + _B] = v1 * e1_0 + v2 * e2_0 + scale * ee
+        g1, g2 = -(load0 * e1 + ne1), -(load0 * e2 + ne2)
     return order, exp(min(log(tol / (size + 1e-300)) / order, log(tol / (last + 1e-300)) / (order - 1)))
 
 
