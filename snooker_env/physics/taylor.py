@@ -18,6 +18,7 @@ from .coulomb import KB, friction_coefficient
 from .polynomial import ROW
 
 _MIN_ORDER = 4
+_POSITIVE = 0xFFFF  # a mask that spares the compiler's test for negative indices, a third of the time
 _S, _A1, _A2, _E1, _E2, _B, _N, _MU = 8, 9, 10, 11, 12, 13, 14, 15  # the series' places in a row, behind the polynomial's
 
 
@@ -44,27 +45,30 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
     g1, g2 = -load0 * e1_0, -load0 * e2_0
     w[_S], w[_A1], w[_A2], w[_E1], w[_E2], w[_B], w[_N], w[_MU] = s0, a1, a2, e1_0, e2_0, size0, load0, varies
     per_s, per_size = 1.0 / s0, 1.0 / size0
-    h1, h2 = a1 / s0, a2 / s0
+    h1, h2 = a1 * per_s, a2 * per_s
+    x1, x2 = e1_0 * per_size, e2_0 * per_size
     power = y * s0
-    size, last, t, t_power = 0.0, 0.0, p_left / s0, 1.0
+    size, last, t, t_power = 0.0, 0.0, p_left * per_s, 1.0
     for k in range(1, order + 1):
-        r = 1.0 / k
         m = ROW * k
+        r = 1.0 / k
+        # the coefficients of order k: the rates of order k - 1, integrated
+        p = s * r
+        power *= r
+        u1, u2 = (k1 * r) * f1 + (c1 * r) * g1, (d_a * p + (k2 * r) * f2) + (c2 * r) * g2
+        v1, v2 = (c1 * r) * f1, d_b * p + (c2 * r) * f2
+        q1, q2 = (KB * r) * g1, (KB * r) * g2
         f1 *= r
         f2 *= r
-        p = s * r
         g1 *= r
         g2 *= r
-        power *= r
         y_k = (d_y * p - d_a * f2) - d_b * g2
-        u1, u2 = k1 * f1 + c1 * g1, (d_a * p + k2 * f2) + c2 * g2
-        v1, v2 = c1 * f1 + KB * g1, (d_b * p + c2 * f2) + KB * g2
         w[m], w[m + 1], w[m + 2], w[m + 3], w[m + 4], w[m + 5], w[m + 6], w[m + 7] = f1, f2, g1, g2, p, power, 0.0, y_k
         w[m + _A1], w[m + _A2] = u1, u2
         if k == 1:  # the time that the impact takes if the slip goes on to change at this rate
-            s_end = s0 + (h1 * u1 + h2 * u2) / s0 * p_left
+            s_end = s0 + (h1 * u1 + h2 * u2) * per_s * p_left
             t = 2.0 * p_left / (s0 + max(s_end, 0.2 * s0))
-        last, size = size, max(max(abs(u1) + abs(u2), abs(v1) + abs(v2)), abs(power))
+        last, size = size, max(max(abs(u1) + abs(u2), abs(v1 + q1) + abs(v2 + q2)), abs(power))
         t_power *= t
         if k >= _MIN_ORDER and size * t_power <= tol and last * t_power <= tol * t:
             return k, t
@@ -73,8 +77,7 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
         # products of the orders 1 to k - 1, the newest last
         squares = ys = ee = be1 = be2 = ne1 = ne2 = 0.0
         i = ROW * (k >> 1)
-        j = m - i
-        if i == j:
+        if k & 1 == 0:
             e1, e2 = w[i + _E1], w[i + _E2]
             squares = 0.5 * (w[i + _A1] * w[i + _A1] + w[i + _A2] * w[i + _A2] - w[i + _S] * w[i + _S])
             ys = w[i + 7] * w[i + _S]
@@ -82,8 +85,8 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
             be1, be2 = w[i + _B] * e1, w[i + _B] * e2
             ne1, ne2 = w[i + _N] * e1, w[i + _N] * e2
             i -= ROW
-            j += ROW
         while i > 0:
+            j = (m - i) & _POSITIVE
             e1, e2, d1, d2 = w[i + _E1], w[i + _E2], w[j + _E1], w[j + _E2]
             squares += w[i + _A1] * w[j + _A1] + w[i + _A2] * w[j + _A2] - w[i + _S] * w[j + _S]
             ys += w[i + 7] * w[j + _S] + w[j + 7] * w[i + _S]
@@ -93,40 +96,41 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
             ne1 += w[i + _N] * d1 + w[j + _N] * e1
             ne2 += w[i + _N] * d2 + w[j + _N] * e2
             i -= ROW
-            j += ROW
-        s = squares * per_s + (h1 * u1 + h2 * u2)
+        # the rates of order k
+        s = (squares * per_s + h1 * u1) + h2 * u2
         f1, f2 = -mu0 * u1, -mu0 * u2
         if varies > 0.0:
             mu = k * s * varies
-            i, j = ROW, m - ROW
             for n in range(1, k):
+                i = ROW * n
+                j = (m - i) & _POSITIVE
                 mu += n * w[i + _S] * w[j + _MU]
                 f1 -= w[i + _A1] * w[j + _MU]
                 f2 -= w[i + _A2] * w[j + _MU]
-                i += ROW
-                j -= ROW
             mu *= -law[2] * r
             w[m + _MU] = mu
             f1 -= mu * a1
             f2 -= mu * a2
         power = (ys + y_k * s0) + y * s
         load = n0 * s + n2 * f2
-        ne1 += load * e1_0
-        ne2 += load * e2_0
         scale = size0
         if starts:
             r = 1.0 / (k + 1)
-            scale = size0 + KB * load0 * r
-            v1 = (c1 * f1 - KB * ne1) * r
-            v2 = (d_b * s + c2 * f2 - KB * ne2) * r
+            scale = size0 + (KB * load0) * r
             per_size = 1.0 / scale
-        v1 -= be1
-        v2 -= be2
-        across = (v2 * e1_0 - v1 * e2_0) * per_size
+            x1, x2 = e1_0 * per_size, e2_0 * per_size
+            v1, v2 = (c1 * r) * f1 - be1, (d_b * s + c2 * f2) * r - be2
+            q1, q2 = -(KB * r) * (ne1 + load * e1_0), -(KB * r) * (ne2 + load * e2_0)
+        else:
+            v1 -= be1
+            v2 -= be2
+        v1 += q1
+        v2 += q2
+        across = v2 * x1 - v1 * x2
         e1, e2 = -ee * e1_0 - across * e2_0, -ee * e2_0 + across * e1_0
         w[m + _S], w[m + _E1], w[m + _E2], w[m + _N] = s, e1, e2, load
         w[m + _B] = v1 * e1_0 + v2 * e2_0 + scale * ee
-        g1, g2 = -(load0 * e1 + ne1), -(load0 * e2 + ne2)
+        g1, g2 = -((load0 * e1 + ne1) + load * e1_0), -((load0 * e2 + ne2) + load * e2_0)
     return order, exp(min(log(tol / (size + 1e-300)) / order, log(tol / (last + 1e-300)) / (order - 1)))
 
 
