@@ -18,6 +18,7 @@ from .coulomb import KB, friction_coefficient
 from .polynomial import ROW
 
 _MIN_ORDER = 4
+_HOVER = 0.03  # an error allowed in a slip, over that slip: a slip that should die would hover at the size of the tolerance
 _POSITIVE = 0xFFFF  # a mask that spares the compiler's test for negative indices, a third of the time
 _S, _A1, _A2, _E1, _E2, _B, _N, _MU = 8, 9, 10, 11, 12, 13, 14, 15  # the series' places in a row, behind the polynomial's
 
@@ -44,6 +45,7 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
         size0 -= KB * load0
     g1, g2 = -load0 * e1_0, -load0 * e2_0
     w[_S], w[_A1], w[_A2], w[_E1], w[_E2], w[_B], w[_N], w[_MU] = s0, a1, a2, e1_0, e2_0, size0, load0, varies
+    tol = min(tol, _HOVER * s0)
     per_s, per_size = 1.0 / s0, 1.0 / size0
     h1, h2 = a1 * per_s, a2 * per_s
     x1, x2 = e1_0 * per_size, e2_0 * per_size
@@ -131,7 +133,10 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
         w[m + _S], w[m + _E1], w[m + _E2], w[m + _N] = s, e1, e2, load
         w[m + _B] = v1 * e1_0 + v2 * e2_0 + scale * ee
         g1, g2 = -((load0 * e1 + ne1) + load * e1_0), -((load0 * e2 + ne2) + load * e2_0)
-    return order, exp(min(log(tol / (size + 1e-300)) / order, log(tol / (last + 1e-300)) / (order - 1)))
+    h = exp(log(tol / (size + 1e-300)) / order)
+    if last > size * h:  # then the last term but one is the larger
+        h = exp(log(tol / last) / (order - 1))
+    return order, h
 
 
 @kernel
