@@ -69,6 +69,19 @@ def _turns_at(w, n, span, start, c):
 
 
 @kernel
+def _breaks_loose_at(w, start, c, law, mu_s, near, cloth):
+    """The fraction of a Runge-Kutta step after which friction no longer holds the slip at A at zero."""
+    low, high = 0.0, 1.0
+    for _ in range(40):
+        t = 0.5 * (low + high)
+        if held(state_at(w, dormand_prince.DEGREE, t), start, c, law, mu_s, near, cloth):
+            low = t
+        else:
+            high = t
+    return high
+
+
+@kernel
 def solve(start, c, law, mu_s, e, accuracy):
     """Integrate one impact. Speeds in units of the closing speed (so that is 1); returns (F1, F2, G1, G2, p, W, Z), status.
 
@@ -107,6 +120,7 @@ def solve(start, c, law, mu_s, e, accuracy):
             k1 = rates(x, mode, start, c, law, mu_s, near, cloth)
     w = np.empty(ROW * (order + 1))
     compressing, top, target = True, 0.0, 0.0
+    located = False
     b1_old, b2_old = b1, b2
     for n in range(_MAX_STEPS):
         if analytic and mode == SLIP:
@@ -151,8 +165,10 @@ def solve(start, c, law, mu_s, e, accuracy):
                 next_mode = CREEP
         elif mode == STICK:
             if not held(new, start, c, law, mu_s, near, cloth):
-                if h > delta:  # it broke loose inside the step: find where
-                    h *= 0.5
+                if h > delta and not located:  # it broke loose inside the step: take the step to there
+                    dormand_prince.leave_polynomial(w, x, new, h, c)
+                    h *= _breaks_loose_at(w, start, c, law, mu_s, near, cloth)
+                    located = True
                     continue
                 next_mode = CREEP
         elif s > creep:
@@ -187,7 +203,7 @@ def solve(start, c, law, mu_s, e, accuracy):
                     low = _end_of_restitution(w, degree, low, span, new[5], top, target, close)
                 return state_at(w, degree, low), OK
         h *= 3.0 if worst < 1e-3 * tol else min(3.0, 0.9 * (tol / worst) ** 0.2)
-        x, k1, b1_old, b2_old = new, k7, b1, b2
+        x, k1, b1_old, b2_old, located = new, k7, b1, b2, False
         if next_mode != mode or (next_cloth != cloth and (next_cloth == GRIPS or cloth == GRIPS)):
             mode, cloth = next_mode, next_cloth
             k1 = rates(x, mode, start, c, law, mu_s, near, cloth)
