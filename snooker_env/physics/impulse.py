@@ -94,7 +94,7 @@ def solve(start, c, law, mu_s, e, accuracy):
     x = _ZERO
     a1, a2, b1, b2 = start
     y = 1.0
-    s = hypot(a1, a2)
+    s = sqrt(a1 * a1 + a2 * a2)
     most = friction_coefficient(0.0, law)
     p_full = -1.05 * (1.0 + e) / c[6]  # a guess that overshoots a little
     # past three times this step Runge-Kutta is unstable on a' = -k mu a: a slip that should die would hover at the size of the tolerance

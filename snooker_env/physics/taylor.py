@@ -11,7 +11,7 @@ starts from zero is no singularity either: b = t B e with B_0 > 0, where e_0 is 
 B_k and e_k, the latter through the friction -mu_s N e, and the equation is linear all the same.
 """
 
-from math import exp, hypot, log, sqrt
+from math import exp, log, sqrt
 
 from .._jit import kernel
 from .coulomb import KB, friction_coefficient
@@ -39,7 +39,7 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
     load0 = n0 * s0 + n2 * f2
     if starts:
         b1, b2 = c1 * f1, d_b * s0 + c2 * f2
-    size0 = hypot(b1, b2)
+    size0 = sqrt(b1 * b1 + b2 * b2)
     e1_0, e2_0 = b1 / size0, b2 / size0
     if starts:
         size0 -= KB * load0
@@ -70,10 +70,10 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
         if k == 1:  # the time that the impact takes if the slip goes on to change at this rate
             s_end = s0 + (h1 * u1 + h2 * u2) * per_s * p_left
             t = 2.0 * p_left / (s0 + max(s_end, 0.2 * s0))
-        last, size = size, max(max(abs(u1) + abs(u2), abs(v1 + q1) + abs(v2 + q2)), abs(power))
-        t_power *= t
-        if k >= _MIN_ORDER and size * t_power <= tol and last * t_power <= tol * t:
+        last, size = size, abs(u1) + abs(u2) + abs(v1 + q1) + abs(v2 + q2) + abs(power)
+        if (size * t + last) * t_power <= tol and k >= _MIN_ORDER:
             return k, t
+        t_power *= t
         if k == order:
             break
         # products of the orders 1 to k - 1, the newest last
@@ -133,9 +133,9 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
         w[m + _S], w[m + _E1], w[m + _E2], w[m + _N] = s, e1, e2, load
         w[m + _B] = v1 * e1_0 + v2 * e2_0 + scale * ee
         g1, g2 = -((load0 * e1 + ne1) + load * e1_0), -((load0 * e2 + ne2) + load * e2_0)
-    h = exp(log(tol / (size + 1e-300)) / order)
-    if last > size * h:  # then the last term but one is the larger
-        h = exp(log(tol / last) / (order - 1))
+    h = exp(log(tol / (last + 1e-300)) / (order - 1))
+    if size * h > last:  # then the very last term is the larger
+        h = exp(log(tol / size) / order)
     return order, h
 
 
