@@ -192,7 +192,7 @@ def solve(start, c, law, mu_s, e, accuracy):
         if (compressing and y <= 0.0) or (not compressing and new[5] <= target):
             if not (analytic and mode == SLIP):
                 dormand_prince.leave_polynomial(w, x, new, h, c)
-            low, close = 0.0, 0.3 * sqrt(tol) * span
+            low, close = 0.0, 0.01 * tol * span
             if compressing:
                 low = _end_of_compression(w, degree, span, y, close)
                 compressing = False

@@ -24,33 +24,37 @@ def state_at(w, n, t):
 
 @kernel
 def value_at(w, n, q, t):
-    """Quantity q and its derivative at time t."""
+    """Quantity q at time t, its derivative, and half the second."""
     m = ROW * n + q
-    f, slope = w[m], 0.0
+    f, slope, bend = w[m], 0.0, 0.0
     for _ in range(n):
         m -= ROW
+        bend = slope + t * bend
         slope = f + t * slope
         f = w[m] + t * f
-    return f, slope
+    return f, slope, bend
 
 
 @kernel
 def time_of(w, n, q, value, low, high, t, near):
     """When quantity q falls to the value, between low, where it is above, and high, where it is not; t: a guess, near: how close is enough.
 
-    Newton's method kept between low and high. It ends after a correction so small that the next, its square, would be negligible.
+    Halley's method kept between low and high. It ends after a correction so small that the next, about its cube over the square of the
+    step's time, would be below ``near``.
     """
+    enough = near * high * high
     for _ in range(60):
         if not low < t < high:
             t = 0.5 * (low + high)
-        f, slope = value_at(w, n, q, t)
+        f, slope, bend = value_at(w, n, q, t)
         f -= value
         low, high = (t, high) if f > 0.0 else (low, t)
-        if slope >= 0.0:
-            t = low
+        bottom = slope * slope - f * bend
+        if slope >= 0.0 or bottom <= 0.0:
+            t = low  # so that the next is halfway
             continue
-        move = f / slope
+        move = f * slope / bottom
         t -= move
-        if abs(move) <= near or high - low <= near * near:
+        if abs(move * move * move) <= enough or high - low <= near:
             break
     return min(max(t, low), high)
