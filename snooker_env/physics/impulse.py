@@ -58,13 +58,13 @@ def _end_of_restitution(w, n, low, span, work, top, target, near):
 
 
 @kernel
-def _turns_at(w, n, span, start, c):
-    """When in a step the cloth's slip is at right angles to where it pointed at first; it points backwards at the end."""
+def _turns_at(w, n, span, o1, o2, start, c):
+    """When in a step the cloth's slip, less (o1, o2), is at right angles to where it pointed at first; it points backwards at the end."""
     low, high = 0.0, span
     for _ in range(50):
         t = 0.5 * (low + high)
         _1, _2, b1, b2, _y = slips(state_at(w, n, t), start, c)
-        low, high = (low, t) if taylor.turned(w, b1, b2) else (t, high)
+        low, high = (low, t) if taylor.turned(w, b1 - o1, b2 - o2) else (t, high)
     return high
 
 
@@ -126,10 +126,11 @@ def solve(start, c, law, mu_s, e, accuracy):
         if analytic and mode == SLIP:
             left = max(p_full - x[4], 0.1 * p_full)
             degree, span = taylor.expand(w, x, a1, a2, b1, b2, y, cloth == STARTS, left, c, law, mu_s, _SERIES * tol, order)
+            o1, o2 = (b1, b2) if cloth == STARTS else (0.0, 0.0)  # what is left of a slip that counts as zero may point anywhere
             new = state_at(w, degree, span)
             a1, a2, b1, b2, y = slips(new, start, c)
-            if taylor.turned(w, b1, b2):
-                span = _turns_at(w, degree, span, start, c)
+            if taylor.turned(w, b1 - o1, b2 - o2):
+                span = _turns_at(w, degree, span, o1, o2, start, c)
                 new = state_at(w, degree, span)
                 a1, a2, b1, b2, y = slips(new, start, c)
             k7, worst = k1, tol

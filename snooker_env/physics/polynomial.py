@@ -40,9 +40,9 @@ def time_of(w, n, q, value, low, high, t, near):
     """When quantity q falls to the value, between low, where it is above, and high, where it is not; t: a guess, near: how close is enough.
 
     Halley's method kept between low and high. It ends after a correction so small that the next, about its cube over the square of the
-    step's time, would be below ``near``.
+    time since ``first``, where the quantity may stand still, would be below ``near``.
     """
-    enough = near * high * high
+    first = low
     for _ in range(60):
         if not low < t < high:
             t = 0.5 * (low + high)
@@ -55,6 +55,6 @@ def time_of(w, n, q, value, low, high, t, near):
             continue
         move = f * slope / bottom
         t -= move
-        if abs(move * move * move) <= enough or high - low <= near:
+        if abs(move * move * move) <= near * (t - first) * (t - first) or high - low <= near:
             break
     return min(max(t, low), high)
