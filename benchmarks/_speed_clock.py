@@ -22,6 +22,7 @@ import snooker_env as sn
 from snooker_env._jit import entry
 from snooker_env.physics import contact, engine
 from snooker_env.physics.parameters import P_E_B
+from snooker_env.physics.polynomial import WORK
 from snooker_env.simulation import MAX_EVENTS, _run
 
 HAS_COUNTER = platform.machine().lower() in ("x86_64", "amd64")
@@ -72,12 +73,13 @@ def _each_impact(cost, idle, x, normals, phys, code, n_steps):
     """With an empty ``cost`` the counter is not read."""
     total, read = 0.0, len(cost) > 0
     before = between = 0
+    work = np.empty(WORK)
     for k in range(len(x)):
         v1, w1, still = (x[k, 0], x[k, 1], 0.0), (x[k, 2], x[k, 3], x[k, 4]), (0.0, 0.0, 0.0)
         if read:
             before = ticks()
             between = ticks()
-        out = contact.collide_balls(v1, w1, still, still, normals[k, 0], normals[k, 1], phys, phys[P_E_B], code, n_steps)
+        out = contact.collide_balls(v1, w1, still, still, normals[k, 0], normals[k, 1], phys, phys[P_E_B], code, n_steps, work)
         total += out[0][0]
         if read:
             after = ticks()

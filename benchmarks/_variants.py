@@ -43,13 +43,13 @@ def _smooth_cushion(v, w, nx, ny, phys, e):
 
 
 @kernel
-def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps):
+def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, work):
     code = FAST if fidelity == 101 else STANDARD if fidelity > 101 else fidelity
-    return _all_of_balls(v1, w1, v2, w2, nx, ny, phys, e, code, n_steps)
+    return _all_of_balls(v1, w1, v2, w2, nx, ny, phys, e, code, n_steps, work)
 
 
 @kernel
-def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps):
+def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, work):
     closing = v[0] * nx + v[1] * ny
     if fidelity == 104 and closing > 0.0:
         back = (1.0 + e) * closing
@@ -57,7 +57,7 @@ def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps):
     if fidelity == 103 and closing > 0.0:
         return _smooth_cushion(v, w, nx, ny, phys, e)
     code = FAST if fidelity == 102 else STANDARD if fidelity > 100 else fidelity
-    return _all_of_cushion(v, w, nx, ny, phys, e, code, n_steps)
+    return _all_of_cushion(v, w, nx, ny, phys, e, code, n_steps, work)
 '''
 
 

@@ -28,6 +28,7 @@ from snooker_env.game.balls import SPOTS
 from snooker_env.physics import contact
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.parameters import P_E_B
+from snooker_env.physics.polynomial import WORK
 from snooker_env.physics.table import Table
 from snooker_env.simulation import _run
 
@@ -47,8 +48,9 @@ FILE = Path(__file__).parent / "pictures" / "speed.png"
 @entry
 def _same_impact(x, normal, times, phys, code, n_steps):
     v1, w1, still, total = (x[0], x[1], 0.0), (x[2], x[3], x[4]), (0.0, 0.0, 0.0), 0.0
+    work = np.empty(WORK)
     for _ in range(times):
-        out = contact.collide_balls(v1, w1, still, still, normal[0], normal[1], phys, phys[P_E_B], code, n_steps)
+        out = contact.collide_balls(v1, w1, still, still, normal[0], normal[1], phys, phys[P_E_B], code, n_steps, work)
         total += out[0][0]
     return total
 

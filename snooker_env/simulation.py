@@ -11,6 +11,7 @@ from ._jit import entry
 from .physics import cloth, contact, cue, engine, trajectory
 from .physics.engine import EventKind, Status
 from .physics.parameters import P_E_B, Physics
+from .physics.polynomial import WORK
 from .physics.table import Table
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
@@ -26,13 +27,13 @@ class SimulationError(RuntimeError):
 
 @entry
 def _collide_balls(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
-    return contact.collide_balls(v1, w1, v2, w2, nx, ny, phys, phys[P_E_B], fidelity, n_steps)
+    return contact.collide_balls(v1, w1, v2, w2, nx, ny, phys, phys[P_E_B], fidelity, n_steps, np.empty(WORK))
 
 
 @entry
 def _collide_cushion(v, w, nx, ny, phys, fidelity, n_steps):
     e = contact.cushion_restitution(v[0] * nx + v[1] * ny, phys)
-    return contact.collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps)
+    return contact.collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, np.empty(WORK))
 
 
 def _unit_normal(normal):

@@ -69,7 +69,7 @@ def _friction_impulse_free(xa, za, ya, law, e):
 
 
 @kernel
-def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps):
+def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps, work):
     """Two balls in the frame X tangent, Y from C to O, Z up, closing."""
     R = phys[P_R]
     law = (phys[P_MU_A], phys[P_MU_B], phys[P_MU_C])
@@ -97,7 +97,7 @@ def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps):
     b1, b2 = sign * (vp[0] - R * wp[1]), sign * (vp[1] + R * wp[0])
     start = (xa / ya, -abs(za) / ya, b1 / ya, b2 / ya)
     scaled_law = (law[0], law[1], law[2] * ya)
-    x, status = solve(start, _BALLS, scaled_law, phys[P_MU_S], e, accuracy)
+    x, status = solve(start, _BALLS, scaled_law, phys[P_MU_S], e, accuracy, work)
     f1, f2, g1, g2, p = x[0] * ya, x[1] * ya, x[2] * ya, x[3] * ya, x[4] * ya
     # lifted ball: (f1, -p, f2) and spin q (f2, 0, -f1); pressed: (-f1 + g1, p + g2, 0) and spin q (f2 + g2, -g1, -f1)
     lift_v, lift_w = (sign * f1, -sign * p, f2), (sign * q * f2, 0.0, -q * f1)
@@ -113,7 +113,7 @@ def _add(a, b):
 
 
 @kernel
-def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps):
+def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, work):
     """Impact of two equal balls, (nx, ny) the unit vector from ball 1 to ball 2 -> v1, w1, v2, w2, solved.
 
     [MJP14] 2.1 to 2.4. ``e``: restitution to use. The vertical velocity of the lifted ball is part of the result.
@@ -121,7 +121,7 @@ def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps):
     if not (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny > _NO_CLOSING:
         return v1, w1, v2, w2, True
     vc, wc, vo, wo, solved = _balls_in_frame(
-        _to_frame(v1, nx, ny), _to_frame(w1, nx, ny), _to_frame(v2, nx, ny), _to_frame(w2, nx, ny), phys, e, fidelity, n_steps
+        _to_frame(v1, nx, ny), _to_frame(w1, nx, ny), _to_frame(v2, nx, ny), _to_frame(w2, nx, ny), phys, e, fidelity, n_steps, work
     )
     return _to_world(vc, nx, ny), _to_world(wc, nx, ny), _to_world(vo, nx, ny), _to_world(wo, nx, ny), solved
 
@@ -135,7 +135,7 @@ def _cushion_constants(sin_t, cos_t):
 
 
 @kernel
-def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps):
+def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, work):
     """Impact of a ball with a nose, (nx, ny) the unit vector INTO the cushion -> v, w, solved. [MJP10], Coulomb at zero slip.
 
     ``"fast"`` integrates with a loose tolerance: there is no closed form that keeps the cloth's reaction, which matters here.
@@ -157,7 +157,7 @@ def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps):
         (vx - R * wy) / closing, (vy + R * wx) / closing,
     )  # fmt: skip
     accuracy = _REFERENCE if fidelity == REFERENCE else _STANDARD if fidelity == STANDARD else _LOOSE
-    x, status = solve(start, c, (mu_w, 0.0, 0.0), mu_s, e, accuracy)
+    x, status = solve(start, c, (mu_w, 0.0, 0.0), mu_s, e, accuracy, work)
     f1, f2, g1, g2, p, lift = x[0] * closing, x[1] * closing, x[2] * closing, x[3] * closing, x[4] * closing, x[6] * closing
     q = 2.5 / R
     v = (vx + f1 + g1, vy - cos_t * p - sin_t * f2 + g2, vz + lift)

@@ -20,6 +20,7 @@ from .cloth import GONE, REST, T0, T_END, WZ, X, Y
 from .contact import collide_balls, collide_cushion, cushion_restitution
 from .detection import TOUCH, boundary_event, clear_box, may_meet, pair_time
 from .parameters import P_E_B, P_R, P_SPIN
+from .polynomial import WORK
 
 PART = 2e-3  # m/s; below what a shot can show: a ball at this speed rolls 16 micrometres
 
@@ -74,7 +75,7 @@ def _scaled(w, k):
 
 
 @inlined
-def _meet(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
+def _meet(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps, work):
     """Ball-ball impact inside a shot: ``collide_balls`` or, below ``PART``, a hop; the vertical velocity is dropped (as the paper does)."""
     closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
     if closing <= PART:
@@ -83,12 +84,12 @@ def _meet(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
         dv = 0.5 * (closing + parting)
         return (v1[0] - dv * nx, v1[1] - dv * ny), _scaled(w1, k), (v2[0] + dv * nx, v2[1] + dv * ny), _scaled(w2, k), True
     e = max(phys[P_E_B], PART / closing)
-    a, wa, b, wb, solved = collide_balls((v1[0], v1[1], 0.0), w1, (v2[0], v2[1], 0.0), w2, nx, ny, phys, e, fidelity, n_steps)
+    a, wa, b, wb, solved = collide_balls((v1[0], v1[1], 0.0), w1, (v2[0], v2[1], 0.0), w2, nx, ny, phys, e, fidelity, n_steps, work)
     return (a[0], a[1]), wa, (b[0], b[1]), wb, solved
 
 
 @inlined
-def _rebound(v, w, nx, ny, phys, fidelity, n_steps):
+def _rebound(v, w, nx, ny, phys, fidelity, n_steps, work):
     """Ball-cushion impact inside a shot, by the same rules; (nx, ny) points into the cushion."""
     closing = v[0] * nx + v[1] * ny
     if closing <= PART:
@@ -96,7 +97,7 @@ def _rebound(v, w, nx, ny, phys, fidelity, n_steps):
         dv = closing + parting
         return (v[0] - dv * nx, v[1] - dv * ny), _scaled(w, k), True
     e = max(cushion_restitution(closing, phys), PART / closing)
-    a, wa, solved = collide_cushion((v[0], v[1], 0.0), w, nx, ny, phys, e, fidelity, n_steps)
+    a, wa, solved = collide_cushion((v[0], v[1], 0.0), w, nx, ny, phys, e, fidelity, n_steps, work)
     return (a[0], a[1]), wa, solved
 
 
@@ -180,7 +181,7 @@ def _record(segments, n_segments, motion, state, i):
 
 @kernel
 def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, fidelity, n_steps, max_events,
-        event_time, event_what, segments, motion, state, pair, best_time, own_time, best_ball, own_kind, own_index):  # fmt: skip
+        event_time, event_what, segments, motion, state, pair, best_time, own_time, best_ball, own_kind, own_index, work):  # fmt: skip
     """One shot to rest. In place: positions, velocities, spins become the final ones, on_table and potted are updated.
 
     event_time (m,), event_what (m, 3): the log (kind, i, j); with m = 0 nothing is logged. segments (k, COLUMNS + 2): the paths, or
@@ -234,7 +235,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
             r2, v2, w2 = cloth.evaluate(motion, state, j, t, phys)
             nx, ny = r2[0] - r1[0], r2[1] - r1[1]
             d = sqrt(nx * nx + ny * ny)
-            v1, w1, v2, w2, solved = _meet(v1, w1, v2, w2, nx / d, ny / d, phys, fidelity, n_steps)
+            v1, w1, v2, w2, solved = _meet(v1, w1, v2, w2, nx / d, ny / d, phys, fidelity, n_steps, work)
             _begin(motion, state, i, t, r1, v1, w1, phys)
             _begin(motion, state, j, t, r2, v2, w2, phys)
         elif kind == _ROLL or kind == _STOP:
@@ -256,7 +257,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
                 nx, ny = jaws[j, 0] - r[0], jaws[j, 1] - r[1]
                 d = sqrt(nx * nx + ny * ny)
                 nx, ny = nx / d, ny / d
-            v, w, solved = _rebound(v, w, nx, ny, phys, fidelity, n_steps)
+            v, w, solved = _rebound(v, w, nx, ny, phys, fidelity, n_steps, work)
             _begin(motion, state, i, t, r, v, w, phys)
         if not solved:
             status = _UNSOLVED
@@ -290,8 +291,9 @@ def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws,
     best_time, own_time = np.full(n, inf), np.full(n, inf)
     state, best_ball = np.zeros(n, np.int64), np.full(n, -1)
     own_kind, own_index = np.zeros(n, np.int64), np.full(n, -1)
+    work = np.empty(WORK)
     for k in range(start, stop):
         status[k], n_events[k], n_segments[k], duration[k] = run(
             positions[k], velocities[k], spins[k], on_table[k], potted[k], phys, noses, jaws, falls, fidelity, n_steps, max_events,
-            event_time[k], event_what[k], segments[k], motion, state, pair, best_time, own_time, best_ball, own_kind, own_index,
+            event_time[k], event_what[k], segments[k], motion, state, pair, best_time, own_time, best_ball, own_kind, own_index, work,
         )  # fmt: skip

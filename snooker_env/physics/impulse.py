@@ -24,8 +24,6 @@ ends of compression and restitution are found. All speeds are divided by y_0 fir
 
 from math import hypot, sqrt
 
-import numpy as np
-
 from .._jit import kernel
 from . import dormand_prince, taylor
 from .coulomb import CREEP, GRIPS, KB, SLIDES, SLIP, STARTS, STICK, friction_coefficient, grip_holds, held, rates, settled, slips
@@ -82,13 +80,13 @@ def _breaks_loose_at(w, start, c, law, mu_s, near, cloth):
 
 
 @kernel
-def solve(start, c, law, mu_s, e, accuracy):
+def solve(start, c, law, mu_s, e, accuracy, w):
     """Integrate one impact. Speeds in units of the closing speed (so that is 1); returns (F1, F2, G1, G2, p, W, Z), status.
 
     start: (a1, a2, b1, b2) before the impact. c: (k1, k2, c1, c2, d_a, d_b, d_y, n0, n2, l_a, l_y), see the module's text.
     accuracy = (tol, delta, creep, order), the first three in units of the closing speed: tol the local error allowed in a step; slips
     below delta count as zero; a slip that has broken loose is followed with its limiting direction until it exceeds creep; order: the
-    highest of the Taylor series.
+    highest of the Taylor series. w: a work array of ``polynomial.WORK`` numbers.
     """
     tol, delta, creep, order = accuracy
     x = _ZERO
@@ -118,7 +116,6 @@ def solve(start, c, law, mu_s, e, accuracy):
             if s <= delta:
                 mode = STICK if held(x, start, c, law, mu_s, near, cloth) else CREEP
             k1 = rates(x, mode, start, c, law, mu_s, near, cloth)
-    w = np.empty(ROW * (order + 1))
     compressing, top, target = True, 0.0, 0.0
     located = False
     b1_old, b2_old = b1, b2

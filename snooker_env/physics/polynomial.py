@@ -7,6 +7,7 @@ seven quantities are the state (F1, F2, G1, G2, p, W, Z); then the closing speed
 from .._jit import kernel
 
 ROW = 16
+WORK = 21 * ROW  # the size of a work array: a step of degree 20
 W, Y = 5, 7
 
 
