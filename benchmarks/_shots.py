@@ -11,7 +11,7 @@ import numpy as np
 
 import snooker_env as sn
 from snooker_env.envs.noise import Noise
-from snooker_env.game.layouts import held_out
+from snooker_env.game.layouts import layout as deal
 from snooker_env.game.pots import POCKETS, pots
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.table import UNBOUNDED
@@ -130,7 +130,7 @@ def full_table(n, world, seed=0, *, speed=(1.0, 4.5)):
     while sum(len(p.ball) for p in parts) < n:
         found, balls, targets = [], [], []
         while len(found) < n:
-            layout, on_table = held_out(rng)
+            layout, on_table = deal("held_out", rng)
             possible = pots(layout, on_table, 0x3FFFFE, most=5)
             possible = possible[possible[:, 5] >= TOLERANCE]
             if len(possible):

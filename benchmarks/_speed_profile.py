@@ -95,7 +95,7 @@ def leave(tally, piece, entered):
 
 
 def _is_kernel(node):
-    return isinstance(node, ast.FunctionDef) and any(isinstance(d, ast.Name) and d.id in ("kernel", "entry") for d in node.decorator_list)
+    return isinstance(node, ast.FunctionDef) and any(isinstance(d, ast.Name) and d.id in ("kernel", "inlined", "entry") for d in node.decorator_list)
 
 
 def _callee(statement):

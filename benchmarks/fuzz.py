@@ -194,12 +194,15 @@ def batch(seed, number):
 def allowed(fidelity):
     """The bound of each invariant, in the order of ``invariants.NAMES``.
 
-    Euler's steps are not located: its energy may err by 5/N. "fast" integrates cushions to 1e-3: a ball may still close at 1e-2 of its speed."""
+    Euler's steps are not located: its energy may err by 5/N. "fast" integrates cushions to 1e-3: a ball may still close at 1e-2 of its
+    speed.
+    """
     code, n = contact.parse_fidelity(fidelity)
     gain = 5 / n if n else 1e-3 if code == contact.FAST else 1e-9
+    parting = 1 / n if n else 1e-2 if code == contact.FAST else 1e-5
     bounds = dict.fromkeys(invariants.NAMES, 0.0)
     bounds |= {
-        "jump": 1e-12, "energy at impact": gain, "energy between": 1e-12, "momentum": 1e-6, "parting": 1 / n if n else 1e-2 if code == contact.FAST else 1e-5,
+        "jump": 1e-12, "energy at impact": gain, "energy between": 1e-12, "momentum": 1e-6, "parting": parting,
         "overlap": 1e-9, "in cushion": 1e-9, "rest": 1e-9,
     }  # fmt: skip
     return np.array([bounds[name] for name in invariants.NAMES])

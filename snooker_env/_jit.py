@@ -11,6 +11,7 @@ import os
 import tempfile
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numba
 from numba.core import config
@@ -52,7 +53,7 @@ def cache_folder():
 CACHE_FOLDER = cache_folder()
 
 
-_OPTIONS = {"nogil": True, "error_model": "numpy"}
+_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 _INNER = _OPTIONS | {"_nrt": False, "no_cfunc_wrapper": True}
 
 

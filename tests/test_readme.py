@@ -27,14 +27,21 @@ def test_the_two_commands_are_those_that_ci_runs():
 
 MODULES = sorted(set(re.findall(r"python -m (benchmarks\.\w+)", README)))
 SHORT = {
-    "benchmarks.speed": ["--shots", "20", "--repeats", "1"],
+    "benchmarks.paper": ["--no-pictures", "--json", "{tmp}/p.json"],
+    "benchmarks.tradeoff": ["--impacts", "30", "--shots", "12", "--repeats", "1", "--out", "{tmp}/t.png"],
+    "benchmarks.scene": ["--shots", "12", "--repeats", "1", "--models", "spin decay", "jaw arcs", "--out", "{tmp}/s.png"],
+    "benchmarks.rack": ["--shots", "2", "--orders", "2", "--racks", "2", "--out", "{tmp}/rack.png"],
+    "benchmarks.stability": ["--fuzz", "2000"],
+    "benchmarks.speed": [
+        "--shots", "20", "--repeats", "1", "--parts", "impacts", "shots", "growth", "--largest-batch", "64", "--out", "{tmp}/speed.png",
+    ],
     "benchmarks.fit_cushion": [],
     "benchmarks.make_opened": ["--tables", "2", "--out", "{tmp}/opened.npz"],
     "benchmarks.frames": ["--frames", "2", "--jobs", "1"],
     "benchmarks.layouts_picture": ["--out", "{tmp}/layouts.png"],
     "benchmarks.pictures": ["--out", "{tmp}/shot.png"],
     "benchmarks.vector": ["--seconds", "0.1", "--repeats", "1", "--tables", "64", "--ppo-steps", "2048"],
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("module", MODULES)

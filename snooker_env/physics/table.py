@@ -6,7 +6,7 @@ openings (3.5 in corner, 4 in middle at the fall of the slate). Straight facings
 crosses the fall before it could touch one.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import hypot, sqrt
 
 import numpy as np
@@ -43,6 +43,7 @@ class Table:
     """(k, 6) jaw arcs: centre x, y, radius [m], unit vector to the arc's middle, cosine of its half angle."""
     falls: np.ndarray
     """(k, 3) falls: centre x, y, radius [m]; a ball drops when its centre crosses the circle. Index = pocket, see ``POCKETS``."""
+    _narrowest: tuple[float, int, int] = field(init=False, repr=False)
 
     def __post_init__(self):
         for name, columns in (("noses", 5), ("jaws", 6), ("falls", 3)):
