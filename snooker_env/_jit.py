@@ -54,7 +54,8 @@ CACHE_FOLDER = cache_folder()
 
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-_INNER = _OPTIONS | {"_nrt": False, "no_cfunc_wrapper": True}
+_INNER: dict[str, Any] = _OPTIONS | {"_nrt": False, "no_cfunc_wrapper": True}
+_INLINED: dict[str, Any] = _INNER | {"inline": "always"}
 
 
 def kernel(function):
@@ -67,7 +68,7 @@ def kernel(function):
 
 def inlined(function):
     """Compile an inner kernel as a part of its one caller, a large ``kernel``: else its code would be optimised once more there."""
-    return numba.njit(**_INNER, inline="always")(function)
+    return numba.njit(**_INLINED)(function)
 
 
 def entry(function):
