@@ -194,11 +194,11 @@ def batch(seed, number):
 def allowed(fidelity):
     """The bound of each invariant, in the order of ``invariants.NAMES``.
 
-    Euler's steps are not located: its energy may err by 5/N. "fast" integrates cushions to 1e-3: a ball may still close at 1e-2 of its
+    Euler's steps are not located: its energy may err by 5/N. "fast" integrates cushions to 1e-4 a step: a ball may still close at 1e-2 of its
     speed.
     """
     code, n = contact.parse_fidelity(fidelity)
-    gain = 5 / n if n else 1e-3 if code == contact.FAST else 1e-9
+    gain = 5 / n if n else 5e-3 if code == contact.FAST else 1e-9
     parting = 1 / n if n else 1e-2 if code == contact.FAST else 1e-5
     bounds = dict.fromkeys(invariants.NAMES, 0.0)
     bounds |= {

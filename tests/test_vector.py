@@ -1,7 +1,9 @@
 """Does the native vector environment play, bit for bit, what ``SyncVectorEnv`` plays, in every mode and for any number of threads?"""
 
 import copy
+import os
 import pickle
+import signal
 import warnings
 
 import gymnasium
@@ -353,3 +355,32 @@ def test_processes_forked_while_threads_are_kept_play_on():
         forked.close()
     env.step(a)
     env.close()
+
+
+def test_an_environment_that_has_played_on_threads_plays_on_in_a_forked_process():
+    """A child has none of its parent's threads; waiting for them would be for ever."""
+    env = native(64, threads=2)
+    env.reset(seed=3)
+    a = np.zeros((64, 4))
+    env.step(a)
+    mine, yours = os.pipe()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of forking beside threads
+        child = os.fork()
+    if child == 0:
+        signal.alarm(30)  # kills it if it waits
+        os.write(yours, np.ascontiguousarray(env.step(a)[0]).tobytes())
+        os._exit(0)
+    os.close(yours)
+    with os.fdopen(mine, "rb") as pipe:
+        got = pipe.read()
+    os.waitpid(child, 0)
+    assert got == np.ascontiguousarray(env.step(a)[0]).tobytes()
+    env.close()
+
+
+def test_the_number_of_threads_is_fixed():
+    """Work space is made for it: a different number would write beyond its end."""
+    env = native(64, threads=2)
+    with pytest.raises(AttributeError):
+        env.threads = 1

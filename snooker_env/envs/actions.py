@@ -119,7 +119,7 @@ class Actions:
             raise refuse("action", action, allowed)
         if a.shape != (self.size,):
             raise refuse_what("action", f"array of shape {a.shape}", allowed)
-        if not np.all(np.abs(a) <= 1.0):  # NaN fails too
+        if not np.all((a >= -1) & (a <= 1)):  # NaN fails too; the most negative integer has no absolute value
             raise refuse("action", a.tolist(), "must be finite and within [-1, 1]")
         return a.tolist()
 

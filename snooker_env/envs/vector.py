@@ -60,7 +60,7 @@ class SnookerVectorEnv(VectorEnv):
             raise refuse("task", task, 'must be "visit" here; for whole frames use vectorization_mode="sync" or "async"')
         choice("task", task, ("visit",))
         self.num_envs = integer("num_envs", num_envs, 1, 2**24)
-        self.threads = min(1024, _cores()) if threads is None else integer("threads", threads, 1, 1024)
+        self._threads = min(1024, _cores()) if threads is None else integer("threads", threads, 1, 1024)
         self.autoreset_mode = autoreset_mode if isinstance(autoreset_mode, AutoresetMode) else AutoresetMode(autoreset_mode)
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
         if render_mode is not None:
@@ -82,7 +82,7 @@ class SnookerVectorEnv(VectorEnv):
         self._keyed = np.zeros(self.num_envs, np.bool_)  # has the table's stream a key?
         self._begun = np.zeros(self.num_envs, np.bool_)
         self._done = np.zeros(self.num_envs, np.bool_)
-        self._pool, self._works = None, []
+        self._pool, self._pool_process, self._works = None, 0, []
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
@@ -153,9 +153,14 @@ class SnookerVectorEnv(VectorEnv):
 
     def close_extras(self, **kwargs):
         """End the threads."""
-        if self._pool is not None:
+        if self._pool is not None and self._pool_process == os.getpid():
             self._pool.shutdown()
-            self._pool = None
+        self._pool = None
+
+    @property
+    def threads(self):
+        """How many threads play the tables, fixed when the environment is made."""
+        return self._threads
 
     @property
     def np_random(self):
@@ -242,8 +247,8 @@ class SnookerVectorEnv(VectorEnv):
         if threads == 1:
             play(self._works[0])
             return
-        if self._pool is None:
-            self._pool = ThreadPoolExecutor(threads - 1, "snooker")
+        if self._pool is None or self._pool_process != os.getpid():  # a forked process has none of its parent's threads
+            self._pool, self._pool_process = ThreadPoolExecutor(threads - 1, "snooker"), os.getpid()
         others = [self._pool.submit(play, work) for work in self._works[1:threads]]
         try:
             play(self._works[0])

@@ -22,7 +22,7 @@ MAX_EULER_STEPS = 10_000_000
 _REFERENCE = (1e-13, 1e-13, 1e-5, 20)
 _STANDARD = (5e-8, 1e-7, 1e-3, 12)
 # Without the cloth's reaction a cushion would be wrong by 7 % of the speed, so "fast" keeps it and solves a few per mille exactly.
-_LOOSE = (1e-4, 1e-4, 1e-2, 8)
+_LOOSE = (1e-4, 1e-5, 1e-2, 8)
 
 _NO_CLOSING = 1e-60  # below it a speed is zero: the scaled slips would overflow, and nothing physical is lost
 _BALLS = (7.0, 6.0, -1.0, 2.5, 0.0, 1.0, -2.0, 0.0, 1.0, 0.0, 0.0)  # ball pressed: O; from the masses in impulse.py's text

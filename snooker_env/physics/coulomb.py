@@ -78,7 +78,8 @@ def _stick_forces(b1, b2, z, c, mu_s, near, cloth):
     else:
         e1, e2 = 0.0, 1.0 if d_b - c2 * d_a / k2 >= 0.0 else -1.0
     # g = -mu_s N e and f = -(d + C g)/k with N = n0 + n2 f2: one linear equation for f2
-    f2 = (c2 * mu_s * e2 * n0 - d_a) / (k2 - c2 * mu_s * e2 * n2)
+    drive = c2 * mu_s * e2 * n0 - d_a
+    f2 = drive / (k2 - c2 * mu_s * e2 * n2) if drive != 0.0 else 0.0  # at sin_theta 0, mu_s 1 both are zero
     load = n0 + n2 * f2
     if load < 0.0 or z > 0.0:
         f2 = (l_a * n0 - d_a) / (k2 - l_a * n2)
@@ -173,6 +174,16 @@ def held(x, start, c, law, mu_s, near, cloth):
     _1, _2, b1, b2, _v = slips(x, start, c)
     f = _stick_forces(b1, b2, x[6], c, mu_s, near, cloth)
     return hypot(f[0], f[1]) <= friction_coefficient(0.0, law)
+
+
+@kernel
+def wedged(c, law, mu_s):
+    """Between nose and cloth, both slips zero: do both hold?
+
+    Then nothing moves across the nose, and no impulse frees the ball. It takes both frictions: the forces go through both contacts.
+    """
+    _1, f2, _2, g2, _lift = _stick_forces(0.0, 0.0, 0.0, c, mu_s, 0.0, GRIPS)
+    return abs(f2) <= friction_coefficient(0.0, law) and abs(g2) <= mu_s * (c[7] + c[8] * f2)
 
 
 @kernel

@@ -178,9 +178,15 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
         s = distance_crossing(cx, cy, x1, y1, x2, y2, jaws[k, 2] + R, min(T, best))
         if s < best:
             dx, dy = cx + (x1 + x2 * s) * s, cy + (y1 + y2 * s) * s
-            # The nose ends where the arc starts, with a common tangent: a ball pressed SKIN deep into the nose falls through the circle
-            # an angle of sqrt(2 SKIN / d) before that.
-            seam = sqrt(2.5 * SKIN * (1.0 - jaws[k, 5] * jaws[k, 5]) / (jaws[k, 2] + R))
-            if dx * jaws[k, 3] + dy * jaws[k, 4] >= (jaws[k, 5] - seam) * sqrt(dx * dx + dy * dy):
-                best, kind, index = s, 2, k
+            d = sqrt(dx * dx + dy * dy)
+            before = jaws[k, 5] - (dx * jaws[k, 3] + dy * jaws[k, 4]) / d
+            if before > 0.0:
+                # The nose ends where the arc starts, with a common tangent: a ball pressed SKIN deep into the nose falls through the circle
+                # an angle of sqrt(2 SKIN / d) before that. One that glides along the nose only grazes it, by less than a tenth of that.
+                seam = sqrt(2.5 * SKIN / (jaws[k, 2] + R))
+                vx, vy = x1 + 2.0 * x2 * s, y1 + 2.0 * y2 * s
+                grazes = -(dx * vx + dy * vy) < 0.3 * seam * d * sqrt(vx * vx + vy * vy)
+                if before > seam * sqrt(1.0 - jaws[k, 5] * jaws[k, 5]) or grazes:
+                    continue
+            best, kind, index = s, 2, k
     return motion[i, T0] + best, kind, index

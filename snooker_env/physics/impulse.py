@@ -26,7 +26,7 @@ from math import hypot, sqrt
 
 from .._jit import kernel
 from . import dormand_prince, taylor
-from .coulomb import CREEP, GRIPS, KB, SLIDES, SLIP, STARTS, STICK, friction_coefficient, grip_holds, held, rates, settled, slips
+from .coulomb import CREEP, GRIPS, KB, SLIDES, SLIP, STARTS, STICK, friction_coefficient, grip_holds, held, rates, settled, slips, wedged
 from .polynomial import ROW, W, Y, state_at, time_of, value_at
 
 OK, TOO_MANY_STEPS = 0, 1
@@ -137,6 +137,9 @@ def solve(start, c, law, mu_s, e, accuracy, w):
             if worst > tol and h > 1e-13:
                 h *= max(0.2, 0.9 * (tol / worst) ** 0.2)
                 continue
+            if mode == SLIP and new[4] - x[4] > 2.0 * max(p_full - x[4], 0.1 * p_full):
+                h *= 0.5  # the slip grew: the step's polynomial is no good over several impacts' impulse
+                continue
             a1, a2, b1, b2, y = slips(new, start, c)
             if b1 * b1_old + b2 * b2_old < 0.0 and mu_s * (c[7] + abs(c[8]) * most) * (new[4] - x[4]) > delta and h > 1e-13:
                 h *= 0.25  # the cloth's slip turned right round inside the step, where the stages may not have looked
@@ -174,15 +177,14 @@ def solve(start, c, law, mu_s, e, accuracy, w):
                 h *= 0.5
                 continue
             next_mode = SLIP
-        elif k7[0] * a1 + k7[1] * a2 > 0.0 and s > delta:  # friction no longer opposes the slip: it died inside the step
-            if h > delta:
+        elif k7[0] * a1 + k7[1] * a2 > 0.0 and s > delta:  # friction does not oppose the slip
+            o1, o2, _1, _2, _y = slips(x, start, c)
+            if h > delta and k1[0] * o1 + k1[1] * o2 <= 0.0:  # it did before: the slip died inside the step
                 h *= 0.5
                 continue
             next_mode = STICK if held(new, start, c, law, mu_s, near, cloth) else CREEP
         elif s <= delta and held(new, start, c, law, mu_s, near, cloth):
             next_mode = STICK
-        if mode == STICK and cloth == GRIPS and c[9] != 0.0 and y < 1e3 * delta:
-            return new, OK  # wedged between nose and cloth: both hold, so nothing moves across the nose, and no impulse frees the ball
         if n >= _KNIFE_EDGE:  # friction all but balances what drives a slip, which stays small and stiff: follow its limit
             near, creep = max(near, _STIFF), max(creep, 10.0 * _STIFF)
         if n >= _JAMMED and abs(y) < 1e-2:
@@ -204,11 +206,17 @@ def solve(start, c, law, mu_s, e, accuracy, w):
         x, k1, b1_old, b2_old, located = new, k7, b1, b2, False
         if next_mode != mode or (next_cloth != cloth and (next_cloth == GRIPS or cloth == GRIPS)):
             mode, cloth = next_mode, next_cloth
+            if mode == STICK and cloth == GRIPS and c[9] != 0.0:
+                if wedged(c, law, mu_s):
+                    return new, OK
+                cloth = STARTS
+                mode = STICK if held(x, start, c, law, mu_s, near, cloth) else CREEP
             k1 = rates(x, mode, start, c, law, mu_s, near, cloth)
             h = p_full if mode == STICK else creep if mode == CREEP else 0.4 * h_slip
-        cloth = next_cloth
+        elif next_cloth != cloth:
+            cloth = next_cloth
         if mode == SLIP:
-            h = min(h, h_slip)
+            h = min(h, h_slip, max(p_full - x[4], 0.1 * p_full) / s)
         elif x[4] < p_full:
             h = min(h, 1.01 * (p_full - x[4]))
         if may_grip and cloth == SLIDES:

@@ -19,6 +19,7 @@ from .polynomial import ROW
 
 _MIN_ORDER = 4
 _HOVER = 0.03  # an error allowed in a slip, over that slip: a slip that should die would hover at the size of the tolerance
+_HUGE = 1e100  # no use in going on: the next coefficients might overflow
 _STEEP = 0.9  # ratio of successive terms; a larger one is chance
 _POSITIVE = 0xFFFF  # a mask that spares the compiler's test for negative indices, a third of the time
 _S, _A1, _A2, _E1, _E2, _B, _N, _MU = 8, 9, 10, 11, 12, 13, 14, 15  # the series' places in a row, behind the polynomial's
@@ -75,7 +76,7 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
         if (size * t + last) * t_power <= tol and k >= _MIN_ORDER:
             return k, t
         t_power *= t
-        if k == order:
+        if k == order or size > _HUGE:
             break
         # products of the orders 1 to k - 1, the newest last
         squares = ys = ee = be1 = be2 = ne1 = ne2 = 0.0
@@ -134,13 +135,13 @@ def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
         w[m + _S], w[m + _E1], w[m + _E2], w[m + _N] = s, e1, e2, load
         w[m + _B] = v1 * e1_0 + v2 * e2_0 + scale * ee
         g1, g2 = -((load0 * e1 + ne1) + load * e1_0), -((load0 * e2 + ne2) + load * e2_0)
-    h = exp(log(tol / (last + 1e-300)) / (order - 1))
+    h = exp(log(tol / (last + 1e-300)) / (k - 1))
     ratio = size * h / (last + 1e-300)
     if ratio > 1.0:  # then the very last term is the larger
-        h = exp(log(tol / size) / order)
+        h = exp(log(tol / size) / k)
     # what is left out is the last term over 1 - ratio: a step shorter by the root of that, or a little more (Bernoulli's inequality)
     ratio = min(ratio, _STEEP)
-    return order, h / (1.0 + ratio / ((1.0 - ratio) * order))
+    return k, h / (1.0 + ratio / ((1.0 - ratio) * k))
 
 
 @kernel

@@ -335,3 +335,15 @@ def test_a_ball_may_lie_still_in_the_mouth_of_a_pocket():
     for wrong in [(0.9145, 0.03449), (0.899444997865469, 0.033), (0.899444997865469, 0.036), (0.91, 0.5)]:
         with pytest.raises(ValueError, match=r"positions\[0\] = .*(must be on the table|over a pocket|overlaps)"):
             sn.simulate([wrong, (0.0, 0.0)], [(0.0, 0.0)] * 2, np.zeros((2, 3)))
+
+
+def test_a_ball_that_glides_along_a_nose_passes_its_end_without_an_impact():
+    """The jaw's arc begins there with the nose's tangent: touching it is no fall through it."""
+    rng = np.random.default_rng(0)
+    n = 200
+    positions = np.stack([np.full(n, -(0.889 - R)), rng.uniform(0.2, 1.5, n)], 1)[:, None]
+    velocities = np.stack([np.zeros(n), rng.uniform(0.8, 3, n)], 1)[:, None]
+    batch = sn.simulate_batch(positions, velocities, np.zeros((n, 1, 3)), events=True)
+    assert batch.events is not None
+    met = np.concatenate(batch.events)["kind"]
+    assert EventKind.POT in met and EventKind.JAW not in met
