@@ -95,7 +95,8 @@ def leave(tally, piece, entered):
 
 
 def _is_kernel(node):
-    return isinstance(node, ast.FunctionDef) and any(isinstance(d, ast.Name) and d.id in ("kernel", "inlined", "entry") for d in node.decorator_list)
+    names = {d.id for d in getattr(node, "decorator_list", ()) if isinstance(d, ast.Name)}
+    return isinstance(node, ast.FunctionDef) and not names.isdisjoint(("kernel", "inlined", "entry"))
 
 
 def _callee(statement):

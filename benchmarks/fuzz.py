@@ -194,7 +194,7 @@ def batch(seed, number):
 def allowed(fidelity):
     """The bound of each invariant, in the order of ``invariants.NAMES``.
 
-    Euler's steps are not located: its energy may err by 5/N. "fast" integrates cushions to 1e-4 a step: a ball may still close at 1e-2 of its
+    Euler's steps are not located: its energy may err by 5/N. "fast" takes steps in cushions to 1e-4: a ball may still close at 1e-2 of its
     speed.
     """
     code, n = contact.parse_fidelity(fidelity)

@@ -1,6 +1,6 @@
 """What do the layouts look like? One picture of them all, as the README shows it.
 
-    python -m benchmarks.layouts_picture [--out FILE] [--seed N]
+python -m benchmarks.layouts_picture [--out FILE] [--seed N]
 """
 
 import argparse

@@ -1,6 +1,6 @@
 """How were the opened tables made? Plays frames open with the project's own engine and referee and writes ``game/opened.npz``.
 
-    python -m benchmarks.make_opened [--tables 10240] [--seed 0]
+python -m benchmarks.make_opened [--tables 10240] [--seed 0]
 """
 
 import argparse

@@ -1,6 +1,6 @@
 """How is the README's picture made? One pot with side and screw on an opened table, the paths drawn.
 
-    python -m benchmarks.pictures [--out FILE]
+python -m benchmarks.pictures [--out FILE]
 """
 
 import argparse

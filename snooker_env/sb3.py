@@ -1,7 +1,7 @@
 """How does Stable-Baselines3 train on many tables at once? ``SnookerVecEnv``: its ``VecEnv`` on the native vector environment.
 
-    from snooker_env.sb3 import SnookerVecEnv
-    PPO("MlpPolicy", SnookerVecEnv(64, aim="target")).learn(100_000)
+from snooker_env.sb3 import SnookerVecEnv
+PPO("MlpPolicy", SnookerVecEnv(64, aim="target")).learn(100_000)
 """
 
 import time

@@ -410,7 +410,7 @@ ACTIONS = [
     case(lambda n: [-1.5] + [0.0] * (n - 1), "action", "-1.5", "must be finite and within [-1, 1]", "below"),
     case(lambda n: [NAN] + [0.0] * (n - 1), "action", "nan", "must be finite and within [-1, 1]", "nan"),
     case(lambda n: [0.0] * (n - 1) + [INF], "action", "inf", "must be finite and within [-1, 1]", "inf"),
-    case(lambda n: np.array([-128] + [0] * (n - 1), np.int8), "action", "-128", "must be finite and within [-1, 1]", "most negative integer"),
+    case(lambda n: np.array([-128] + [0] * (n - 1), np.int8), "action", "-128", "must be finite and within [-1, 1]", "lowest integer"),
     case(lambda n: ["a"] * n, "action", "'a'", "must have shape", "text"),
     case(lambda n: np.zeros(n, complex), "action", "0", "must have shape", "complex"),
 ]

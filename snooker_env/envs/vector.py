@@ -1,6 +1,6 @@
 """How do thousands of tables play side by side? The native vector environment of ``Snooker-v0``: steps as kernels, spread over threads.
 
-    gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
+gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
 """
 
 import os

@@ -179,7 +179,7 @@ def _record(segments, n_segments, motion, state, i):
     return n_segments + 1
 
 
-@kernel
+@inlined
 def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, fidelity, n_steps, max_events,
         event_time, event_what, segments, motion, state, pair, best_time, own_time, best_ball, own_kind, own_index, work):  # fmt: skip
     """One shot to rest. In place: positions, velocities, spins become the final ones, on_table and potted are updated.

@@ -5,6 +5,10 @@ import pytest
 
 from snooker_env.game import balls
 from snooker_env.game.balls import BALL_RADIUS, SPOTS, BallOn
+from tests.kernels import from_python
+
+bits, count = from_python(balls.bits), from_python(balls.count)
+next_on, balls_on = from_python(balls.next_on_kernel), from_python(balls.balls_on_kernel)
 
 
 def test_rack_touches_and_never_overlaps():
@@ -44,8 +48,8 @@ def test_masks():
     assert balls.mask_of(range(22)) == balls.ALL_MASK == balls.CUE_BIT | balls.REDS_MASK | balls.COLOURS_MASK
     present = np.zeros(22, dtype=bool)
     present[[0, 5, 20]] = True
-    assert balls.bits(present) == balls.mask_of([0, 5, 20])
-    assert balls.count(balls.mask_of([1, 7, 21])) == 3
+    assert bits(present) == balls.mask_of([0, 5, 20])
+    assert count(balls.mask_of([1, 7, 21])) == 3
 
 
 @pytest.mark.parametrize(
@@ -54,7 +58,7 @@ def test_masks():
 )
 def test_next_on(on_table, expected):
     mask = balls.mask_of(on_table)
-    assert balls.next_on(mask) == balls.next_on_kernel(mask) == expected
+    assert balls.next_on(mask) == next_on(mask) == expected
 
 
 @pytest.mark.parametrize(
@@ -63,7 +67,7 @@ def test_next_on(on_table, expected):
 )
 def test_balls_on(ball_on, expected):
     mask = balls.mask_of([1, 2, 16, 21])
-    assert balls.balls_on(BallOn[ball_on], mask) == balls.balls_on_kernel(int(BallOn[ball_on]), mask) == balls.mask_of(expected)
+    assert balls.balls_on(BallOn[ball_on], mask) == balls_on(int(BallOn[ball_on]), mask) == balls.mask_of(expected)
 
 
 @pytest.mark.parametrize(

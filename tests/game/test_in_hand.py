@@ -5,9 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from snooker_env.game import in_hand
 from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, BROWN, D_RADIUS, GREEN, SPOTS, YELLOW
-from snooker_env.game.in_hand import in_d, place_cue
+from snooker_env.game.in_hand import place_cue
 from snooker_env.game.spotting import CLEARANCE
+from tests.kernels import from_python
+
+in_d = from_python(in_hand.in_d)
 
 REACH = 2 * BALL_RADIUS + CLEARANCE
 
