@@ -4,15 +4,9 @@ In the copy every kernel of ``engine.py`` and ``detection.py`` gets one more arg
 calls a function named in ``PIECES`` reads the counter before and after. A piece's time is its own: what it calls, if that is a piece too,
 is taken off. What reading costs, measured on an empty statement, is taken off as well; what then differs from the time of the
 untouched kernel on the same shots is printed as the remainder (the readings keep the compiler from merging and reordering).
-The copy lies in the temporary folder under a hash of its source, so that numba's cache of it is found again.
 """
 
 import ast
-import hashlib
-import importlib
-import os
-import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +18,7 @@ from numba.extending import intrinsic
 
 import snooker_env
 
+from . import _copies
 from ._speed_clock import kernel_arguments, ns_per_tick, ticks, time_shots
 
 PIECES = (
@@ -164,22 +159,8 @@ def instrumented(texts):
 
 def load():
     """The copy's ``engine`` and ``simulation`` modules."""
-    root, name = Path(snooker_env.__file__).parent, "snooker_env_profile"
-    texts = instrumented({p.relative_to(root).as_posix(): p.read_text() for p in sorted(root.rglob("*.py"))})
-    seen = sorted(texts.items()), Path(__file__).read_text()  # ``enter`` and ``leave`` are compiled into the copy
-    folder = Path(tempfile.gettempdir()) / f"{name}_{hashlib.sha256(repr(seen).encode()).hexdigest()[:16]}"
-    if not folder.exists():  # made aside and moved, so that a second process never sees half of it
-        aside = Path(tempfile.mkdtemp(prefix=name, dir=folder.parent))
-        for path, text in texts.items():
-            target = aside / name / path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text)
-        os.replace(aside, folder)
-    sys.path.insert(0, str(folder))
-    try:
-        return importlib.import_module(f"{name}.physics.engine"), importlib.import_module(f"{name}.simulation")
-    finally:
-        sys.path.remove(str(folder))
+    more = Path(__file__).read_text()  # ``enter`` and ``leave`` are compiled into the copy
+    return _copies.load("snooker_env_profile", instrumented(_copies.texts()), ["physics.engine", "simulation"], more)
 
 
 @numba.njit

@@ -1,17 +1,10 @@
 """How would a shot run without one of its models? A copy of the package with other impacts, since the product has no such switches.
 
 The copy's ``contact.py`` gets one more piece of text, which adds fidelities beyond the product's own: each is ``standard`` with one
-model left out. The copy lies in the temporary folder under a hash of its source, so that numba's cache of it is found again.
+model left out.
 """
 
-import hashlib
-import importlib
-import os
-import sys
-import tempfile
-from pathlib import Path
-
-import snooker_env
+from . import _copies
 
 FREE_BALLS, LOOSE_CUSHION, SMOOTH_CLOTH, MIRROR = 101, 102, 103, 104
 """Fidelities of the copy. Two balls as free spheres (the closed form of ``fast``); the cushion with the loose tolerance of ``fast``; the
@@ -63,20 +56,6 @@ def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, work):
 
 def load():
     """The copy's ``simulation`` module."""
-    root, name = Path(snooker_env.__file__).parent, "snooker_env_variants"
-    texts = {p.relative_to(root): p.read_text() for p in sorted(root.rglob("*.py"))}
-    texts[Path("physics/contact.py")] += _ADDED
-    key = hashlib.sha256(repr(sorted((p.as_posix(), t) for p, t in texts.items())).encode()).hexdigest()[:16]
-    folder = Path(tempfile.gettempdir()) / f"{name}_{key}"
-    if not folder.exists():  # made aside and moved, so that a second process never sees half of it
-        aside = Path(tempfile.mkdtemp(prefix=name, dir=folder.parent))
-        for path, text in texts.items():
-            target = aside / name / path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text)
-        os.replace(aside, folder)
-    sys.path.insert(0, str(folder))
-    try:
-        return importlib.import_module(f"{name}.simulation")
-    finally:
-        sys.path.remove(str(folder))
+    texts = _copies.texts()
+    texts["physics/contact.py"] += _ADDED
+    return _copies.load("snooker_env_variants", texts, ["simulation"])[0]
