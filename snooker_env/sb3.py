@@ -88,9 +88,9 @@ class SnookerVecEnv(VecEnv):
         raise AttributeError(f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv")
 
     def env_method(self, method_name, *method_args, indices=None, **method_kwargs):
-        """``get_state`` of the tables asked for; no other method belongs to one table."""
-        choice("method_name", method_name, ("get_state",))
-        states = self.tables.get_state()
+        """``get_state`` or ``action_masks`` of the tables asked for; no other method belongs to one table."""
+        choice("method_name", method_name, ("get_state", "action_masks"))
+        states = getattr(self.tables, method_name)()
         return [states[k] for k in self._get_indices(indices)]
 
     def env_is_wrapped(self, wrapper_class, indices=None):

@@ -3,6 +3,7 @@
 from math import atan2, hypot, pi, radians, sqrt
 
 import numpy as np
+from gymnasium import spaces
 
 from .._check import choice, refuse, refuse_what, truth
 from .._jit import entry, kernel
@@ -18,7 +19,7 @@ TARGET_SPAN = radians(3.0)
 MAX_ELEVATION = radians(30.0)
 
 # Places in the packed options.
-(A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET) = range(5)
+(A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_DISCRETE) = range(6)
 
 
 @kernel
@@ -106,6 +107,7 @@ class Actions:
         self.elevation, self.placement = truth("elevation", elevation), truth("placement", placement)
         self.decision = truth("decision", decision)
         self.physics = physics
+        self.space = spaces.Box(-1.0, 1.0, (4 + self.elevation + 2 * self.placement + self.decision,), np.float32)
         self.size = 4 + self.elevation + 2 * self.placement + self.decision
 
     def check(self, action):
@@ -143,7 +145,7 @@ class Actions:
     def pack(self):
         """What the kernels must know: float64, places ``A_*`` of this module."""
         world = self.physics
-        return np.array([self.aim == "target", self.elevation, self.placement, world.end_mass_ratio, world.max_offset], np.float64)
+        return np.array([self.aim == "target", self.elevation, self.placement, world.end_mass_ratio, world.max_offset, False], np.float64)
 
     def place(self, a):
         """Where in the D the two components of the placement put the cue ball: (x, y)."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .._check import refuse
+from .._check import choice, refuse
 from .._jit import entry, kernel
 from ..game.balls import BALL_RADIUS, CUE, N_BALLS, TOUCH, bits
 from ..game.referee import Stroke
@@ -12,9 +12,11 @@ from ..physics.engine import EventKind
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..simulation import play
-from .actions import Actions
+from .actions import AIMS, Actions
+from .choices import Choices
 from .noise import Noise
 
+ACTIONS = ("box", "discrete")
 AT_ONCE = 1e-9
 """Contacts nearer than this [s] are simultaneous."""
 
@@ -65,7 +67,7 @@ def mask(balls):
 class Shooter:
     """Everything between an intended shot and the balls at rest; one for all players of an environment."""
 
-    def __init__(self, actions: Actions, noise: Noise, physics: Physics, table: Table, fidelity):
+    def __init__(self, actions: Actions | Choices, noise: Noise, physics: Physics, table: Table, fidelity):
         self.actions, self.noise, self.physics, self.table, self.fidelity = actions, noise, physics, table, fidelity
 
     def shoot(self, intended: tuple[float, float, float, float, float], positions, on_table, rng, *, path=False):
@@ -77,7 +79,7 @@ class Shooter:
         return play(positions, velocities, spins, on_table, self.physics, self.table, self.fidelity, path=path)
 
 
-def shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity):
+def shooter_of(action, aim, elevation, placement, decision, noise, physics, table, fidelity):
     """The ``Shooter`` of an environment's arguments, each as documented in ``SnookerEnv``. Raises ValueError."""
     world, cloth = Physics.of(physics), Table.of(table)
     if world.R != BALL_RADIUS:
@@ -86,6 +88,12 @@ def shooter_of(aim, elevation, placement, decision, noise, physics, table, fidel
     if cloth.name == "unbounded":
         raise refuse("table", table, 'must be "match", "tight" or a Table')
     quality, errors = parse_fidelity(fidelity), Noise.of(noise)
+    if choice("action", action, ACTIONS) == "discrete":
+        for name, value in (("elevation", elevation), ("placement", placement), ("decision", decision)):
+            if value is not False:
+                raise refuse(name, value, 'must be False with action="discrete"')
+        choice("aim", aim, AIMS)  # it has no say: the aim is solved
+        return Shooter(Choices(world), errors, world, cloth, quality)
     return Shooter(Actions(aim, elevation, placement, world, decision), errors, world, cloth, quality)
 
 

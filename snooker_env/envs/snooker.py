@@ -4,12 +4,12 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium import spaces
 
 from .._check import choice, refuse
 from ..game.balls import REDS_MASK, BallOn, balls_on
 from ..game.layouts import plan_of
 from . import observations
+from .choices import Choices
 from .frame_task import FrameTask
 from .pictures import FPS, MODES, Pictures
 from .rewards import REWARDS
@@ -90,6 +90,7 @@ class SnookerEnv(gymnasium.Env):
     | task | "visit" | build a break until the first miss or foul; "frame": see Description |
     | layout | "default" | see Starting state |
     | opponent, miss, decision | "none", "off", False | of a frame only; miss: "off" or "clear_path" (``snooker_env.game.frame``) |
+    | action | "box" | or "discrete": one number means a pot, speed, side and top, the aim solved; ``snooker_env.envs.choices`` |
     | aim | "absolute" | or "target" |
     | observation | "flat" | or "balls" |
     | noise | "none" | "professional", "amateur", "club", "olympiad", or a dict of ``snooker_env.envs.noise.Noise`` |
@@ -119,7 +120,7 @@ class SnookerEnv(gymnasium.Env):
     metadata = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012 - Gymnasium's own convention
 
     def __init__(
-        self, *, task="visit", layout="default", aim="absolute", observation="flat", noise="none", reward="points", elevation=False,
+        self, *, task="visit", layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points", elevation=False,
         placement=False, physics="paper", table="match", fidelity="standard", render_mode=None, opponent="none", miss="off",
         decision=False,
     ):  # fmt: skip
@@ -127,16 +128,18 @@ class SnookerEnv(gymnasium.Env):
         layout = LAYOUTS[task] if isinstance(layout, str) and layout == "default" else layout
         plan = plan_of(layout)
         self.layout, self.observation, self.reward = layout, observation, reward
-        self.shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity)
+        self.shooter = shooter_of(action, aim, elevation, placement, decision, noise, physics, table, fidelity)
         self.actions, self.noise, self.physics = self.shooter.actions, self.shooter.noise, self.shooter.physics
         self.table, self.fidelity = self.shooter.table, self.shooter.fidelity
-        self.action_space = spaces.Box(-1.0, 1.0, (self.actions.size,), np.float32)
+        self.action_space = self.actions.space
         self.observation_space = observations.space(observation, frame=whole)
         self.frames: Any = None
         """The ``FrameTask``; None in a visit."""
         self.visits: Any = None
         """The ``Visits`` of one table; None in a frame."""
         self._unbegun = True
+        if whole and action == "discrete":
+            raise refuse("action", action, 'must be "box" with task="frame"')
         if whole:
             self.frames = FrameTask(self.shooter, opponent=opponent, miss=miss, reward=reward, observation=observation)
         else:
@@ -253,6 +256,12 @@ class SnookerEnv(gymnasium.Env):
         if self.over:
             raise gymnasium.error.ResetNeeded(f"the {'visit' if self.frames is None else 'frame'} is over: call reset() before step()")
         return self._visit_step(a) if self.frames is None else self._frame_step(a)
+
+    def action_masks(self):
+        """With ``action="discrete"``: which choices there are, bool (n,), as sb3-contrib's maskable algorithms ask for them."""
+        if self.frames is not None or not isinstance(self.actions, Choices):
+            raise refuse("action", "box", 'must be "discrete": a Box has no masks')
+        return self.visits.action_masks()[0]
 
     def _visit_step(self, a):
         out = Returned(1)

@@ -9,7 +9,6 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium import spaces
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
@@ -18,6 +17,7 @@ from .._check import choice, integer, refuse, refuse_what
 from ..game.balls import BallOn
 from ..game.layouts import plan_of
 from . import observations
+from .choices import Choices
 from .pictures import Pictures
 from .shooting import shooter_of
 from .snooker import LAYOUTS, SnookerEnv, visit_only
@@ -53,7 +53,7 @@ class SnookerVectorEnv(VectorEnv):
 
     def __init__(
         self, num_envs=1, *, max_episode_steps=None, render_mode=None, autoreset_mode=AutoresetMode.NEXT_STEP, threads=None, task="visit",
-        layout="default", aim="absolute", observation="flat", noise="none", reward="points", elevation=False, placement=False,
+        layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points", elevation=False, placement=False,
         physics="paper", table="match", fidelity="standard", opponent="none", miss="off", decision=False,
     ):  # fmt: skip
         if task == "frame":
@@ -67,11 +67,11 @@ class SnookerVectorEnv(VectorEnv):
             choice("render_mode", render_mode, PICTURES)
         layout = LAYOUTS["visit"] if isinstance(layout, str) and layout == "default" else layout
         plan = plan_of(layout)
-        shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity)
+        shooter = shooter_of(action, aim, elevation, placement, decision, noise, physics, table, fidelity)
         visit_only(reward, opponent, miss, decision)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode, self.observation, self.shooter = render_mode, observation, shooter
-        self.single_action_space = spaces.Box(-1.0, 1.0, (shooter.actions.size,), np.float32)
+        self.single_action_space = shooter.actions.space
         self.single_observation_space = observations.space(observation)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
@@ -142,6 +142,12 @@ class SnookerVectorEnv(VectorEnv):
         else:
             self._done = done
         return observations.shaped(self.observation, out.observations), out.rewards, out.terminated, out.truncated, infos
+
+    def action_masks(self):
+        """With ``action="discrete"``: which choices there are on each table, bool (num_envs, n)."""
+        if not isinstance(self.shooter.actions, Choices):
+            raise refuse("action", "box", 'must be "discrete": a Box has no masks')
+        return self.visits.action_masks()
 
     def render(self):
         """A picture of each table: uint8 (H, W, 3) for "rgb_array", str for "ansi"."""

@@ -19,8 +19,10 @@ from ..game.settle import settle_visit
 from ..game.stream import stream_of
 from ..physics import cloth, cue, engine
 from ..physics.engine import Status
+from ..physics.polynomial import WORK
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
-from .actions import A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, place_of, shot_of, tip_on_disc
+from . import choices
+from .actions import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, place_of, shot_of, tip_on_disc
 from .noise import executed
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
@@ -47,9 +49,10 @@ _WHY = {
 
 
 @entry
-def _address(actions, waiting, positions, on_table, game, streams, options, noise, r, v, w, here, shots):
+def _address(actions, waiting, positions, on_table, game, streams, options, noise, phys, fidelity, n_steps, r, v, w, here, shots):
     """Carry the actions (m, k) out up to the strike; tables ``waiting`` for a new layout play no shot."""
-    found = np.empty((1, POT_COLUMNS))
+    found = np.empty((choices.POTS if options[A_DISCRETE] else 1, POT_COLUMNS))
+    motion, phase, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
     for k in range(actions.shape[0]):
         a, p, on = actions[k], positions[k], on_table[k]
         if waiting[k]:
@@ -62,7 +65,11 @@ def _address(actions, waiting, positions, on_table, game, streams, options, nois
             on[CUE] = True
             if free:
                 p[CUE, 0], p[CUE, 1] = x, y
-        intended = shot_of(a, p, on, balls_on_kernel(game[k, BALL_ON], bits(on)), options, found)
+        mask = balls_on_kernel(game[k, BALL_ON], bits(on))
+        if options[A_DISCRETE]:
+            intended = choices.chosen(int(a[0]), p, on, mask, phys, options[A_END_MASS], fidelity, n_steps, found, motion, phase, work)
+        else:
+            intended = shot_of(a, p, on, mask, options, found)
         speed, side, top, aim, elevation = executed(*intended, noise, streams[k])
         side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
         shot = shots[k]
@@ -238,6 +245,12 @@ class Visits:
         self.game[k] = state.ball_on, state.in_hand, state.points, state.over, 0
         self.streams[k] = np.array(state.stream, np.uint64)
 
+    def action_masks(self):
+        """Which choices there are on each table: bool (n, choices.SIZE)."""
+        out = np.empty((self.n, choices.SIZE), np.bool_)
+        choices.masks(self.positions, self.on_table, self.game[:, BALL_ON], out)
+        return out
+
     def play(self, actions, waiting, out, work, start=0, *, same_step=False):
         """One step of the m tables from ``start`` on: actions (m, k) float64 that were checked, results into ``out``.
 
@@ -247,7 +260,24 @@ class Visits:
         here = slice(start, start + len(actions))
         r, v, w, on, shots = (a[: len(actions)] for a in (work.r, work.v, work.w, work.here, work.shots))
         positions, on_table, game, streams = (a[here] for a in (self.positions, self.on_table, self.game, self.streams))
-        _address(actions, waiting, positions, on_table, game, streams, self._options, self._noise, r, v, w, on, shots)
+        shooter = self.rules.shooter
+        _address(
+            actions,
+            waiting,
+            positions,
+            on_table,
+            game,
+            streams,
+            self._options,
+            self._noise,
+            self._phys,
+            *shooter.fidelity,
+            r,
+            v,
+            w,
+            on,
+            shots,
+        )
         m, work.enlarged = len(actions), None
         self._run(work, m)
         self._finish(work, waiting, here, out, m)

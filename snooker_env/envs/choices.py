@@ -1,0 +1,91 @@
+"""Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top, and the aim is solved for them.
+
+The pots are the widest direct ones that the table offers (``game.pots``); one whose aim cannot be found is played along its straight line.
+Where there is none the first stands for a full hit on the nearest ball on. ``action_masks`` says which pots there are.
+"""
+
+import numpy as np
+from gymnasium import spaces
+
+from .._check import refuse, refuse_what
+from .._jit import entry, kernel
+from ..game.balls import BALL_RADIUS, balls_on_kernel, bits
+from ..game.pots import POCKETS, POT_COLUMNS, find_pots
+from ..physics.cue import squirt
+from .actions import line_of
+from .aiming import solved_aim
+
+POTS = 4
+"""Pots to choose from, widest first."""
+SPEEDS = (0.9, 1.3, 1.8, 2.3, 2.9, 3.6, 4.4, 5.3, 6.3)
+"""Cue speeds [m/s]."""
+SIDES = (-0.3, 0.0, 0.3)
+TOPS = (-0.4, -0.2, 0.0, 0.2, 0.4)
+"""Tip offsets over R, right and up."""
+STROKES = len(SPEEDS) * len(SIDES) * len(TOPS)
+SIZE = POTS * STROKES
+
+
+@kernel
+def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_steps, found, motion, state, work):
+    """(speed, side, top, aim, elevation) of choice ``index``, as ``actions.shot_of``; found (POTS, POT_COLUMNS), motion (2, COLUMNS),
+    state (2,) and work are work space."""
+    pot, stroke = index // STROKES, index % STROKES
+    speed = SPEEDS[stroke // 15]
+    side, top = SIDES[stroke // 5 % 3], TOPS[stroke % 5]
+    many = find_pots(positions, on_table, on, BALL_RADIUS, found)
+    if many == 0:
+        aim = line_of(positions, on_table, on, found)
+    else:
+        pot = min(pot, many - 1)
+        ball, pocket, gx, gy = int(found[pot, 0]), int(found[pot, 1]), found[pot, 2], found[pot, 3]
+        aim = solved_aim(
+            positions, ball, POCKETS[pocket, 0], POCKETS[pocket, 1], gx, gy, speed, side, top, 0.0, phys, end_mass_ratio, fidelity,
+            n_steps, motion, state, work,
+        )  # fmt: skip
+    return speed, side, top, aim - squirt(side, end_mass_ratio), 0.0
+
+
+@entry
+def masks(positions, on_table, ball_on, out):
+    """Which choices there are on n tables: ``out`` (n, SIZE) bool."""
+    found = np.empty((POTS, POT_COLUMNS))
+    for k in range(len(out)):
+        on = balls_on_kernel(ball_on[k], bits(on_table[k]))
+        many = find_pots(positions[k], on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
+        for c in range(SIZE):
+            out[k, c] = c < STROKES * max(1, many)
+
+
+class Choices:
+    """The discrete action space's meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``POTS``, ``SPEEDS``, ``SIDES``, ``TOPS``."""
+
+    size = 1
+
+    def __init__(self, physics):
+        self.physics = physics
+        self.space = spaces.Discrete(SIZE)
+
+    def check(self, action):
+        """The choice in a list; ValueError unless it is an integer in [0, SIZE)."""
+        a = np.asarray(action)
+        if a.dtype.kind not in "iu" or a.size != 1 or not 0 <= a.item() < SIZE:
+            raise refuse("action", action, f"must be an integer in [0, {SIZE})")
+        return [float(a.item())]
+
+    def check_many(self, actions, n):
+        """The choices of n tables, float64 (n, 1); ValueError names the first table that is wrong."""
+        a = np.asarray(actions)
+        if a.dtype.kind not in "iu" or a.shape not in ((n,), (n, 1)):
+            raise refuse_what("actions", f"array of {a.dtype} and shape {a.shape}", f"must be {n} integers")
+        a = a.reshape(n)
+        wrong = (a < 0) | (a >= SIZE)
+        if wrong.any():
+            k = int(np.argmax(wrong))
+            raise refuse(f"actions[{k}]", int(a[k]), f"must be in [0, {SIZE})")
+        return a.astype(np.float64).reshape(n, 1)
+
+    def pack(self):
+        """What the kernels must know, places ``A_*`` of ``actions``."""
+        world = self.physics
+        return np.array([False, False, False, world.end_mass_ratio, world.max_offset, True], np.float64)
