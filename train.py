@@ -26,7 +26,8 @@ from pathlib import Path
 import numpy as np
 
 import snooker_env
-from agents.visits import evaluate_all, lesson, make_env, make_envs, show
+from agents.view import make_env, make_envs
+from agents.visits import evaluate_all, lesson, show
 
 try:
     import rich.progress

@@ -1,96 +1,108 @@
-"""What network reads a snooker table? Shared small networks for each ball and each pot, sums over them, and a head that scores every stroke of every pot.
+"""What network reads a snooker table? Small networks shared by balls and by pots, sums over them, a head that scores every stroke.
 
-The order of balls or pots must not matter, so each ball's row goes through one network and each pot's through another (deep sets [Zaheer et
-al. 2017]); sums of the balls' codes and the game's state make the context. The policy's score of a stroke at a pot comes from that pot's
-code and the context, by the same weights for every pot. ``fold`` uses the table's mirror symmetry: every table is turned so that the cue ball lies in
-one quarter, and the choice of side is turned back.
+The order of balls or pots must not matter: each ball's row goes through one network and each pot's through another (deep sets,
+Zaheer et al. 2017). Masked sums of the balls' codes, of the pots' codes and the game's state make the context. The score of a
+stroke at a pot comes from that pot's code and the context, by the same weights for every pot. The table is the same in a mirror: it is read
+with the cue ball on the right, and the choice of side spin is turned back.
 """
+
+from itertools import pairwise
 
 import torch
 from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import nn
 
-from snooker_env.envs.choices import POTS, SIDES, STROKES, TOPS
+from snooker_env.envs.choices import POTS, SIDES, SPEEDS, STROKES, TOPS
 from snooker_env.envs.observations import SIZE
 from snooker_env.game.balls import N_BALLS
 
-from .visits import POT_ENTRIES
+from .view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
 
 BALL, CONTEXT, POT = 64, 128, 64
+"""Widths of the codes."""
 _STATE = SIZE - 5 * N_BALLS
+_N_REDS = 15
 
 
-def _mlp(*sizes):
-    layers = []
-    for a, b in zip(sizes, sizes[1:], strict=False):
-        layers += [nn.Linear(a, b), nn.ReLU()]
-    return nn.Sequential(*layers)
+def mlp(*sizes):
+    """Linear layers of these sizes, each followed by a ReLU."""
+    return nn.Sequential(*(layer for a, b in pairwise(sizes) for layer in (nn.Linear(a, b), nn.ReLU())))
 
 
 class TableReader(BaseFeaturesExtractor):
-    """(n, view) -> (n, CONTEXT + POTS * POT): the context, then each pot's code."""
+    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, and -1 where the table was read in the mirror, else 1."""
 
     def __init__(self, observation_space, width=64):
-        super().__init__(observation_space, CONTEXT + POTS * POT)
-        self.ball = _mlp(5 + 2, width, BALL)
-        self.pot = _mlp(POT_ENTRIES, width, POT)
-        self.context = _mlp(3 * BALL + POT + _STATE + 2, CONTEXT, CONTEXT)
-        self.joint = _mlp(POT + CONTEXT, POT)
+        super().__init__(observation_space, CONTEXT + POTS * POT + 1)
+        self.ball = mlp(5 + 2, width, BALL)
+        self.pot = mlp(POT_ENTRIES, width, POT)
+        self.context = mlp(3 * BALL + POT + _STATE + 3, CONTEXT, CONTEXT)
+        self.joint = mlp(POT + CONTEXT, POT)
+        flips = torch.zeros(SHOWN, dtype=torch.bool)
+        flips[torch.arange(N_BALLS) * 5 + BALL_X] = True
+        for entry in (*POT_X, CUT):
+            flips[SIZE + torch.arange(POTS) * POT_ENTRIES + entry] = True
+        self.register_buffer("flips", flips, persistent=False)
 
     def forward(self, seen):
         """One pass."""
         n = len(seen)
+        side = torch.where(seen[:, BALL_X : BALL_X + 1] < 0.0, -1.0, 1.0)
+        seen = torch.where(self.flips, seen * side, seen)
         balls = seen[:, : 5 * N_BALLS].reshape(n, N_BALLS, 5)
         state = seen[:, 5 * N_BALLS : SIZE]
-        pots = seen[:, SIZE : SIZE + POTS * POT_ENTRIES].reshape(n, POTS, POT_ENTRIES)
+        pots = seen[:, SIZE:].reshape(n, POTS, POT_ENTRIES)
         cue = balls[:, 0, :2]
-        here = balls[:, 1:, 2:3]
-        on, red = balls[:, 1:, 4:5] * here, torch.zeros_like(here)
-        red[:, :15] = here[:, :15]
-        codes = self.ball(torch.cat([balls[:, 1:], balls[:, 1:, :2] - cue[:, None]], 2))
+        here = (balls[:, 1:, 2:3] > 0.0).float()
+        on = (balls[:, 1:, 4:5] > 0.0).float() * here
+        codes = self.ball(torch.cat([balls[:, 1:], balls[:, 1:, :2] - cue[:, None]], 2)) * here
         offered = pots[:, :, :1]
-        each = self.pot(pots)
-        sums = [(codes * w).sum(1) / 5.0 for w in (on, red, here - red)]
-        context = self.context(torch.cat([*sums, (each * offered).sum(1), state, cue], 1))
+        each = self.pot(pots) * offered
+        sums = [(codes * on).sum(1) / 5.0, codes[:, :_N_REDS].sum(1) / 5.0, codes[:, _N_REDS:].sum(1) / 5.0]
+        context = self.context(torch.cat([*sums, each.sum(1), state, cue, side], 1))
         joint = self.joint(torch.cat([each, context[:, None].expand(-1, POTS, -1)], 2)) * offered
-        return torch.cat([context, joint.reshape(n, -1)], 1)
+        return torch.cat([context, joint.reshape(n, -1), side], 1)
 
 
 class StrokeHead(nn.Module):
-    """The context and the pots' codes -> a score for each of the POTS * STROKES choices."""
+    """What ``TableReader`` gives -> a score for each of the POTS * STROKES choices."""
 
-    def __init__(self):
+    def __init__(self, width=128):
         super().__init__()
-        self.score = nn.Sequential(nn.Linear(POT + CONTEXT, 128), nn.ReLU(), nn.Linear(128, STROKES))
+        self.score = nn.Sequential(nn.Linear(POT + CONTEXT, width), nn.ReLU(), nn.Linear(width, STROKES))
         with torch.no_grad():  # at first all strokes are nearly alike
             self.score[2].weight *= 0.1
             self.score[2].bias.zero_()
 
     def forward(self, read):
         """One pass."""
-        context, pots = read[:, :CONTEXT], read[:, CONTEXT:].reshape(-1, POTS, POT)
-        return self.score(torch.cat([pots, context[:, None].expand(-1, POTS, -1)], 2)).reshape(len(read), -1)
+        n = len(read)
+        context, pots, side = read[:, :CONTEXT], read[:, CONTEXT:-1].reshape(n, POTS, POT), read[:, -1:]
+        scores = self.score(torch.cat([pots, context[:, None].expand(-1, POTS, -1)], 2))
+        turned = scores.reshape(n, POTS * len(SPEEDS), len(SIDES), len(TOPS)).flip(2).reshape(n, -1)
+        return torch.where(side < 0.0, turned, scores.reshape(n, -1))
+
+
+class ValueHead(nn.Module):
+    """The context -> the return to be expected."""
+
+    def __init__(self, width=128):
+        super().__init__()
+        self.value = nn.Sequential(nn.Linear(CONTEXT, width), nn.ReLU(), nn.Linear(width, 1))
+
+    def forward(self, read):
+        """One pass."""
+        return self.value(read[:, :CONTEXT])
 
 
 class TablePolicy(MaskableActorCriticPolicy):
     """A maskable policy that reads with ``TableReader`` and scores with ``StrokeHead``."""
 
     def __init__(self, *args, **kwargs):
-        kwargs |= {"features_extractor_class": TableReader, "net_arch": []}
-        super().__init__(*args, **kwargs)
+        super().__init__(*args, **(kwargs | {"features_extractor_class": TableReader, "net_arch": []}))
 
     def _build(self, lr_schedule):
         super()._build(lr_schedule)
-        self.action_net = StrokeHead()
-        self.value_net = nn.Sequential(_Context(), nn.Linear(CONTEXT, 128), nn.ReLU(), nn.Linear(128, 1))
+        self.action_net, self.value_net = StrokeHead(), ValueHead()
         self.optimizer = self.optimizer_class(self.parameters(), lr=lr_schedule(1), **self.optimizer_kwargs)
-
-
-class _Context(nn.Module):
-    def forward(self, read):
-        """The context alone."""
-        return read[:, :CONTEXT]
-
-
-assert STROKES % (len(SIDES) * len(TOPS)) == 0

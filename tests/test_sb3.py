@@ -10,7 +10,7 @@ from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.evaluation import evaluate_policy
 
-from agents import visits
+from agents import view
 from snooker_env.envs.visit import COUNTS, REALS
 from snooker_env.sb3 import SnookerVecEnv
 from train import Settings
@@ -125,7 +125,7 @@ def test_ppo_and_sac_learn_on_it_without_a_warning(observation):
 
 def test_the_pots_are_shown_for_all_tables_as_for_one():
     settings = Settings(envs=5, noise="club")
-    many, one = visits.make_envs(settings), visits.make_env(settings)
+    many, one = view.make_envs(settings), view.make_env(settings)
     many.seed(11)
     shown = many.reset()
     assert many.observation_space == one.observation_space

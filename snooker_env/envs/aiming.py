@@ -1,9 +1,9 @@
 """Where must the cue ball be sent to pot a ball? The line of a pot, corrected for throw, swerve and the object ball's own curve.
 
-The geometric line (``game.pots``) sends the cue ball's centre straight to the ghost ball. Side spin under an elevated cue or spin across
-the path bends that line, friction throws the object ball off the line of centres, and the spin it then has bends its path. All of it follows from
-the models themselves: the two balls alone are played on unbounded cloth until the object ball rolls, and the direction is corrected by
-how far the ball then passes the pocket's aim point, by regula falsi between secant steps. One trial costs a microsecond, not a shot.
+The geometric line (``game.pots``) sends the cue ball's centre straight to the ghost ball. Side spin under an elevated cue or spin
+across the path bends that line, friction throws the object ball off the line of centres, and the spin it then has bends its path. All of it
+follows from the models themselves: the two balls alone are played on unbounded cloth until the object ball rolls, and the direction is
+corrected by how far the ball then passes the pocket's aim point, in secant steps. One trial costs a microsecond, not a shot.
 """
 
 from math import atan2, hypot, pi
@@ -12,7 +12,7 @@ from .._jit import kernel
 from ..physics import cloth, cue
 from ..physics.contact import collide_balls
 from ..physics.detection import pair_time
-from ..physics.parameters import P_E_B
+from ..physics.parameters import P_E_B, P_R
 
 _ENOUGH = 1e-6  # rad that the object ball may pass the aim point by, a hundredth of the best player's error
 _TRIALS = 12
@@ -21,11 +21,11 @@ _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve
 
 @kernel
 def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_mass_ratio, fidelity, n_steps, motion, state, work):
-    """By which angle [rad] the object ball at b, struck by a cue ball sent in the direction ``aim``, passes p on the left; 9 if it is missed.
+    """By which angle [rad] the object ball at b, hit by a cue ball sent in the direction ``aim``, passes p on the left; 9 if missed.
 
     motion (2, cloth.COLUMNS), state (2,), work: work space.
     """
-    R = phys[0]
+    R = phys[P_R]
     (vx, vy, _), (wx, wy, wz) = cue.struck(speed, aim - cue.squirt(side, end_mass_ratio), side, top, elevation, R, end_mass_ratio)
     cloth.begin(motion, state, 0, 0.0, cx, cy, vx, vy, wx, wy, wz, phys)
     cloth.begin(motion, state, 1, 0.0, bx, by, 0.0, 0.0, 0.0, 0.0, 0.0, phys)
@@ -54,16 +54,19 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
     gx, gy = motion[1, cloth.X] - bx, motion[1, cloth.Y] - by
     qx, qy = px - bx, py - by
     ux, uy = motion[1, cloth.VX], motion[1, cloth.VY]
-    if gx * qx + gy * qy > 0.9 * (qx * qx + qy * qy):  # still sliding at the pocket: its chord is near enough
+    away = hypot(qx, qy)
+    if gx * qx + gy * qy > 0.9 * away * away:  # still sliding at the pocket: its chord is near enough
         ux, uy = gx, gy
     else:
         qx, qy = qx - gx, qy - gy
-    return atan2(qx * uy - qy * ux, qx * ux + qy * uy)
+    ahead = qx * ux + qy * uy
+    # seen from where the ball lay, however near the pocket it begins to roll: so the correction's slope hardly changes
+    return (qx * uy - qy * ux) / (hypot(ux, uy) * away) if ahead > 0.0 else 9.0
 
 
 @kernel
 def solved_aim(positions, ball, px, py, gx, gy, speed, side, top, elevation, phys, end_mass_ratio, fidelity, n_steps, motion, state, work):
-    """Direction [rad] in which the cue ball must leave to send ``ball`` to the aim point p; (gx, gy) is the ghost ball of the straight line.
+    """Direction [rad] in which the cue ball must leave to send ``ball`` to the aim point p; (gx, gy): the straight line's ghost ball.
 
     Where no direction does (a stroke too soft to arrive, a cut too thin) the best one tried is returned.
     """

@@ -59,7 +59,7 @@ class MatchEnv(AECEnv):
         decision=True, miss="off", physics="paper", table="match", fidelity="standard", max_strokes=None, render_mode=None,
     ):  # fmt: skip
         super().__init__()
-        shooter = shooter_of("box", aim, elevation, placement, decision, noise, physics, table, fidelity)
+        shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity)
         plan_of(layout)  # an unknown name fails here and not in reset
         self.layout, self.observation = layout, observation
         self.reward = FRAME_REWARDS[choice("reward", reward, FRAME_REWARDS)]

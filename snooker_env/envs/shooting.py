@@ -1,5 +1,7 @@
 """How is a shot carried out, and what does the referee see of it? Noise, strike and engine in one; the event log read as a ``Stroke``."""
 
+from typing import Any
+
 import numpy as np
 
 from .._check import choice, refuse
@@ -68,7 +70,8 @@ class Shooter:
     """Everything between an intended shot and the balls at rest; one for all players of an environment."""
 
     def __init__(self, actions: Actions | Choices, noise: Noise, physics: Physics, table: Table, fidelity):
-        self.actions, self.noise, self.physics, self.table, self.fidelity = actions, noise, physics, table, fidelity
+        self.actions: Any = actions
+        self.noise, self.physics, self.table, self.fidelity = noise, physics, table, fidelity
 
     def shoot(self, intended: tuple[float, float, float, float, float], positions, on_table, rng, *, path=False):
         """The ``Shot`` that ``intended`` = (speed, side, top, aim, elevation) becomes; noise is drawn from ``rng``. Nothing is changed."""
@@ -79,7 +82,7 @@ class Shooter:
         return play(positions, velocities, spins, on_table, self.physics, self.table, self.fidelity, path=path)
 
 
-def shooter_of(action, aim, elevation, placement, decision, noise, physics, table, fidelity):
+def shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action="box"):
     """The ``Shooter`` of an environment's arguments, each as documented in ``SnookerEnv``. Raises ValueError."""
     world, cloth = Physics.of(physics), Table.of(table)
     if world.R != BALL_RADIUS:

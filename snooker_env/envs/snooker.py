@@ -120,15 +120,15 @@ class SnookerEnv(gymnasium.Env):
     metadata = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012 - Gymnasium's own convention
 
     def __init__(
-        self, *, task="visit", layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points", elevation=False,
-        placement=False, physics="paper", table="match", fidelity="standard", render_mode=None, opponent="none", miss="off",
-        decision=False,
+        self, *, task="visit", layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points",
+        elevation=False, placement=False, physics="paper", table="match", fidelity="standard", render_mode=None, opponent="none",
+        miss="off", decision=False,
     ):  # fmt: skip
         whole = choice("task", task, TASKS) == "frame"
         layout = LAYOUTS[task] if isinstance(layout, str) and layout == "default" else layout
         plan = plan_of(layout)
         self.layout, self.observation, self.reward = layout, observation, reward
-        self.shooter = shooter_of(action, aim, elevation, placement, decision, noise, physics, table, fidelity)
+        self.shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action)
         self.actions, self.noise, self.physics = self.shooter.actions, self.shooter.noise, self.shooter.physics
         self.table, self.fidelity = self.shooter.table, self.shooter.fidelity
         self.action_space = self.actions.space

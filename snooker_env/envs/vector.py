@@ -67,7 +67,7 @@ class SnookerVectorEnv(VectorEnv):
             choice("render_mode", render_mode, PICTURES)
         layout = LAYOUTS["visit"] if isinstance(layout, str) and layout == "default" else layout
         plan = plan_of(layout)
-        shooter = shooter_of(action, aim, elevation, placement, decision, noise, physics, table, fidelity)
+        shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action)
         visit_only(reward, opponent, miss, decision)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode, self.observation, self.shooter = render_mode, observation, shooter

@@ -260,24 +260,11 @@ class Visits:
         here = slice(start, start + len(actions))
         r, v, w, on, shots = (a[: len(actions)] for a in (work.r, work.v, work.w, work.here, work.shots))
         positions, on_table, game, streams = (a[here] for a in (self.positions, self.on_table, self.game, self.streams))
-        shooter = self.rules.shooter
+        fidelity, n_steps = self.rules.shooter.fidelity
         _address(
-            actions,
-            waiting,
-            positions,
-            on_table,
-            game,
-            streams,
-            self._options,
-            self._noise,
-            self._phys,
-            *shooter.fidelity,
-            r,
-            v,
-            w,
-            on,
+            actions, waiting, positions, on_table, game, streams, self._options, self._noise, self._phys, fidelity, n_steps, r, v, w, on,
             shots,
-        )
+        )  # fmt: skip
         m, work.enlarged = len(actions), None
         self._run(work, m)
         self._finish(work, waiting, here, out, m)

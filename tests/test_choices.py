@@ -1,0 +1,151 @@
+"""Does ``action="discrete"`` play the shot it names, with an aim that sends the object ball at the pocket?"""
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import snooker_env as sn
+from snooker_env.envs import choices
+from snooker_env.envs.choices import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.game import pots
+from snooker_env.game.balls import mask_of
+
+R = 0.02625
+
+
+def native(n, **options):
+    return gymnasium.make_vec("Snooker-v0", n, vectorization_mode="vector_entry_point", action="discrete", **options)
+
+
+def index(pot, speed, side, top):
+    return ((pot * len(SPEEDS) + speed) * len(SIDES) + side) * len(TOPS) + top
+
+
+def test_the_numbers_count_pots_speeds_sides_and_tops():
+    assert len(SPEEDS) * len(SIDES) * len(TOPS) == STROKES and SIZE == POTS * STROKES
+    assert index(0, 0, 0, 0) == 0 and index(POTS - 1, len(SPEEDS) - 1, len(SIDES) - 1, len(TOPS) - 1) == SIZE - 1
+
+
+@pytest.mark.parametrize("physics", ["paper", "match"])
+def test_the_object_ball_rolls_at_the_pocket(physics):
+    """Judged by the engine, which the solver does not use: two balls on unbounded cloth, the aim as the environment struck it."""
+    rng = np.random.default_rng(1)
+    world, worst, seen = sn.Physics.preset(physics), [], 0
+    while seen < 60:
+        cue, ball = rng.uniform((-0.8, -1.6), (0.8, 1.6)), rng.uniform((-0.8, -1.6), (0.8, 1.6))
+        positions, on_table = np.zeros((22, 2)), np.zeros(22, bool)
+        positions[0], positions[1], on_table[:2] = cue, ball, True
+        found = pots.pots(positions, on_table, mask_of([1]), most=1)
+        if not len(found) or np.hypot(*(cue - ball)) < 0.2 or found[0, 4] < 0.3:
+            continue
+        speed, side, top = int(rng.integers(4, 9)), int(rng.integers(3)), int(rng.integers(5))
+        env = SnookerEnv(action="discrete", layout="random:1", physics=physics)
+        env.reset(seed=0)
+        env.visits.positions[0], env.visits.on_table[0], env.visits.game[0, :3] = positions, on_table, (1, 0, 0)
+        env.step(index(0, speed, side, top))
+        v, w = env._work.v[0, 0], env._work.w[0, 0]
+        start = env._work.shots[0]
+        shot = sn.simulate([cue, ball], [start[:2], (0, 0)], [start[2:5], (0, 0, 0)], table=None, physics=world)
+        hit = shot.events[shot.events["kind"] == sn.EventKind.BALL_BALL]
+        rolls = shot.events[(shot.events["kind"] == sn.EventKind.ROLL) & (shot.events["i"] == 1)]
+        assert len(hit) and v.shape == (2,) and w.shape == (3,)
+        place, way, _ = (a[1] for a in shot.at(float(rolls["time"][0]) + 1e-9))
+        pocket = pots.POCKETS[int(found[0, 1]), :2]
+        if (place - ball) @ (pocket - ball) > 0.9 * (pocket - ball) @ (pocket - ball):
+            continue
+        to = pocket - place
+        worst.append(abs(np.arctan2(to[0] * way[1] - to[1] * way[0], to @ way)))
+        seen += 1
+    assert max(worst) < 1e-5
+
+
+def test_solved_aims_pot_more_than_straight_lines():
+    made = {}
+    for action in ("discrete", "box"):
+        env = gymnasium.make_vec(
+            "Snooker-v0", 400, vectorization_mode="vector_entry_point", action=action, aim="target", layout="pots:medium", physics="match"
+        )
+        env.reset(seed=0)
+        speed = 2 * (SPEEDS[4] - 0.2) / 6.8 - 1
+        strokes = np.full(400, index(0, 4, 1, 2)) if action == "discrete" else np.tile((speed, 0.0, 0.0, 0.0), (400, 1))
+        made[action] = (env.step(strokes)[1] > 0).mean()
+    assert made["discrete"] > 0.95 > made["box"] + 0.1
+
+
+@pytest.mark.parametrize("noise", ["none", "club"])
+def test_one_table_and_many_play_alike(noise):
+    many, ones = native(5, noise=noise), [SnookerEnv(action="discrete", noise=noise) for _ in range(5)]
+    observations, _ = many.reset(seed=3)
+    rng = np.random.default_rng(0)
+    for k, one in enumerate(ones):
+        assert np.array_equal(one.reset(seed=3 + k)[0], observations[k])
+    masks = many.unwrapped.action_masks()
+    chosen = np.array([rng.choice(np.flatnonzero(m)) for m in masks])
+    observations, rewards, *_ = many.step(chosen)
+    for k, one in enumerate(ones):
+        assert np.array_equal(one.visits.action_masks()[0], masks[k])
+        observation, reward, *_ = one.step(chosen[k])
+        assert np.array_equal(observation, observations[k]) and reward == rewards[k]
+
+
+def test_masks_offer_the_pots_there_are():
+    env = native(200, layout="random:1")
+    env.reset(seed=0)
+    visits, masks = env.unwrapped.visits, env.unwrapped.action_masks()
+    assert masks.shape == (200, SIZE)
+    counts = set()
+    for k in range(200):
+        on = mask_of([1])  # the one red
+        n = len(pots.pots(visits.positions[k], visits.on_table[k], on, most=POTS))
+        counts.add(n)
+        assert masks[k].sum() == STROKES * max(1, n) and masks[k, : STROKES * max(1, n)].all()
+    assert 0 in counts and len(counts) > 2
+
+
+def test_without_a_pot_the_nearest_ball_on_is_struck_full():
+    env = SnookerEnv(action="discrete", layout="snookered")
+    env.reset(seed=0)
+    positions, on_table = np.zeros((22, 2)), np.zeros(22, bool)
+    positions[0], positions[1], on_table[:2] = (0.0, 1.0), (0.0, 1.75), True  # at the middle of the end cushion: no pot
+    env.visits.positions[0], env.visits.on_table[0], env.visits.game[0, :3] = positions, on_table, (1, 0, 0)
+    assert env.action_masks().sum() == STROKES
+    info = env.step(index(0, 4, 1, 2))[4]
+    assert info["first_ball"] == 1 and env.last_shot.events["time"][0] > 0
+
+
+def test_it_passes_gymnasiums_checker():
+    check_env(gymnasium.make("Snooker-v0", action="discrete", noise="professional").unwrapped, skip_render_check=True)
+
+
+@pytest.mark.parametrize("wrong", [-1, SIZE, 0.5, None, "3", [1, 2]])
+def test_wrong_choices_change_nothing(wrong):
+    env = SnookerEnv(action="discrete")
+    env.reset(seed=0)
+    before = env.get_state()
+    with pytest.raises(ValueError, match=r"action = .*must be an integer in \[0, 540\)"):
+        env.step(wrong)
+    assert env.get_state() == before
+
+
+def test_wrong_choices_of_many_name_the_table():
+    env = native(3)
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match=r"actions\[1\] = 540: must be in \[0, 540\)"):
+        env.step(np.array([0, 540, 1]))
+    with pytest.raises(ValueError, match="must be 3 integers"):
+        env.step(np.zeros((3, 4)))
+
+
+def test_what_does_not_go_together_is_refused():
+    for name in ("elevation", "placement"):
+        with pytest.raises(ValueError, match=f"{name} = True: must be False"):
+            SnookerEnv(action="discrete", **{name: True})
+    with pytest.raises(ValueError, match='must be "box" with task="frame"'):
+        SnookerEnv(action="discrete", task="frame")
+    with pytest.raises(ValueError, match="action = 'plain'"):
+        SnookerEnv(action="plain")
+    with pytest.raises(ValueError, match="a Box has no masks"):
+        SnookerEnv().action_masks()
+    assert SnookerEnv(action="discrete").action_space.n == choices.SIZE
