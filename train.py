@@ -1,12 +1,14 @@
 """How does an agent learn to play Snooker-v0? Train one, check it against random play on tables it never saw, and say what it learned.
 
-    python train.py                                    a few minutes: PPO, aim at the best potting line
-    python train.py --algo sac --seed 1 --out runs/mine
+    python train.py                                    half an hour on two cores: maskable PPO over pot, speed and spin
+    python train.py --steps 300000                     two minutes of the same
+    python train.py --agent tqc_target --seed 1 --out runs/mine
     python train.py --resume --out runs/mine           go on after Ctrl-C, a kill or a power cut, exactly where the last checkpoint was
 
 A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; like every pickle, load only your own), ``model.zip`` (for
-``stable_baselines3``), ``results.json`` (every figure) and ``tb/`` (``tensorboard --logdir runs``). What an agent sees and how it is judged
-is in ``agents/visits.py``; here follow, top to bottom: settings, recipes, checkpoints, the run.
+``stable_baselines3`` and ``python -m agents.evaluate``), ``results.json`` (every figure) and ``tb/`` (``tensorboard --logdir runs``). What
+an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how its visits are judged in ``agents/visits.py``; here
+follow, top to bottom: settings, checkpoints, what was learned, the run.
 """
 
 import argparse
@@ -26,16 +28,20 @@ from pathlib import Path
 import numpy as np
 
 import snooker_env
-from agents.view import make_env, make_envs
-from agents.visits import evaluate_all, lesson, show
 
 try:
+    import rich.box
+    import rich.console
     import rich.progress
-    import stable_baselines3 as sb3
+    import rich.table
     import tensorboard  # noqa: F401 - stable_baselines3 would miss it only after the tables are set up
     import torch
     from stable_baselines3.common.callbacks import BaseCallback
-    from stable_baselines3.common.utils import LinearSchedule
+
+    from agents.players import GhostBall, Model, Random
+    from agents.recipes import Recipe, algorithm, names, player_options
+    from agents.view import training_tables
+    from agents.visits import play, summary
 except ImportError as error:
     raise SystemExit(f'train.py: {error.name} is missing; train.py needs:  pip install "snooker-env[train]"') from None
 
@@ -51,22 +57,21 @@ def option(default, text, **more):
 class Settings:
     """What makes a run the run it is."""
 
-    algo: str = option("ppo", "what learns", choices=("ppo", "sac"))
-    steps: int = option(0, "shots in all; 0: 400000 for ppo, 60000 for sac")
-    envs: int = option(16, "tables played side by side")
+    agent: str = option("ppo_mask", "what learns, and how: a file of agents/hyperparams", choices=tuple(names()))
+    steps: int = option(0, "shots in all; 0: as many as the recipe says")
+    envs: int = option(0, "tables played side by side; 0: as many as the recipe says")
     parallel: str = option("auto", "threads for the tables: auto (once called processes) is one a processor; the same shots come out",
                            choices=("auto", "processes", "one"))  # fmt: skip
     seed: int = option(0, "of tables, weights and exploration")
-    aim: str = option("target", "how the aim is read: target or absolute (much harder)")
-    layout: str = option("opened", "where training visits start")
-    noise: str = option("none", "execution noise: none, professional, amateur, club or olympiad")
+    layout: str = option("", "where training visits start [the recipe's]")
+    noise: str = option("", "execution noise: none, professional, amateur, club or olympiad [the recipe's]")
     fidelity: str = option("standard", "of the simulation: fast, standard, reference or euler:N")
+    set: tuple = option((), "other hyper-parameters, as gamma=0", nargs="+")
     eval_visits: int = option(500, "held-out visits each agent plays at the end")
-    checkpoint_every: int = option(20_000, "shots from one checkpoint to the next")
+    checkpoint_every: int = option(100_000, "shots from one checkpoint to the next")
 
 
 FREE_ON_RESUME = ("steps", "parallel", "eval_visits", "checkpoint_every")  # how long and where, not what; lr falls over the new steps
-DEFAULT_STEPS = {"ppo": 400_000, "sac": 60_000}
 
 
 def parse(argv):
@@ -74,45 +79,31 @@ def parse(argv):
     parser = argparse.ArgumentParser("train.py", "python train.py [options]", (__doc__ or "").partition("\n")[0])
     for f in fields(Settings):
         parser.add_argument(
-            "--" + f.name.replace("_", "-"), type=type(f.default), choices=f.metadata.get("choices"), default=argparse.SUPPRESS,
-            metavar=None if "choices" in f.metadata else f.name.split("_")[-1].upper(), help=f"{f.metadata['help']} [{f.default}]",
+            "--" + f.name.replace("_", "-"), type=str if f.name == "set" else type(f.default), choices=f.metadata.get("choices"),
+            default=argparse.SUPPRESS, metavar=None if "choices" in f.metadata else f.name.split("_")[-1].upper(),
+            nargs=f.metadata.get("nargs"), help=f.metadata["help"] + (f" [{f.default}]" if f.default not in ("", (), 0) else ""),
         )  # fmt: skip
-    parser.add_argument("--out", type=Path, help="the run's folder [runs/ALGO-SEED]")
+    parser.add_argument("--out", type=Path, help="the run's folder [runs/AGENT-SEED]")
     parser.add_argument("--resume", action="store_true", help="go on with the run in that folder; what is not given is as it was")
     parser.add_argument("--no-progress", action="store_true", help="no progress bar")
     given = vars(parser.parse_args(argv))
     rest = {name: given.pop(name) for name in ("out", "resume", "no_progress")}
-    for name, low in (("steps", 0), ("envs", 1), ("seed", 0), ("eval_visits", 2), ("checkpoint_every", 1)):
+    for name, low in (("steps", 0), ("envs", 0), ("seed", 0), ("eval_visits", 2), ("checkpoint_every", 1)):
         if given.get(name, low) < low:
             parser.error(f"--{name.replace('_', '-')} is {given[name]}, must be at least {low}")
-    rest["out"] = rest["out"] or Path("runs", f"{given.get('algo', Settings.algo)}-{given.get('seed', Settings.seed)}")
+    if "set" in given:
+        given["set"] = tuple(given["set"])
+    rest["out"] = rest["out"] or Path("runs", f"{given.get('agent', Settings.agent)}-{given.get('seed', Settings.seed)}")
     return parser, given, argparse.Namespace(**rest)
 
 
-# recipes -------------------------------------------------------------------------------------------------------------------------
-
-
-def make_model(settings, envs, tensorboard_log):
-    """The untrained agent. A shot's consequence is mostly the next shot: hence the short horizon gamma 0.95, and lambda 0.5."""
-    common = {
-        "policy": "MlpPolicy", "env": envs, "gamma": 0.95, "learning_rate": LinearSchedule(1e-3, 0.0, 1.0), "seed": settings.seed,
-        "tensorboard_log": tensorboard_log, "device": "cpu", "stats_window_size": 500,  # nets this small are slower on a GPU
-    }  # fmt: skip
-    if settings.algo == "sac":
-        # one gradient step for four shots: shots are cheap here, gradient steps are not
-        return sb3.SAC(
-            **common, buffer_size=100_000, learning_starts=min(1000, settings.steps // 4), train_freq=1,
-            gradient_steps=max(1, settings.envs // 4), policy_kwargs={"net_arch": [128, 128]},
-        )  # fmt: skip
-    rollout = min(2048, max(64, settings.steps // 8))  # a run of any length has some updates
-    n_steps = max(8, rollout // settings.envs // 8 * 8)
-    model = sb3.PPO(
-        **common, n_steps=n_steps, batch_size=n_steps * settings.envs // 8, n_epochs=10, gae_lambda=0.5,
-        policy_kwargs={"log_std_init": -1.5, "net_arch": [64, 64]},
-    )  # fmt: skip
-    if settings.aim == "target":  # a pot's tolerance is about half a degree of the three that the aim spans: explore within it
-        model.policy.log_std.data[3] = -3.0
-    return model
+def recipe_of(settings):
+    """The agent's recipe with what the settings change. Raises ValueError."""
+    recipe = Recipe.of(settings.agent, settings.set)
+    changes = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
+    recipe.env_kwargs |= {key: value for key, value in changes.items() if value}
+    recipe.n_timesteps, recipe.n_envs = settings.steps or recipe.n_timesteps, settings.envs or recipe.n_envs
+    return recipe
 
 
 # checkpoints ---------------------------------------------------------------------------------------------------------------------
@@ -145,9 +136,9 @@ def save_checkpoint(path, settings, model, seconds, curve):
     write_atomic(path, pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL))
 
 
-def load_model(state, settings, envs):
+def load_model(state, algo, envs):
     """The agent of a checkpoint, its tables and random generators as they were."""
-    model = {"ppo": sb3.PPO, "sac": sb3.SAC}[settings.algo].load(io.BytesIO(state["model"]), env=envs, device="cpu")
+    model = algorithm(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu")
     if state["replay"] is not None:
         model.replay_buffer = state["replay"]
     numpy_state, torch_state, model.action_space = state["random"]
@@ -183,7 +174,7 @@ class Keeper(BaseCallback):
     def _on_training_start(self):
         self.started = time.perf_counter()
         self.bar.start()
-        self.task = self.bar.add_task(self.settings.algo.upper(), total=self.settings.steps, completed=self.num_timesteps)
+        self.task = self.bar.add_task(self.settings.agent, total=self.settings.steps, completed=self.num_timesteps)
 
     def _on_rollout_start(self):
         # here, and only here, everything played so far has been learned from: a checkpoint loses nothing
@@ -191,7 +182,7 @@ class Keeper(BaseCallback):
         if recent and self.num_timesteps >= len(self.curve) * self.settings.steps // 20:
             self.curve.append({"steps": self.num_timesteps, "points": round(float(np.mean(recent)), 3)})
         if recent:
-            self.bar.update(self.task, description=f"{self.settings.algo.upper()} {np.mean(recent):.2f} points a visit")
+            self.bar.update(self.task, description=f"{self.settings.agent} {np.mean(recent):.2f} points a visit")
         self.stop = self.signal is not None
         if self.stop or self.saved is None or self.num_timesteps - self.saved >= self.settings.checkpoint_every:
             self.save()
@@ -217,7 +208,7 @@ class Keeper(BaseCallback):
 def provenance():
     """What computed these figures."""
     versions = {"python": platform.python_version(), "platform": platform.platform()}
-    for name in ("snooker-env", "numpy", "numba", "gymnasium", "stable-baselines3", "torch"):
+    for name in ("snooker-env", "numpy", "numba", "gymnasium", "stable-baselines3", "sb3-contrib", "torch"):
         try:
             versions[name] = importlib.metadata.version(name)
         except importlib.metadata.PackageNotFoundError:
@@ -248,38 +239,84 @@ def open_run(parser, given, out, resume):
     return Settings(**{**was, **given}), state
 
 
+# what was learned ----------------------------------------------------------------------------------------------------------------
+
+
+def evaluate(settings, model, env_options):
+    """Figures of held-out visits, the same tables for each: the trained agent, the plain geometric player, random play."""
+    options = player_options(env_options)
+    players = {"trained": Model(model, options), "ghost_ball": GhostBall(), "random": Random(options, settings.seed)}
+    told = {key: value for key, value in env_options.items() if key in ("noise", "fidelity")}
+    return {name: summary(play(player, settings.eval_visits, **told)) for name, player in players.items()}
+
+
+def lesson(agent, steps, figures):
+    """What was learned, in one sentence that follows from the figures: a difference counts from two standard errors on."""
+    trained, ghost, random = (figures[name] for name in ("trained", "ghost_ball", "random"))
+
+    def better(a, b):
+        return a["points_a_visit"] - b["points_a_visit"] > 2.0 * np.hypot(a["points_a_visit_se"], b["points_a_visit_se"])
+
+    def made(player):
+        return f"{player['pots_a_visit']:.2f} pots and {player['points_a_visit']:.2f} points a visit"
+
+    start = f"In {steps:,} shots {agent} learned"
+    if not better(trained, random):
+        return f"{start} nothing that {trained['visits']} visits can show: {made(trained)} against {made(random)} of random play."
+    if better(trained, ghost):
+        return f"{start} to pot and to leave the next ball on: {made(trained)}, {made(ghost)} of the widest pot played softly every time."
+    return f"{start} to pot, but no better than the widest pot played softly every time: {made(trained)} against {made(ghost)}."
+
+
+def show(figures):
+    """Print them."""
+    title = f"A visit, over {figures['random']['visits']} held-out ones, the same for all (± standard error)"
+    table = rich.table.Table(title=title, box=rich.box.SIMPLE, pad_edge=False)
+    table.add_column("agent", no_wrap=True)
+    for name in ("pots", "points", "fouls", "pot rate", "next pot", "best"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for name, f in figures.items():
+        cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")]
+        cells += [f"{100 * f['pot_rate']:.1f} %", f"{100 * f['next_pot_after_a_pot']:.1f} %", str(f["longest_break"])]
+        table.add_row(name.replace("_", " "), *cells)
+    rich.console.Console().print(table)
+
+
+# the whole -----------------------------------------------------------------------------------------------------------------------
+
+
 def main(argv=None):
     """Train, evaluate, save. Exit code 0, or 128 + the signal that stopped it."""
     parser, given, rest = parse(argv)
     out = rest.out
     settings, state = open_run(parser, given, out, rest.resume)
-    if settings.steps == 0:
-        settings = Settings(**{**asdict(settings), "steps": DEFAULT_STEPS[settings.algo]})
-    print("Compiling ...", flush=True)
-    snooker_env.warmup()
     try:
-        make_env(settings)  # a bad option ends here, with the environment's own words
-    except ValueError as error:
+        recipe = recipe_of(settings)
+        settings = Settings(**(asdict(settings) | {"steps": recipe.n_timesteps, "envs": recipe.n_envs}))
+        print("Compiling ...", flush=True)
+        snooker_env.warmup()
+        tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, **recipe.env_kwargs)
+    except ValueError as error:  # a bad option ends here, with the environment's own words
         parser.error(str(error))
     torch.set_num_threads(1)  # a network this small gains nothing from more, and the tables need the processors
-    envs = make_envs(settings, threads=1 if settings.parallel == "one" else None)
+    torch.distributions.Distribution.set_default_validate_args(False)  # checks of every number, a twentieth of the time
     try:
         out.mkdir(parents=True, exist_ok=True)
-        model = load_model(state, settings, envs) if state else make_model(settings, envs, str(out / "tb"))
+        model = load_model(state, recipe.algo, tables) if state else recipe.new_model(tables, settings.seed, str(out / "tb"))
         model.tensorboard_log = str(out / "tb")
         kept = state or {"seconds": 0.0, "curve": []}
         keeper = Keeper(out / "checkpoint.pkl", settings, kept["seconds"], kept["curve"], not rest.no_progress)
         before = {number: signal.signal(number, keeper.on_signal) for number in (signal.SIGINT, signal.SIGTERM)}
-        print(f"{settings.algo.upper()} in {out}: {model.num_timesteps:,} of {settings.steps:,} shots played", flush=True)
+        print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {settings.steps:,} shots played", flush=True)
         if model.num_timesteps < settings.steps:
             try:
-                model.learn(settings.steps - model.num_timesteps, keeper, tb_log_name=settings.algo, reset_num_timesteps=state is None)
+                model.learn(settings.steps - model.num_timesteps, keeper, tb_log_name=settings.agent, reset_num_timesteps=state is None)
             finally:
                 keeper.bar.stop()  # gives the terminal its cursor back, whatever happened
         for number, handler in before.items():
             signal.signal(number, handler)
     finally:
-        envs.close()
+        tables.close()
     if keeper.signal:
         print(f"Saved at {keeper.saved or model.num_timesteps:,} shots. Go on with:  python train.py --resume --out {out}")
         return 128 + keeper.signal
@@ -287,14 +324,14 @@ def main(argv=None):
     steps, seconds = model.num_timesteps, keeper.seconds_before
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
     write_atomic(out / "model.zip", zipped(model))
-    evaluation = evaluate_all(settings, model)
-    learned = lesson(settings, steps, evaluation)
+    figures = evaluate(settings, model, recipe.env_kwargs)
+    learned = lesson(settings.agent, steps, figures)
     results = {
         "settings": asdict(settings), "steps": steps, "seconds": seconds, "steps_per_second": steps / seconds,
-        "learned": learned, "evaluation": evaluation, "curve": keeper.curve, **provenance(),
+        "learned": learned, "evaluation": figures, "curve": keeper.curve, **provenance(),
     }  # fmt: skip
     write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
-    show(evaluation)
+    show(figures)
     print(f"{learned}\nFigures: {out / 'results.json'}   curves: tensorboard --logdir {out / 'tb'}")
     return 0
 

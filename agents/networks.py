@@ -19,7 +19,7 @@ from snooker_env.game.balls import N_BALLS
 
 from .view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
 
-BALL, CONTEXT, POT = 64, 128, 64
+BALL, CONTEXT, POT = 64, 128, 128
 """Widths of the codes."""
 _STATE = SIZE - 5 * N_BALLS
 _N_REDS = 15
@@ -33,16 +33,17 @@ def mlp(*sizes):
 class TableReader(BaseFeaturesExtractor):
     """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, and -1 where the table was read in the mirror, else 1."""
 
-    def __init__(self, observation_space, width=64):
+    def __init__(self, observation_space, width=32):
         super().__init__(observation_space, CONTEXT + POTS * POT + 1)
         self.ball = mlp(5 + 2, width, BALL)
-        self.pot = mlp(POT_ENTRIES, width, POT)
+        self.pot = mlp(POT_ENTRIES, 2 * width, POT)
         self.context = mlp(3 * BALL + POT + _STATE + 3, CONTEXT, CONTEXT)
-        self.joint = mlp(POT + CONTEXT, POT)
+        self.joint = nn.ModuleList([nn.Linear(CONTEXT, POT), nn.Linear(POT, POT)])  # one layer from both; the context's part is shared
         flips = torch.zeros(SHOWN, dtype=torch.bool)
         flips[torch.arange(N_BALLS) * 5 + BALL_X] = True
         for entry in (*POT_X, CUT):
             flips[SIZE + torch.arange(POTS) * POT_ENTRIES + entry] = True
+        self.flips: torch.Tensor
         self.register_buffer("flips", flips, persistent=False)
 
     def forward(self, seen):
@@ -61,25 +62,24 @@ class TableReader(BaseFeaturesExtractor):
         each = self.pot(pots) * offered
         sums = [(codes * on).sum(1) / 5.0, codes[:, :_N_REDS].sum(1) / 5.0, codes[:, _N_REDS:].sum(1) / 5.0]
         context = self.context(torch.cat([*sums, each.sum(1), state, cue, side], 1))
-        joint = self.joint(torch.cat([each, context[:, None].expand(-1, POTS, -1)], 2)) * offered
+        joint = torch.relu(self.joint[0](context)[:, None] + self.joint[1](each)) * offered
         return torch.cat([context, joint.reshape(n, -1), side], 1)
 
 
 class StrokeHead(nn.Module):
     """What ``TableReader`` gives -> a score for each of the POTS * STROKES choices."""
 
-    def __init__(self, width=128):
+    def __init__(self):
         super().__init__()
-        self.score = nn.Sequential(nn.Linear(POT + CONTEXT, width), nn.ReLU(), nn.Linear(width, STROKES))
+        self.score = nn.Linear(POT, STROKES)
         with torch.no_grad():  # at first all strokes are nearly alike
-            self.score[2].weight *= 0.1
-            self.score[2].bias.zero_()
+            self.score.weight.mul_(0.1)
+            self.score.bias.zero_()
 
     def forward(self, read):
         """One pass."""
         n = len(read)
-        context, pots, side = read[:, :CONTEXT], read[:, CONTEXT:-1].reshape(n, POTS, POT), read[:, -1:]
-        scores = self.score(torch.cat([pots, context[:, None].expand(-1, POTS, -1)], 2))
+        scores, side = self.score(read[:, CONTEXT:-1].reshape(n, POTS, POT)), read[:, -1:]
         turned = scores.reshape(n, POTS * len(SPEEDS), len(SIDES), len(TOPS)).flip(2).reshape(n, -1)
         return torch.where(side < 0.0, turned, scores.reshape(n, -1))
 

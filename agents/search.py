@@ -14,15 +14,15 @@ from math import erf, exp, sqrt
 import numpy as np
 
 from snooker_env._jit import entry
-from snooker_env.envs.choices import POTS, SIDES, SPEEDS, STROKES, TOPS
+from snooker_env.envs.choices import POTS, STROKES, TOPS
 from snooker_env.envs.noise import N_AIM, N_TIP, Noise
 from snooker_env.envs.shooting import Shooter
-from snooker_env.envs.visit import OVER, POINTS, Returned, Visits, Work
+from snooker_env.envs.visit import OVER, Returned, Visits, Work
 from snooker_env.game.balls import BALL_RADIUS, VALUES, balls_on_kernel, bits
 from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
 from snooker_env.physics.cue import squirt
 
-from .players import choice_of
+from .players import DISCRETE, choice_of
 from .visits import with_pots
 
 CHUNK = 128
@@ -126,6 +126,8 @@ class Search:
     [points] of flat observations with pots (``visits.with_pots``), (m, n) -> (m,), in place of the value by hand.
     """
 
+    options = DISCRETE
+
     def __init__(self, budget=2000, noise=None, seed=0, value=None, constants=(FOLLOWS, SECOND, THIRD, FAR)):
         self.budget, self._noise, self._value, self._constants = budget, noise, value, constants
         self._rng = np.random.default_rng(seed)
@@ -133,7 +135,7 @@ class Search:
         self.shots = 0
         """Shots simulated so far."""
 
-    def act(self, tables, going):
+    def act(self, tables, observations, going):
         """The choice found for each table that is going."""
         self._prepare(tables.visits.rules)
         masks, chosen = tables.action_masks(), np.zeros(tables.num_envs, np.int64)

@@ -1,11 +1,7 @@
-"""What does a learning agent see? The flat observation and, behind it, the pots that the table offers.
-
-``settings`` is any object with the fields of ``train.Settings`` that a function reads.
-"""
+"""What does a learning agent see? The flat observation and, behind it, the pots that the table offers."""
 
 from math import hypot, log10
 
-import gymnasium
 import numpy as np
 from gymnasium import spaces
 
@@ -69,34 +65,13 @@ VIEW_SPACE = spaces.Box(-1.0, 1.0, (SHOWN,), np.float32)
 """What the agent sees."""
 
 
-class PotView(gymnasium.ObservationWrapper):
-    """``with_pots`` for one table."""
-
-    def __init__(self, env):
-        super().__init__(env)
-        self.observation_space = VIEW_SPACE
-
-    def observation(self, observation):
-        return with_pots(observation[None])[0]
-
-
-def options_of(settings, layout=None):
-    """The environment's options, on another layout if one is given."""
-    return {"layout": layout or settings.layout, "aim": settings.aim, "noise": settings.noise, "fidelity": settings.fidelity}
-
-
-def make_env(settings, layout=None):
-    """One table as the agent sees it."""
-    return PotView(gymnasium.make("Snooker-v0", **options_of(settings, layout)))
-
-
-def make_envs(settings, threads=None):
-    """The training tables side by side, as the agent sees them: an SB3 ``VecEnv``."""
+def training_tables(n, threads=None, **options):
+    """n tables of ``SnookerVecEnv``, seen with their pots: an SB3 ``VecEnv``."""
     from stable_baselines3.common.vec_env import VecEnvWrapper
 
     from snooker_env.sb3 import SnookerVecEnv
 
-    class PotsOfAll(VecEnvWrapper):
+    class WithPots(VecEnvWrapper):
         """``with_pots`` for all tables in one go."""
 
         def reset(self):
@@ -110,4 +85,4 @@ def make_envs(settings, threads=None):
                     info["terminal_observation"] = row
             return with_pots(observations), rewards, done, infos
 
-    return PotsOfAll(SnookerVecEnv(settings.envs, threads=threads, **options_of(settings)), VIEW_SPACE)
+    return WithPots(SnookerVecEnv(n, threads=threads, **options), VIEW_SPACE)
