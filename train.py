@@ -22,7 +22,7 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -292,7 +292,7 @@ def main(argv=None):
     settings, state = open_run(parser, given, out, rest.resume)
     try:
         recipe = recipe_of(settings)
-        settings = Settings(**(asdict(settings) | {"steps": recipe.n_timesteps, "envs": recipe.n_envs}))
+        settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs)
         print("Compiling ...", flush=True)
         snooker_env.warmup()
         tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, **recipe.env_kwargs)

@@ -23,7 +23,7 @@ from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
 from snooker_env.physics.cue import squirt
 
 from .players import DISCRETE, choice_of
-from .visits import with_pots
+from .view import with_pots
 
 CHUNK = 128
 """Copies played in one go: their work space stays in the cache."""
@@ -123,7 +123,7 @@ class Search:
     """Looks for the best choice with ``budget`` simulated shots a decision.
 
     ``noise``: the errors that it expects, a level or fields as the environment takes them, None for those of the tables; ``value``: worth
-    [points] of flat observations with pots (``visits.with_pots``), (m, n) -> (m,), in place of the value by hand.
+    [points] of flat observations with pots (``view.with_pots``), (m, n) -> (m,), in place of the value by hand.
     """
 
     options = DISCRETE

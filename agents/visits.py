@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
-import gymnasium
 import numpy as np
+
+from snooker_env.envs.vector import SnookerVectorEnv
 
 HELD_OUT_SEED = 1_000_000
 """Seed of the first held-out table; table k has this + k."""
@@ -46,10 +47,7 @@ class Strokes:
 
 def play(player, visits, *, layout="held_out", noise="professional", first_seed=HELD_OUT_SEED, threads=None, **options):
     """The ``Strokes`` of ``visits`` visits played side by side; ``options`` go to the environment, after the player's own."""
-    tables = gymnasium.make_vec(
-        "Snooker-v0", visits, vectorization_mode="vector_entry_point", layout=layout, noise=noise, threads=threads,
-        **{**player.options, **options},
-    ).unwrapped  # fmt: skip
+    tables = SnookerVectorEnv(visits, layout=layout, noise=noise, threads=threads, **{**player.options, **options})
     observations, _ = tables.reset(seed=first_seed)
     log, going, number = [], np.ones(visits, bool), 0
     while going.any():
