@@ -277,7 +277,8 @@ def show(figures):
         table.add_column(name, justify="right", no_wrap=True)
     for name, f in figures.items():
         cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")]
-        cells += [f"{100 * f['pot_rate']:.1f} %", f"{100 * f['next_pot_after_a_pot']:.1f} %", str(f["longest_break"])]
+        cells += ["-" if f[key] is None else f"{100 * f[key]:.1f} %" for key in ("pot_rate", "next_pot_after_a_pot")]
+        cells.append(str(f["longest_break"]))
         table.add_row(name.replace("_", " "), *cells)
     rich.console.Console().print(table)
 

@@ -57,6 +57,8 @@ class Recipe:
         rate = settings["learning_rate"]
         if isinstance(rate, str) and rate.startswith("lin_"):
             settings["learning_rate"] = LinearSchedule(float(rate[4:]), 1e-5, 1.0)
+        if "n_steps" in settings:  # few tables make small rollouts
+            settings["batch_size"] = min(settings["batch_size"], settings["n_steps"] * tables.num_envs)
         model = algorithm(self.algo)(
             policy(self.policy), tables, seed=seed, tensorboard_log=tensorboard_log, device="cpu", stats_window_size=1000, **settings
         )

@@ -10,6 +10,7 @@ All candidates of a round meet the same errors (common random numbers): they dif
 
 from dataclasses import replace
 from math import erf, exp, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -131,7 +132,9 @@ class Search:
     def __init__(self, budget=2000, noise=None, seed=0, value=None, constants=(FOLLOWS, SECOND, THIRD, FAR)):
         self.budget, self._noise, self._value, self._constants = budget, noise, value, constants
         self._rng = np.random.default_rng(seed)
-        self._rules = self._noisy = self._exact = None
+        self._rules: Any = None
+        self._noisy: Any = None
+        self._exact: Any = None
         self.shots = 0
         """Shots simulated so far."""
 

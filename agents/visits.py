@@ -66,11 +66,11 @@ def play(player, visits, *, layout="held_out", noise="professional", first_seed=
 
 
 def summary(strokes):
-    """The figures of a visit: means, with the standard errors ``_se`` of those over visits."""
+    """The figures of a visit: means, with the standard errors ``_se`` of those over visits; None where nothing of the kind happened."""
     pots, points = strokes.a_visit(strokes.points > 0), strokes.a_visit(strokes.points)
     colours = strokes.points[strokes.colour & (strokes.points > 0)]
-    error = lambda x: float(np.std(x, ddof=1) / np.sqrt(len(x))) if len(x) > 1 else float("nan")  # noqa: E731
-    share = lambda x: float(np.mean(x)) if len(x) else float("nan")  # noqa: E731
+    error = lambda x: float(np.std(x, ddof=1) / np.sqrt(len(x))) if len(x) > 1 else None  # noqa: E731
+    share = lambda x: float(np.mean(x)) if len(x) else None  # noqa: E731
     fouls = strokes.a_visit(strokes.foul)
     return {
         "visits": strokes.visits, "strokes": len(strokes.points), "pots_a_visit": float(pots.mean()), "pots_a_visit_se": error(pots),

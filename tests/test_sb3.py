@@ -11,9 +11,9 @@ from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.evaluation import evaluate_policy
 
 from agents import view
+from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.visit import COUNTS, REALS
 from snooker_env.sb3 import SnookerVecEnv
-from train import Settings
 
 KEYS = (*REALS, *COUNTS, "foul")
 
@@ -124,12 +124,14 @@ def test_ppo_and_sac_learn_on_it_without_a_warning(observation):
 
 
 def test_the_pots_are_shown_for_all_tables_as_for_one():
-    settings = Settings(envs=5, noise="club")
-    many, one = view.make_envs(settings), view.make_env(settings)
+    def with_pots(observation):
+        return view.with_pots(observation[None])[0]
+
+    many, one = view.training_tables(5, aim="target", noise="club"), SnookerEnv(aim="target", noise="club")
     many.seed(11)
     shown = many.reset()
-    assert many.observation_space == one.observation_space
-    assert np.array_equal(shown[0], one.reset(seed=11)[0])
+    assert many.observation_space.contains(shown[0])
+    assert np.array_equal(shown[0], with_pots(one.reset(seed=11)[0]))
     rng = np.random.default_rng(0)
     ended = 0
     for _ in range(10):
@@ -138,7 +140,7 @@ def test_the_pots_are_shown_for_all_tables_as_for_one():
         mine, _, over, _, _ = one.step(a[0])
         if over:
             ended += 1
-            assert np.array_equal(infos[0]["terminal_observation"], mine)
+            assert np.array_equal(infos[0]["terminal_observation"], with_pots(mine))
             mine, _ = one.reset()
-        assert done[0] == over and np.array_equal(shown[0], mine)
+        assert done[0] == over and np.array_equal(shown[0], with_pots(mine))
     assert ended > 2

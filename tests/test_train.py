@@ -19,10 +19,13 @@ pytest.importorskip("rich")
 pytest.importorskip("tensorboard")
 
 import train  # noqa: E402
-from agents import view, visits  # noqa: E402
+from agents import recipes, view, visits  # noqa: E402
+from agents.players import GhostBall  # noqa: E402
 from snooker_env.envs.actions import line  # noqa: E402
 from snooker_env.envs.observations import observe  # noqa: E402
+from snooker_env.envs.snooker import SnookerEnv  # noqa: E402
 
+AGENTS = ("ppo_mask", "ppo_target", "tqc_target")
 TINY = ["--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512"]
 
 
@@ -33,7 +36,7 @@ def run(out, *options):
 
 def weights(out):
     """Every parameter of the saved model, flat."""
-    model = {"ppo": train.sb3.PPO, "sac": train.sb3.SAC}[results(out)["settings"]["algo"]].load(out / "model.zip", device="cpu")
+    model = recipes.load_player(out).model
     return np.concatenate([p.detach().numpy().ravel() for p in model.policy.parameters()])
 
 
@@ -51,46 +54,43 @@ def refused(capsys, *arguments):
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
-    """Folders of one uninterrupted run of each algorithm."""
+    """Folders of one uninterrupted run of each agent."""
     folder = tmp_path_factory.mktemp("runs")
-    for algo in ("ppo", "sac"):
-        assert run(folder / algo, "--algo", algo) == 0
+    for agent in AGENTS:
+        assert run(folder / agent, "--agent", agent) == 0
     return folder
 
 
-@pytest.mark.parametrize("algo", ["ppo", "sac"])
-def test_run_leaves_model_figures_and_curves(finished, algo):
-    out = finished / algo
+@pytest.mark.parametrize("agent", AGENTS)
+def test_run_leaves_model_figures_and_curves(finished, agent):
+    out = finished / agent
     assert {p.name for p in out.iterdir()} == {"checkpoint.pkl", "model.zip", "results.json", "tb"}
     assert list((out / "tb").rglob("events.out.tfevents.*"))
     found = results(out)
     assert set(found) == {
         "settings", "steps", "seconds", "steps_per_second", "learned", "evaluation", "curve", "versions", "git_commit", "processors",
     }  # fmt: skip
-    assert found["settings"]["algo"] == algo and found["steps"] == 512
+    assert found["settings"]["agent"] == agent and found["steps"] == 512
     assert found["steps_per_second"] == pytest.approx(512 / found["seconds"])
-    assert set(found["evaluation"]["agents"]) == {"trained", "average_shot", "random"}
-    for figures in found["evaluation"]["agents"].values():
+    assert set(found["evaluation"]) == {"trained", "ghost_ball", "random"}
+    for figures in found["evaluation"].values():
         assert figures["visits"] == 4
         assert figures["pot_rate"] == pytest.approx(4 * figures["pots_a_visit"] / figures["strokes"])
-        assert all(figures[name + "_se"] >= 0 for name in ("pots_a_visit", "points_a_visit", "fouls_a_visit", "pot_rate"))
+        assert all(figures[name + "_se"] >= 0 for name in ("pots_a_visit", "points_a_visit", "fouls_a_visit"))
     assert "512 shots" in found["learned"]
 
 
-def test_saved_model_plays_what_make_env_shows(finished):
-    model = train.sb3.PPO.load(finished / "ppo" / "model.zip", device="cpu")
-    env = view.make_env(train.Settings())
-    observation, _ = env.reset(seed=0)
-    assert env.observation_space.contains(observation)
-    observation, _, _, _, _ = env.step(model.predict(observation, deterministic=True)[0])
-    assert env.observation_space.contains(observation)
+@pytest.mark.parametrize("agent", AGENTS)
+def test_saved_model_plays_as_it_was_judged(finished, agent):
+    again = visits.summary(visits.play(recipes.load_player(finished / agent / "model.zip"), 4))
+    assert again == results(finished / agent)["evaluation"]["trained"]
 
 
 def test_pot_view_shows_the_line_that_the_aim_is_read_against():
-    env = view.make_env(train.Settings(), "held_out")
+    table = SnookerEnv(aim="target", layout="held_out")
     for seed in range(20):
-        observation, _ = env.reset(seed=seed)
-        table, rows = env.unwrapped, observation[121:].reshape(-1, view.POT_ENTRIES)
+        observation = view.with_pots(table.reset(seed=seed)[0][None])[0]
+        rows = observation[121:].reshape(-1, view.POT_ENTRIES)
         assert np.array_equal(observation[:121], observe("flat", table.positions, table.on_table, table.ball_on, table.on, 0, 0))
         direction = line(table.positions, table.on_table, table.on)
         assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=1e-6)
@@ -99,9 +99,9 @@ def test_pot_view_shows_the_line_that_the_aim_is_read_against():
         assert np.all(np.diff(shown[:, 7]) <= 0) and not rows[len(shown) :].any()  # widest first, then nothing
 
 
-@pytest.mark.parametrize(("algo", "at", "number"), [("ppo", 300, signal.SIGTERM), ("sac", 100, signal.SIGINT)])  # sac: in its warm-up
-def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, tmp_path, capsys, monkeypatch, algo, at, number):
-    original = train.Keeper._on_step
+@pytest.mark.parametrize(("agent", "at", "number"), [("ppo_mask", 300, signal.SIGTERM), ("tqc_target", 100, signal.SIGINT)])
+def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, tmp_path, capsys, monkeypatch, agent, at, number):
+    original = train.Keeper._on_step  # at 100 shots tqc only gathers yet
 
     def interrupted(keeper):
         if keeper.num_timesteps == at:
@@ -110,12 +110,12 @@ def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, 
 
     with monkeypatch.context() as patch:
         patch.setattr(train.Keeper, "_on_step", interrupted)
-        assert run(tmp_path / "run", "--algo", algo) == 128 + number
+        assert run(tmp_path / "run", "--agent", agent) == 128 + number
     assert f"--resume --out {tmp_path / 'run'}" in capsys.readouterr().out
     assert not (tmp_path / "run" / "results.json").exists()
     assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
-    assert np.array_equal(weights(tmp_path / "run"), weights(finished / algo))
-    before, after = results(finished / algo), results(tmp_path / "run")
+    assert np.array_equal(weights(tmp_path / "run"), weights(finished / agent))
+    before, after = results(finished / agent), results(tmp_path / "run")
     assert after["evaluation"] == before["evaluation"] and after["settings"] == before["settings"] and after["steps"] == 512
 
 
@@ -149,7 +149,7 @@ def test_kill_9_leaves_a_run_that_resume_finishes(finished, tmp_path):
     assert process.returncode == -signal.SIGKILL and not (out / "results.json").exists()
     assert run(out, "--resume") == 0  # in one thread now: it plays the same shots
     assert results(out)["steps"] == 512
-    assert np.array_equal(weights(out), weights(finished / "ppo"))
+    assert np.array_equal(weights(out), weights(finished / "ppo_mask"))
 
 
 def test_ctrl_c_ends_it_in_order(tmp_path):
@@ -161,15 +161,15 @@ def test_ctrl_c_ends_it_in_order(tmp_path):
 
 
 def test_resume_refuses_other_settings(finished, capsys):
-    error = refused(capsys, "--resume", "--out", str(finished / "ppo"), "--noise", "club")
-    assert "--noise is 'club'" in error and "has 'none'" in error
-    assert "--algo is 'sac'" in refused(capsys, "--resume", "--out", str(finished / "ppo"), "--algo", "sac")
+    error = refused(capsys, "--resume", "--out", str(finished / "ppo_mask"), "--noise", "club")
+    assert "--noise is 'club'" in error and "has ''" in error
+    assert "--agent is 'tqc_target'" in refused(capsys, "--resume", "--out", str(finished / "ppo_mask"), "--agent", "tqc_target")
 
 
 def test_existing_run_is_not_overwritten(finished, tmp_path, capsys):
-    before = (finished / "ppo" / "checkpoint.pkl").read_bytes()
-    assert "--resume goes on with it" in refused(capsys, "--out", str(finished / "ppo"))
-    assert (finished / "ppo" / "checkpoint.pkl").read_bytes() == before
+    before = (finished / "ppo_mask" / "checkpoint.pkl").read_bytes()
+    assert "--resume goes on with it" in refused(capsys, "--out", str(finished / "ppo_mask"))
+    assert (finished / "ppo_mask" / "checkpoint.pkl").read_bytes() == before
     (tmp_path / "thesis.txt").write_text("mine")
     assert "thesis.txt" in refused(capsys, "--out", str(tmp_path))
     assert "holds no checkpoint" in refused(capsys, "--resume", "--out", str(tmp_path))
@@ -177,8 +177,8 @@ def test_existing_run_is_not_overwritten(finished, tmp_path, capsys):
 
 @pytest.mark.parametrize(
     ("option", "value"),
-    [("layout", "moon"), ("noise", "drunk"), ("fidelity", "rough"), ("aim", "away"), ("algo", "dqn"), ("envs", "0"), ("steps", "-1"),
-     ("eval-visits", "1"), ("seed", "-1"), ("seed", "x")],
+    [("layout", "moon"), ("noise", "drunk"), ("fidelity", "rough"), ("agent", "dqn"), ("set", "gamma"), ("set", "charm=2"), ("envs", "-1"),
+     ("steps", "-1"), ("eval-visits", "1"), ("seed", "-1"), ("seed", "x")],
 )  # fmt: skip
 def test_bad_option_gives_one_clear_error(tmp_path, capsys, option, value):
     error = refused(capsys, "--out", str(tmp_path / "run"), f"--{option}", value)
@@ -203,29 +203,37 @@ def test_failed_write_leaves_the_old_file(tmp_path, monkeypatch, broken):
     assert path.read_bytes() == b"new" and [p.name for p in tmp_path.iterdir()] == ["file"]
 
 
-def test_evaluation_deals_every_agent_the_same_tables():
-    settings, seen = train.Settings(noise="professional"), []
+def test_every_player_meets_the_same_tables():
+    seen = []
 
-    def act(observations):
-        seen.append(observations)
-        return np.full(4, 0.5, np.float32)
+    class Watching(GhostBall):
+        def act(self, tables, observations, going):
+            seen.append(observations[going])
+            return super().act(tables, observations, going)
 
-    first, second = visits.evaluate(settings, act, 3), visits.evaluate(settings, act, 3)
+    first, second = (visits.summary(visits.play(Watching(), 3)) for _ in range(2))
     assert first == second
     assert all(np.array_equal(a, b) for a, b in zip(seen[: len(seen) // 2], seen[len(seen) // 2 :], strict=True))
 
 
 def test_lesson_claims_only_what_the_figures_show():
-    def agent(points, se):
+    def player(points, se):
         return {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se, "visits": 100}
 
-    def said(trained, average, random):
-        return visits.lesson(train.Settings(), 1000, {"agents": {"trained": trained, "average_shot": average, "random": random}})
+    def said(trained, ghost, random):
+        return train.lesson("ppo_mask", 1000, {"trained": trained, "ghost_ball": ghost, "random": random})
 
-    assert "learned nothing" in said(agent(1.0, 0.3), agent(0.9, 0.3), agent(0.5, 0.3))
-    assert "learned nothing" in said(agent(0.1, 0.1), agent(0.9, 0.3), agent(2.0, 0.1))
-    assert "not to read the table" in said(agent(3.0, 0.3), agent(2.9, 0.3), agent(0.5, 0.1))
-    assert "and to read the table" in said(agent(9.0, 0.3), agent(2.9, 0.3), agent(0.5, 0.1))
+    assert "learned nothing" in said(player(1.0, 0.3), player(0.9, 0.3), player(0.5, 0.3))
+    assert "learned nothing" in said(player(0.1, 0.1), player(0.9, 0.3), player(2.0, 0.1))
+    assert "no better than the widest pot" in said(player(3.0, 0.3), player(2.9, 0.3), player(0.5, 0.1))
+    assert "to leave the next ball on" in said(player(9.0, 0.3), player(2.9, 0.3), player(0.5, 0.1))
+
+
+def test_hyperparameters_can_be_changed(tmp_path):
+    assert run(tmp_path / "run", "--set", "gamma=0", "n_steps=32") == 0
+    model = recipes.load_player(tmp_path / "run").model
+    assert model.gamma == 0 and model.n_steps == 32
+    assert results(tmp_path / "run")["settings"]["set"] == ["gamma=0", "n_steps=32"]
 
 
 @pytest.mark.parametrize("missing", ["stable_baselines3", "torch", "rich", "tensorboard"])
@@ -237,10 +245,12 @@ def test_missing_extra_says_the_pip_line(missing):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("algo", "steps", "least"), [("ppo", "40000", 1.0), ("sac", "15000", 0.3)])
-def test_it_learns(tmp_path, algo, steps, least):
-    assert run(tmp_path / "run", "--algo", algo, "--steps", steps, "--envs", "16", "--eval-visits", "300") == 0
-    agents = results(tmp_path / "run")["evaluation"]["agents"]
-    gain = agents["trained"]["points_a_visit"] - agents["random"]["points_a_visit"]
-    assert gain > least and gain > 3 * agents["trained"]["points_a_visit_se"]
+@pytest.mark.parametrize(
+    ("agent", "steps", "least"), [("ppo_mask", "300000", 2.0), ("ppo_target", "100000", 0.3), ("tqc_target", "15000", 0.3)]
+)
+def test_it_learns(tmp_path, agent, steps, least):
+    assert run(tmp_path / "run", "--agent", agent, "--steps", steps, "--envs", "64", "--eval-visits", "300") == 0
+    players = results(tmp_path / "run")["evaluation"]
+    gain = players["trained"]["points_a_visit"] - players["random"]["points_a_visit"]
+    assert gain > least and gain > 3 * players["trained"]["points_a_visit_se"]
     assert "learned nothing" not in results(tmp_path / "run")["learned"]

@@ -63,7 +63,8 @@ def shot_of(a, positions, on_table, on, options, found):
 
 
 @entry
-def _tip(side, top, max_offset):
+def tip(side, top, max_offset):
+    """``tip_on_disc`` for Python, all three floats."""
     return tip_on_disc(side, top, max_offset)
 
 
@@ -159,10 +160,6 @@ class Actions:
     def shot(self, a, positions, on_table, on):
         """(speed, side, top, aim, elevation) of an action list, the aim being the cue's direction [rad]."""
         return _shot(np.array(a, np.float64), np.array(positions, np.float64), np.array(on_table, np.bool_), int(on), self.pack())
-
-    def tip(self, side, top):
-        """A tip offset, drawn back onto the disc of the miscue limit if it lies outside."""
-        return _tip(float(side), float(top), self.physics.max_offset)
 
 
 def line(positions, on_table, on):

@@ -1,7 +1,5 @@
 """How is a shot carried out, and what does the referee see of it? Noise, strike and engine in one; the event log read as a ``Stroke``."""
 
-from typing import Any
-
 import numpy as np
 
 from .._check import choice, refuse
@@ -14,7 +12,7 @@ from ..physics.engine import EventKind
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..simulation import play
-from .actions import AIMS, Actions
+from .actions import AIMS, Actions, tip
 from .choices import Choices
 from .noise import Noise
 
@@ -70,13 +68,14 @@ class Shooter:
     """Everything between an intended shot and the balls at rest; one for all players of an environment."""
 
     def __init__(self, actions: Actions | Choices, noise: Noise, physics: Physics, table: Table, fidelity):
-        self.actions: Any = actions
+        self.actions = actions
         self.noise, self.physics, self.table, self.fidelity = noise, physics, table, fidelity
 
     def shoot(self, intended: tuple[float, float, float, float, float], positions, on_table, rng, *, path=False):
         """The ``Shot`` that ``intended`` = (speed, side, top, aim, elevation) becomes; noise is drawn from ``rng``. Nothing is changed."""
         speed, side, top, aim, elevation = self.noise.draw(rng, *intended, self.physics.R)
-        v, w = cue.strike(speed, aim, *self.actions.tip(side, top), elevation, self.physics)
+        side, top = tip(float(side), float(top), self.physics.max_offset)
+        v, w = cue.strike(speed, aim, side, top, elevation, self.physics)
         velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
         velocities[CUE], spins[CUE] = v[:2], w
         return play(positions, velocities, spins, on_table, self.physics, self.table, self.fidelity, path=path)
