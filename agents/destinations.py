@@ -8,10 +8,12 @@ if not. Only first strokes, since these are played from the same positions by ev
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.patches import Circle, Polygon, Rectangle
+from matplotlib.patheffects import withStroke
 
-from snooker_env.game.balls import BallOn
+from snooker_env.game.balls import HALF_LENGTH, HALF_WIDTH, BallOn
 from snooker_env.physics.table import Table
-from snooker_env.render.scene import BAULK_LINE, COLOURS, D_ARC, RAIL, SPOT_MARKS, outline
+from snooker_env.render.scene import BAULK_LINE, COLOURS, CUSHION, D_ARC, RAIL, SPOT_MARKS, outline
 
 from .report import main_condition
 
@@ -20,15 +22,16 @@ import matplotlib.pyplot as plt
 
 MOST = 3
 """Agents side by side."""
-CLOTH, CUSHION, WOOD, LINE = "#1d6b4c", "#154f38", "#4a2f22", "#7fb49c"
-WENT_IN, MISSED = "#ffe9a8", "#0b1f16"
+CLOTH, RUBBER, WOOD, LINE = "#1d6b4c", "#154f38", "#4a2f22", "#7fb49c"
+WENT_IN, MISSED = "#ffe9a8", "#06130d"
 BARS = ("#c8963e", "#3f6f8f", "#8a8f98")
-MARK = 9.0
-"""Size of a dot [points squared]."""
+INK, LEAST, LARGEST = 14_000.0, 7.0, 20.0
+"""All dots of a table together, the smallest and the largest dot [points squared]."""
 FIGURES = (
     ("next_pot_after_a_pot", "next pot after a pot", 100, "{:.0f} %"),
-    ("high_colour_after_a_red", "pink or black after a red", 100, "{:.0f} %"),
+    ("easy_pot_left_by_a_pot", "an easy pot is left by a pot", 100, "{:.0f} %"),
     ("colour_value", "value of the colour potted", 1, "{:.2f}"),
+    ("high_colour_after_a_red", "pink or black after a red", 100, "{:.0f} %"),
     ("points_a_visit", "points a visit", 1, "{:.1f}"),
 )
 
@@ -44,44 +47,42 @@ def draw(report, strokes, file):
     labels = [agent["label"] for agent in report["agents"]][:MOST]
     at = main_condition(report)
     rows = {r["agent"]: r for r in report["results"] if all(r[key] == value for key, value in at.items())}
-    figure = plt.figure(figsize=(2.75 * len(labels) + 3.6, 6.6), facecolor="white")
+    width = 2.75 * len(labels) + 3.6  # inches
+    figure = plt.figure(figsize=(width, 6.6), facecolor="white")
     grid = figure.add_gridspec(
         len(FIGURES), len(labels) + 2, width_ratios=[1.0] * len(labels) + [0.3, 1.1], left=0.015, right=0.985, top=0.79, bottom=0.03,
-        wspace=0.05, hspace=0.6,
+        wspace=0.05, hspace=0.7,
     )  # fmt: skip
     for k, label in enumerate(labels):
         table(figure.add_subplot(grid[:, k]), label, strokes[label])
     for k, (name, title, scale, form) in enumerate(FIGURES):
         bars(figure.add_subplot(grid[k, -1]), labels, [rows[label]["figures"][name] for label in labels], title, scale, form)
     visits = rows[labels[0]]["visits"]
-    figure.text(0.015, 0.95, "Where the cue ball stops after a potted red", fontsize=15, weight="bold")
+    figure.text(0.2 / width, 0.95, "Where the cue ball stops after a potted red", fontsize=15, weight="bold")
     figure.text(
-        0.015, 0.908, f"First strokes on the same {visits:,} opened tables that no training saw; noise: {at['noise']}.", fontsize=10
+        0.2 / width, 0.908, f"First strokes on the same {visits:,} held-out tables, noise {at['noise']}", fontsize=10
     )  # fmt: skip
-    for x, colour, text in ((0.02, WENT_IN, "the colour after it went in"), (0.245, MISSED, "it did not")):
-        figure.text(x, 0.873, "●", color=colour, fontsize=11, va="center", path_effects=_edge())
-        figure.text(x + 0.018, 0.873, text, fontsize=10, va="center")
+    for x, colour, text in ((0.2 / width, WENT_IN, "the colour after it went in"), (2.5 / width, MISSED, "it did not")):
+        figure.text(x, 0.873, "●", color=colour, fontsize=11, va="center", path_effects=[withStroke(linewidth=1.0, foreground="#555555")])
+        figure.text(x + 0.22 / width, 0.873, text, fontsize=10, va="center")
+    edge = 1 - 3.6 / width
+    figure.text(edge, 0.908, "All strokes of these visits", fontsize=10)
+    figure.text(edge, 0.873, "easy: its line may err by 4 mrad; lines: 95 % intervals", fontsize=8, va="center", color="#555555")
     file.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(file, dpi=110)
     plt.close(figure)
 
 
-def _edge():
-    from matplotlib.patheffects import withStroke
-
-    return [withStroke(linewidth=1.0, foreground="#555555")]
-
-
 def table(axes, label, runs):
     """One agent's table, its black end up, with the dots of all its runs."""
     parts = outline(Table.preset("match"))
-    hx, hy = 0.889 + RAIL, 1.7845 + RAIL
-    axes.add_patch(plt.Rectangle((-hx, -hy), 2 * hx, 2 * hy, color=WOOD, lw=0))
-    axes.add_patch(plt.Rectangle((-0.889 - 0.06, -1.7845 - 0.06), 2 * 0.949, 2 * 1.8445, color=CLOTH, lw=0))
+    for margin, colour in ((RAIL, WOOD), (CUSHION, CLOTH)):
+        hx, hy = HALF_WIDTH + margin, HALF_LENGTH + margin
+        axes.add_patch(Rectangle((-hx, -hy), 2 * hx, 2 * hy, color=colour, lw=0))
     for polygon in parts.cushions:
-        axes.add_patch(plt.Polygon(polygon, color=CUSHION, lw=0))
+        axes.add_patch(Polygon(polygon, color=RUBBER, lw=0))
     for x, y, radius in parts.falls:
-        axes.add_patch(plt.Circle((x, y), radius, color="#0a0a0a", lw=0))
+        axes.add_patch(Circle((x, y), radius, color="#0a0a0a", lw=0))
     for line in (BAULK_LINE, D_ARC):
         axes.plot(*line.T, color=LINE, lw=0.8)
     for spot, colour in zip(SPOT_MARKS, COLOURS[16:], strict=True):
@@ -89,8 +90,15 @@ def table(axes, label, runs):
     places, went_in = (np.concatenate(column) for column in zip(*map(first_reds, runs), strict=True))
     shuffled = np.random.default_rng(0).permutation(len(places))  # neither colour always on top
     colours = np.where(went_in, WENT_IN, MISSED)
-    axes.scatter(*places[shuffled].T, s=MARK / len(runs), c=colours[shuffled], lw=0, alpha=0.85, zorder=3)
-    axes.set(xlim=(-hx, hx), ylim=(-hy, hy), aspect="equal")
+    axes.scatter(
+        *places[shuffled].T,
+        s=np.clip(INK / max(1, len(places)), LEAST, LARGEST) / len(runs),
+        c=colours[shuffled],
+        lw=0,
+        alpha=0.85,
+        zorder=3,
+    )
+    axes.set(xlim=(-HALF_WIDTH - RAIL, HALF_WIDTH + RAIL), ylim=(-HALF_LENGTH - RAIL, HALF_LENGTH + RAIL), aspect="equal")
     axes.axis("off")
     share = 100 * went_in.mean() if len(went_in) else float("nan")
     axes.set_title(f"{label}\nthe colour follows in {share:.0f} %", fontsize=11)

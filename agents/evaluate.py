@@ -122,7 +122,7 @@ def tables_of(layout, visits):
     Raises ValueError if the layout has too few.
     """
     plan, seeds, known = plan_of(layout), [], set()
-    for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + 50 * visits):
+    for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + 20 * visits):
         positions, on_table = np.zeros((1, 22, 2)), np.zeros((1, 22), bool)
         deal_tables(np.ones(1, bool), plan.code, plan.tables, stream_of(np.random.default_rng(seed))[None], positions, on_table)
         table = np.sort(np.abs(positions[0, :, 0])).round(9).tobytes()
@@ -210,7 +210,8 @@ class Played:
 
     @property
     def _samples(self):
-        return Resamples(*self.counted["points"].shape, self.resamples, zlib.crc32(self.agent.label.encode()))
+        runs, visits = self.counted["points"].shape
+        return Resamples(runs, visits, self.resamples, zlib.crc32(self.agent.label.encode()))
 
     def figures(self):
         """All figures of this agent alone."""

@@ -76,7 +76,7 @@ class Strokes:
         return self.made[self.following[self.goes_on]]
 
 
-def play(player, visits, *, layout="held_out", noise="professional", first_seed=HELD_OUT_SEED, threads=None, **options):
+def play(player, visits, *, layout="held_out", noise="professional", first_seed: int | list[int] = HELD_OUT_SEED, threads=None, **options):
     """The ``Strokes`` of ``visits`` visits played side by side; ``options`` go to the environment, after the player's own.
 
     ``first_seed``: of the first table, the next have the seeds after it; or a list with the seed of each.
@@ -95,17 +95,19 @@ def play(player, visits, *, layout="held_out", noise="professional", first_seed=
         cue = np.where((on_table[:, 0] & (info["foul"][here] == 0))[:, None], positions, np.nan)
         log.append(
             (here, np.full(len(here), number), info["points"][here], info["foul"][here] != 0, ball_on, ~on_table[:, 1:].any(1), cue,
-             _tolerance(observations[here]))
+             _tolerance(observations, here))
         )  # fmt: skip
         going &= ~ended
         number += 1
     tables.close()
-    return Strokes(visits, *(np.concatenate(column) for column in zip(*log, strict=True)), thinking)
+    columns = (np.concatenate(column) for column in zip(*log, strict=True))
+    names = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance")
+    return Strokes(visits=visits, thinking=thinking, **dict(zip(names, columns, strict=True)))
 
 
-def _tolerance(observations):
-    """Of the widest pot that each shows [rad]."""
-    widest = with_pots(observations)[:, SIZE:]
+def _tolerance(observations, here):
+    """Of the widest pot on each table ``here`` [rad]."""
+    widest = with_pots(observations[here])[:, SIZE:]
     return np.where(widest[:, 0] > 0, 10.0 ** (2.0 * (widest[:, 7] - 1.0)), 0.0)
 
 
