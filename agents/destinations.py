@@ -25,8 +25,8 @@ MOST = 3
 CLOTH, RUBBER, WOOD, LINE = "#1d6b4c", "#154f38", "#4a2f22", "#7fb49c"
 WENT_IN, MISSED = "#ffe9a8", "#06130d"
 BARS = ("#c8963e", "#3f6f8f", "#8a8f98")
-INK, LEAST, LARGEST = 14_000.0, 7.0, 20.0
-"""All dots of a table together, the smallest and the largest dot [points squared]."""
+INK, LEAST, LARGEST = 14_000.0, 2.0, 20.0
+"""All dots of the fullest table together, the smallest and the largest dot [points squared]."""
 FIGURES = (
     ("next_pot_after_a_pot", "next pot after a pot", 100, "{:.0f} %"),
     ("easy_pot_left_by_a_pot", "an easy pot is left by a pot", 100, "{:.0f} %"),
@@ -53,8 +53,10 @@ def draw(report, strokes, file):
         len(FIGURES), len(labels) + 2, width_ratios=[1.0] * len(labels) + [0.3, 1.1], left=0.015, right=0.985, top=0.79, bottom=0.03,
         wspace=0.05, hspace=0.7,
     )  # fmt: skip
-    for k, label in enumerate(labels):
-        table(figure.add_subplot(grid[:, k]), label, strokes[label])
+    dots = [[np.concatenate(column) for column in zip(*map(first_reds, strokes[label]), strict=True)] for label in labels]
+    size = float(np.clip(INK / max(1, *(len(places) for places, _ in dots)), LEAST, LARGEST))
+    for k, (label, (places, went_in)) in enumerate(zip(labels, dots, strict=True)):
+        table(figure.add_subplot(grid[:, k]), label, places, went_in, size)
     for k, (name, title, scale, form) in enumerate(FIGURES):
         bars(figure.add_subplot(grid[k, -1]), labels, [rows[label]["figures"][name] for label in labels], title, scale, form)
     visits = rows[labels[0]]["visits"]
@@ -73,7 +75,7 @@ def draw(report, strokes, file):
     plt.close(figure)
 
 
-def table(axes, label, runs):
+def table(axes, label, places, went_in, size):
     """One agent's table, its black end up, with the dots of all its runs."""
     parts = outline(Table.preset("match"))
     for margin, colour in ((RAIL, WOOD), (CUSHION, CLOTH)):
@@ -87,12 +89,11 @@ def table(axes, label, runs):
         axes.plot(*line.T, color=LINE, lw=0.8)
     for spot, colour in zip(SPOT_MARKS, COLOURS[16:], strict=True):
         axes.plot(*spot, "o", color=colour / 255, ms=6.5, mec="white", mew=0.6, zorder=4)
-    places, went_in = (np.concatenate(column) for column in zip(*map(first_reds, runs), strict=True))
     shuffled = np.random.default_rng(0).permutation(len(places))  # neither colour always on top
     colours = np.where(went_in, WENT_IN, MISSED)
     axes.scatter(
         *places[shuffled].T,
-        s=np.clip(INK / max(1, len(places)), LEAST, LARGEST) / len(runs),
+        s=size,
         c=colours[shuffled],
         lw=0,
         alpha=0.85,

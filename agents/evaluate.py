@@ -24,6 +24,7 @@ import platform
 import shlex
 import subprocess
 import sys
+import zipfile
 import zlib
 from dataclasses import dataclass
 from functools import cache
@@ -92,6 +93,8 @@ class Agent:
 
 @cache
 def _model(path):
+    if Path(path).is_file() and not zipfile.is_zipfile(path):
+        raise refuse("agent", path, "must be a model's .zip or a folder that holds model.zip")
     return player_of(path)
 
 

@@ -10,6 +10,7 @@ SEEDS = 5
 SAME = 0.1
 """Times that differ by less than this share are called equal."""
 AXES = ("noise", "fidelity", "physics")
+USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
 
 
 @dataclass
@@ -52,14 +53,11 @@ def _picked(report, **condition):
 
 
 def main_condition(report):
-    """Where the comparison in words, and the picture, are taken: held-out tables and a professional's hand, if they were played."""
+    """Where the comparison in words, and the picture, are taken: the usual of everything that was played, else its first value."""
     p = report["protocol"]
-    noise = "professional" if "professional" in p["noise"] else p["noise"][0]
     return {
-        "layout": "held_out" if "held_out" in p["layouts"] else next(iter(p["layouts"])),
-        "noise": noise,
-        "fidelity": p["fidelity"][0],
-        "physics": p["physics"][0],
+        name: USUAL[name] if USUAL[name] in p[key] else next(iter(p[key]))
+        for name, key in (("layout", "layouts"), *zip(AXES, AXES, strict=True))
     }
 
 

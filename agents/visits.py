@@ -76,7 +76,9 @@ class Strokes:
         return self.made[self.following[self.goes_on]]
 
 
-def play(player, visits, *, layout="held_out", noise="professional", first_seed: int | list[int] = HELD_OUT_SEED, threads=None, **options):
+def play(
+    player, visits, *, layout="held_out", noise="professional", first_seed: int | list[int | None] = HELD_OUT_SEED, threads=None, **options
+):
     """The ``Strokes`` of ``visits`` visits played side by side; ``options`` go to the environment, after the player's own.
 
     ``first_seed``: of the first table, the next have the seeds after it; or a list with the seed of each.

@@ -202,7 +202,7 @@ def models(tmp_path_factory):
 
 
 def test_json_markdown_and_picture(models, tmp_path, capsys):
-    options = ["--visits", "12", "--layouts", "held_out=20", "colours", "--noise", "none", "professional", "--physics", "paper,mu_bb=marlow"]
+    options = ["--visits", "12", "--layouts", "held_out=20", "colours", "--noise", "none", "club", "--physics", "paper,mu_bb=marlow"]
     options += ["--resamples", "200", "--json", str(tmp_path / "a" / "r.json"), "--markdown", str(tmp_path / "r.md")]
     agents = ["--agent", f"model={models / 'm-*'}", "random", "--against", "ghost_ball", "random"]
     assert evaluate.main([*agents, *options, "--picture", str(tmp_path / "p.png")]) == 0
@@ -269,6 +269,7 @@ def test_what_is_said_of_fair_comparison():
     ("options", "says"),
     [
         (["--agent", "nobody"], "agent = 'nobody': must be random, "),
+        (["--agent", str(Path(__file__))], "agent = .*test_evaluate.py': must be a model's .zip"),
         (["--agent", "x=nowhere-*"], "agent = 'nowhere-\\*': must be"),
         (["--agent", "random", "random"], "agent = 'random': must be another"),
         (["--agent", "random", "--against", "me"], "against = 'me': must be one of random, ghost_ball"),
