@@ -1,10 +1,16 @@
 """How do visits go that a player plays? Every stroke of them, on tables that are the same for every player."""
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
 
+from snooker_env.envs.observations import SIZE
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.envs.visit import BALL_ON
+from snooker_env.game.balls import BallOn
+
+from .view import with_pots
 
 HELD_OUT_SEED = 1_000_000
 """Seed of the first held-out table; table k has this + k."""
@@ -25,12 +31,40 @@ class Strokes:
     """Points scored; 0 for a miss or a foul."""
     foul: np.ndarray
     """Whether it was a foul."""
-    colour: np.ndarray
-    """Whether any colour was on."""
+    ball_on: np.ndarray
+    """What was on, a ``BallOn``."""
     cleared: np.ndarray
     """Whether nothing was left to pot."""
     cue: np.ndarray
     """(n, 2) where the cue ball lay afterwards [m]; NaN where it was potted."""
+    tolerance: np.ndarray
+    """How far the aim of the widest direct pot may err that was there afterwards [rad], by ``game.pots``; 0 where there was none."""
+    thinking: float
+    """Seconds that the player took for all of them."""
+
+    @property
+    def made(self):
+        """Whether it scored."""
+        return self.points > 0
+
+    @property
+    def goes_on(self):
+        """Whether it scored and left something to pot."""
+        return self.made & ~self.cleared
+
+    @property
+    def colour(self):
+        """Whether any colour was on."""
+        return self.ball_on == BallOn.ANY_COLOUR
+
+    @property
+    def following(self):
+        """Which entry is the next stroke of the same visit; -1 after its last."""
+        order = np.lexsort((self.number, self.visit))
+        same = np.diff(self.visit[order]) == 0
+        following = np.full(len(order), -1)
+        following[order[:-1][same]] = order[1:][same]
+        return following
 
     def a_visit(self, values):
         """Sums of ``values`` (one a stroke) over each visit."""
@@ -39,30 +73,44 @@ class Strokes:
     @property
     def followed(self):
         """Of the pots that left something to pot: whether the next stroke pots too, an entry for each."""
-        order = np.lexsort((self.number, self.visit))
-        made = self.points[order] > 0
-        goes_on = np.flatnonzero(made & ~self.cleared[order])
-        return made[goes_on + 1]
+        return self.made[self.following[self.goes_on]]
 
 
-def play(player, visits, *, layout="held_out", noise="professional", first_seed=HELD_OUT_SEED, threads=None, **options):
-    """The ``Strokes`` of ``visits`` visits played side by side; ``options`` go to the environment, after the player's own."""
+def play(
+    player, visits, *, layout="held_out", noise="professional", first_seed: int | list[int | None] = HELD_OUT_SEED, threads=None, **options
+):
+    """The ``Strokes`` of ``visits`` visits played side by side; ``options`` go to the environment, after the player's own.
+
+    ``first_seed``: of the first table, the next have the seeds after it; or a list with the seed of each.
+    """
     tables = SnookerVectorEnv(visits, layout=layout, noise=noise, threads=threads, **{**player.options, **options})
     observations, _ = tables.reset(seed=first_seed)
-    log, going, number = [], np.ones(visits, bool), 0
+    log, going, number, thinking = [], np.ones(visits, bool), 0, 0.0
     while going.any():
-        colour = tables.visits.game[:, 0] == 0
-        observations, _, ended, _, info = tables.step(player.act(tables, observations, going))
+        ball_on = tables.visits.game[going, BALL_ON]
+        began = time.perf_counter()
+        actions = player.act(tables, observations, going)
+        thinking += time.perf_counter() - began
+        observations, _, ended, _, info = tables.step(actions)
         here = np.flatnonzero(going)
         positions, on_table = tables.visits.positions[here, 0], tables.visits.on_table[here]
         cue = np.where((on_table[:, 0] & (info["foul"][here] == 0))[:, None], positions, np.nan)
         log.append(
-            (here, np.full(len(here), number), info["points"][here], info["foul"][here] != 0, colour[here], ~on_table[:, 1:].any(1), cue)
-        )
+            (here, np.full(len(here), number), info["points"][here], info["foul"][here] != 0, ball_on, ~on_table[:, 1:].any(1), cue,
+             _tolerance(observations, here))
+        )  # fmt: skip
         going &= ~ended
         number += 1
     tables.close()
-    return Strokes(visits, *(np.concatenate(column) for column in zip(*log, strict=True)))
+    columns = (np.concatenate(column) for column in zip(*log, strict=True))
+    names = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance")
+    return Strokes(visits=visits, thinking=thinking, **dict(zip(names, columns, strict=True)))
+
+
+def _tolerance(observations, here):
+    """Of the widest pot on each table ``here`` [rad]."""
+    widest = with_pots(observations[here])[:, SIZE:]
+    return np.where(widest[:, 0] > 0, 10.0 ** (2.0 * (widest[:, 7] - 1.0)), 0.0)
 
 
 def summary(strokes):

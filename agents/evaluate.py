@@ -1,0 +1,411 @@
+"""How well do agents play, and is it positional play? The project's protocol: held-out tables, every level of noise, several seeds.
+
+    python -m agents.evaluate --agent ghost_ball runs/ppo_mask-0
+    python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against ghost_ball "pots only" \\
+        --json agents/results.json --markdown agents/results.md --picture
+    python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/reference-*" --fidelity fast reference --noise professional
+    python -m agents.evaluate --agent search --visits 50 --layouts held_out --noise professional
+
+Every agent plays the same tables with the same errors of execution (as far as it plays as many strokes): 2,000 opened tables that no
+training sees, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every agent plays under every value given to
+--noise, --fidelity and --physics: agents that were trained under A and B, played under A and B, make the table of A against B. (The aim
+of a discrete choice is solved in the world that is played.)
+
+Agents are named as ``NAME`` (a player of agents/players.py), as a model's .zip or run folder, or as LABEL=PATH,PATH,... for one that was
+trained with several seeds; a PATH may be a pattern. Intervals are 95 % bootstrap intervals over training seeds and visits
+(agents/statistics.py); the ratios are paired: same tables above and below.
+"""
+
+import argparse
+import glob
+import json
+import os
+import platform
+import shlex
+import subprocess
+import sys
+import zipfile
+import zlib
+from dataclasses import dataclass
+from functools import cache
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+import snooker_env
+from snooker_env._check import integer, refuse
+from snooker_env.envs.noise import Noise
+from snooker_env.game.balls import BallOn
+from snooker_env.game.layouts import POT_WINDOWS, deal_tables, plan_of
+from snooker_env.game.stream import stream_of
+from snooker_env.physics.contact import parse_fidelity
+from snooker_env.physics.parameters import Physics
+
+from .players import NAMES, player_of
+from .report import AXES, main_condition, markdown, show
+from .statistics import RESAMPLES, Resamples, interval, iqm
+from .visits import CENTURY, HELD_OUT_SEED, Strokes, play
+
+PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
+"""Visits on each layout."""
+NOISES = ("none", "professional", "amateur", "club")
+REFERENCE = "ghost_ball"
+EASY = POT_WINDOWS["easy"][0]
+HIGH = 6
+"""Pink and black are colours of high value."""
+PICTURE = Path(__file__).parent / "pictures" / "destinations.png"
+
+
+# who plays -----------------------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Agent:
+    """What is compared: a player, or the models of one way to train, one for each seed."""
+
+    label: str
+    runs: tuple
+    """Names, model files or run folders."""
+
+    @classmethod
+    def of(cls, text):
+        """From NAME, PATH or LABEL=PATH,PATH,... Raises ValueError."""
+        label, equals, paths = text.partition("=") if not Path(text).exists() else ("", "", "")
+        if not equals:
+            label, paths = "", text
+        runs = []
+        for path in paths.split(","):
+            found = [path] if path in NAMES or Path(path).exists() else sorted(glob.glob(path))
+            if not found:
+                allowed = f"must be {', '.join(NAMES)}, or name models that are there: a .zip, a run folder, a pattern"
+                raise refuse("agent", path, allowed)
+            runs += found
+        if equals and not label:
+            raise refuse("agent", text, "must have a label before the =")
+        path = Path(runs[0])
+        return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs))
+
+    def trained(self):
+        """What is known of how each run was made: a dict a run, {} for a player that was not trained."""
+        return [_training(run) for run in self.runs]
+
+
+@cache
+def _model(path):
+    if Path(path).is_file() and not zipfile.is_zipfile(path):
+        raise refuse("agent", path, "must be a model's .zip or a folder that holds model.zip")
+    return player_of(path)
+
+
+def _player(run, budget, seed):
+    """A fresh player, or a model, read once."""
+    return player_of(run, budget=budget, seed=seed) if run in NAMES else _model(run)
+
+
+def _training(run):
+    if run in NAMES:
+        return {}
+    model = _model(run).model
+    folder = Path(run) if Path(run).is_dir() else Path(run).parent
+    results = folder / "results.json"
+    seconds = json.loads(results.read_text()).get("seconds") if results.is_file() else None
+    return {
+        "recipe": model.recipe, "shots": model.num_timesteps, "seconds": seconds, "seed": model.seed, "gamma": model.gamma,
+        **{key: model.env_options.get(key, usual) for key, usual in (("noise", "none"), ("fidelity", "standard"), ("physics", "paper"))},
+    }  # fmt: skip
+
+
+# what is played ------------------------------------------------------------------------------------------------------------------
+
+
+def tables_of(layout, visits):
+    """Seeds of as many different tables: the first from ``HELD_OUT_SEED`` on that are not as one before, or as one before in a mirror.
+
+    Raises ValueError if the layout has too few.
+    """
+    plan, seeds, known = plan_of(layout), [], set()
+    for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + 20 * visits):
+        positions, on_table = np.zeros((1, 22, 2)), np.zeros((1, 22), bool)
+        deal_tables(np.ones(1, bool), plan.code, plan.tables, stream_of(np.random.default_rng(seed))[None], positions, on_table)
+        table = np.sort(np.abs(positions[0, :, 0])).round(9).tobytes()
+        if table not in known:
+            known.add(table)
+            seeds.append(seed)
+            if len(seeds) == visits:
+                return seeds
+    raise refuse("visits", visits, f"must be at most {len(seeds)} on layout {layout!r}: it has no more tables")
+
+
+def world(text):
+    """The physics of a name, or of PRESET,FIELD=VALUE,...: what the environment takes. Raises ValueError."""
+    preset, *changes = text.split(",")
+    fields = {}
+    for change in changes:
+        name, equals, value = change.partition("=")
+        if not equals:
+            raise refuse("physics", text, "must be PRESET or PRESET,FIELD=VALUE,...")
+        try:
+            fields[name] = float(value)
+        except ValueError:
+            fields[name] = value
+    return Physics.of({"preset": preset, **fields})
+
+
+# figures -------------------------------------------------------------------------------------------------------------------------
+
+FIGURES = {
+    "points_a_visit": ("points", "visits"),
+    "pots_a_visit": ("pots", "visits"),
+    "fouls_a_visit": ("fouls", "visits"),
+    "centuries": ("centuries", "visits"),
+    "clearances": ("clearances", "visits"),
+    "pot_rate": ("pots", "strokes"),
+    "next_pot_after_a_pot": ("followed", "goes_on"),
+    "easy_pot_left_by_a_pot": ("easy", "goes_on"),
+    "colour_value": ("colour_points", "colours"),
+    "high_colours": ("high", "colours"),
+    "high_colour_after_a_red": ("high_after_red", "reds"),
+}
+"""Each is a ratio of two sums over visits, see ``counts``."""
+SCORES = ("points", "pots")
+"""Of these there are inter-quartile means and ratios to other agents, too."""
+
+
+def counts(s: Strokes):
+    """What is counted in each visit: name -> (visits,)."""
+    next_points = np.append(s.points, 0.0)[s.following]  # of the stroke after; 0 after the last
+    red = s.made & (s.ball_on == BallOn.RED)
+    colour = s.made & s.colour
+    entries = {
+        "points": s.points, "pots": s.made, "strokes": np.ones(len(s.points)), "fouls": s.foul, "goes_on": s.goes_on,
+        "followed": s.goes_on & (next_points > 0), "easy": s.goes_on & (s.tolerance >= EASY), "colours": colour,
+        "colour_points": colour * s.points, "high": colour & (s.points >= HIGH), "reds": red, "high_after_red": red & (next_points >= HIGH),
+        "clearances": s.made & s.cleared,
+    }  # fmt: skip
+    sums = {name: s.a_visit(values) for name, values in entries.items()}
+    return sums | {"visits": np.ones(s.visits), "centuries": (sums["points"] >= CENTURY).astype(float)}
+
+
+def figure(value, samples):
+    """A figure with its interval; None where there is none."""
+    low, high = interval(samples)
+    return {"value": _number(value), "low": _number(low), "high": _number(high)}
+
+
+def _number(x):
+    return float(x) if np.isfinite(x) else None
+
+
+def _quotient(above, below):
+    return above / below if below else float("nan")
+
+
+@dataclass
+class Played:
+    """What one agent did under one condition: the counts of every run and visit, name -> (runs, visits)."""
+
+    agent: Agent
+    counted: dict
+    strokes: list
+    """The ``Strokes`` of every run."""
+    resamples: int
+
+    @property
+    def _samples(self):
+        runs, visits = self.counted["points"].shape
+        return Resamples(runs, visits, self.resamples, zlib.crc32(self.agent.label.encode()))
+
+    def figures(self):
+        """All figures of this agent alone."""
+        samples, c = self._samples, self.counted
+        found = {
+            name: figure(_quotient(c[a].sum(), c[b].sum()), samples.ratios(c[a], c[b])) for name, (a, b) in FIGURES.items()
+        }  # fmt: skip
+        for name in SCORES:
+            found[f"{name}_a_visit_iqm"] = figure(iqm(c[name]), samples.iqms(c[name]))
+        return found
+
+    def ratios(self, other):
+        """This agent's scores over another's on the same tables."""
+        mine, its, found = self._samples, other._samples, {}
+        for name in SCORES:
+            a, b = self.counted[name], other.counted[name]
+            above, below = mine.sums(a) / mine.sums(np.ones_like(a)), its.sums(b) / its.sums(np.ones_like(b))
+            drawn = np.divide(above, below, out=np.full(len(above), np.nan), where=below != 0)
+            found[f"{name}_a_visit"] = figure(_quotient(a.mean(), b.mean()), drawn)
+        return found
+
+    def result(self, others):
+        """Everything for the JSON file; ``others``: whom to compare with."""
+        strokes = sum(len(s.points) for s in self.strokes)
+        return {
+            "figures": self.figures(), "ratios": {other.agent.label: self.ratios(other) for other in others},
+            "longest_break": int(self.counted["points"].max()),
+            "by_run": {f"{name}_a_visit": self.counted[name].mean(axis=1).tolist() for name in SCORES},
+            "strokes": strokes, "ms_a_decision": 1e3 * sum(s.thinking for s in self.strokes) / strokes,
+        }  # fmt: skip
+
+
+def play_agent(agent, condition, seeds, budget, resamples):
+    """``Played`` by every run of the agent on the tables with these seeds."""
+    options = {"layout": condition["layout"], "noise": condition["noise"], "fidelity": condition["fidelity"]}
+    physics = world(condition["physics"])
+    runs = [
+        play(_player(run, budget, number), len(seeds), first_seed=seeds, physics=physics, **options)
+        for number, run in enumerate(agent.runs)
+    ]
+    each = [counts(strokes) for strokes in runs]
+    return Played(agent, {name: np.stack([one[name] for one in each]) for name in each[0]}, runs, resamples)
+
+
+# the command ---------------------------------------------------------------------------------------------------------------------
+
+
+def provenance():
+    """What computed these figures: commit and machine."""
+    root = Path(__file__).resolve().parents[1]
+    told = subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=40"], cwd=root, capture_output=True, text=True, check=False)
+    cpuinfo = Path("/proc/cpuinfo")
+    cpus = [line.split(":", 1)[1].strip() for line in cpuinfo.read_text().splitlines() if "model name" in line] if cpuinfo.exists() else []
+    machine = f"{cpus[0] if cpus else platform.processor() or 'unknown'}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
+    return {"commit": told.stdout.strip() or "unknown", "machine": machine, "python": platform.python_version(), "numpy": np.__version__}
+
+
+def parser():
+    """The command line."""
+    p = argparse.ArgumentParser("python -m agents.evaluate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument(
+        "--agent", nargs="+", required=True, metavar="AGENT", help="NAME, MODEL or LABEL=PATH,PATH,...; NAME: " + ", ".join(NAMES)
+    )
+    p.add_argument("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=f"agents to compare the others with [{REFERENCE}]")
+    usual = [f"{name}={n}" for name, n in PROTOCOL.items()]
+    p.add_argument("--layouts", nargs="+", default=usual, metavar="LAYOUT", help=f"LAYOUT=VISITS [{' '.join(usual)}]")
+    p.add_argument("--visits", type=int, help="so many on every layout, for a quick look or a slow player")
+    p.add_argument("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
+    p.add_argument("--fidelity", nargs="+", default=["standard"], help="fast, standard, reference or euler:N [standard]")
+    p.add_argument("--physics", nargs="+", default=["paper"], help="paper, match or with changes as paper,mu_bb=marlow [paper]")
+    p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
+    p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
+    p.add_argument("--json", type=Path, help="write every figure here")
+    p.add_argument("--markdown", type=Path, help="write the tables here")
+    p.add_argument(
+        "--picture",
+        type=Path,
+        nargs="?",
+        const=PICTURE,
+        help="draw where the cue ball goes, for the first three agents [agents/pictures/destinations.png]",
+    )
+    return p
+
+
+def checked(args):
+    """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError before anything is played."""
+    agents = [Agent.of(text) for text in args.agent]
+    labels = [agent.label for agent in agents]
+    for label in args.against:
+        if label == REFERENCE and label not in labels:
+            agents.append(Agent(REFERENCE, (REFERENCE,)))
+        elif label not in labels:
+            raise refuse("against", label, f"must be one of {', '.join(labels)}, {REFERENCE}")
+    for label in labels:
+        if labels.count(label) > 1:
+            raise refuse("agent", label, "must be another for each agent: give LABEL=PATH")
+    sizes = {}
+    for text in args.layouts:
+        name, _, n = text.partition("=")
+        plan_of(name)
+        visits = args.visits if args.visits is not None else n or PROTOCOL.get(name, PROTOCOL["line_up"])
+        if isinstance(visits, str) and not visits.isdecimal():
+            raise refuse("layouts", text, "must be LAYOUT or LAYOUT=VISITS")
+        sizes[name] = integer("visits", int(visits), 2, 2**20)
+    for level in args.noise:
+        Noise.of(level)
+    for fidelity in args.fidelity:
+        parse_fidelity(fidelity)
+    for physics in args.physics:
+        world(physics)
+    integer("budget", args.budget, 1, 2**31)
+    integer("resamples", args.resamples, 100, 10**6)
+    if args.picture and "held_out" not in sizes:
+        raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
+    for agent in agents:
+        agent.trained()  # reads its models
+    return agents, list(dict.fromkeys(args.against)), {name: tables_of(name, visits) for name, visits in sizes.items()}
+
+
+def evaluate(report, agents, seeds, tick):
+    """Play everything that the report's protocol says and add the results to it; returns the strokes of the main condition, by label."""
+    p, shown = report["protocol"], {}
+    for layout, *at in product(seeds, *(p[axis] for axis in AXES)):
+        condition = {"layout": layout, **dict(zip(AXES, at, strict=True))}
+        played = {}
+        for agent in agents:
+            played[agent.label] = play_agent(agent, condition, seeds[layout], p["search_budget"], p["resamples"])
+            tick()
+        others = [played[label] for label in p["against"]]
+        for one in played.values():
+            about = {"agent": one.agent.label, **condition, "visits": len(seeds[layout]), "runs": len(one.agent.runs)}
+            report["results"].append(about | one.result([other for other in others if other is not one]))
+        if condition == main_condition(report):
+            shown = {label: one.strokes for label, one in played.items()}
+    return shown
+
+
+def main(argv=None):
+    """Check, play, tell. Exit code 0."""
+    p = parser()
+    argv = sys.argv[1:] if argv is None else argv
+    args = p.parse_args(argv)
+    try:
+        agents, references, seeds = checked(args)
+    except ValueError as error:
+        p.error(str(error))
+    try:
+        from rich.console import Console
+        from rich.progress import Progress
+
+        if args.picture:
+            from .destinations import draw  # now: not to miss matplotlib only after all was played
+    except ImportError as error:
+        raise SystemExit(
+            f'agents.evaluate: {error.name} is missing: pip install "snooker-env[train]" and, for --picture, "[test]"'
+        ) from None
+    snooker_env.warmup()
+    for agent in agents:  # compiled before the clock runs
+        play(_player(agent.runs[0], args.budget, 0), 2)
+    report = {
+        "command": "python -m agents.evaluate " + shlex.join(argv), **provenance(),
+        "protocol": {
+            "layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED, "against": references,
+            **{axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}, "resamples": args.resamples, "search_budget": args.budget,
+        },
+        "agents": [
+            {"label": agent.label, "runs": [{"from": run, **how} for run, how in zip(agent.runs, agent.trained(), strict=True)]}
+            for agent in agents
+        ],
+        "results": [],
+    }  # fmt: skip
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        rounds = len(seeds) * len(agents) * int(np.prod([len(report["protocol"][axis]) for axis in AXES]))
+        task = bar.add_task("visits", total=rounds)
+        shown = evaluate(report, agents, seeds, lambda: bar.advance(task))
+    show(report)
+    if args.picture:
+        draw(report, shown, args.picture)
+    if args.json:
+        write(args.json, json.dumps(report, indent=1))
+    if args.markdown:
+        picture = args.picture and Path(os.path.relpath(args.picture, args.markdown.parent)).as_posix()
+        write(args.markdown, markdown(report, picture))
+    return 0
+
+
+def write(file, text):
+    """Write a text file, its folders too."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

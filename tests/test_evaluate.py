@@ -1,0 +1,292 @@
+"""Are the figures of ``agents.evaluate`` right, sure to the degree they say, and the same tables for everyone?"""
+
+import json
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+pytest.importorskip("stable_baselines3")
+pytest.importorskip("rich")
+pytest.importorskip("matplotlib")
+
+from agents import evaluate, report, visits  # noqa: E402
+from agents.players import GhostBall, Random  # noqa: E402
+from agents.recipes import Recipe  # noqa: E402
+from agents.statistics import Resamples, interval, iqm  # noqa: E402
+from agents.view import training_tables  # noqa: E402
+from snooker_env.envs.vector import SnookerVectorEnv  # noqa: E402
+from snooker_env.game.balls import BallOn  # noqa: E402
+
+# statistics ----------------------------------------------------------------------------------------------------------------------
+
+
+def test_iqm_is_scipys_trimmed_mean():
+    rng = np.random.default_rng(0)
+    for n in (4, 8, 400):
+        for values in (rng.normal(size=n), rng.integers(0, 6, n).astype(float)):
+            assert iqm(values) == pytest.approx(stats.trim_mean(values, 0.25))
+    assert iqm([1, 2, 10]) == pytest.approx((0.25 * 1 + 2 + 0.25 * 10) / 1.5)  # edges count with the part that is inside
+    assert iqm([3.0]) == 3.0
+
+
+def test_samples_are_those_of_a_plain_bootstrap():
+    """Sums, ratios and inter-quartile means against the matrix drawn row by row."""
+    rng = np.random.default_rng(1)
+    x, y = rng.integers(0, 9, (3, 40)).astype(float), rng.integers(1, 5, (3, 40)).astype(float)
+    samples = Resamples(3, 40, 50, seed=2)
+    sums, ratios, iqms = samples.sums(x), samples.ratios(x, y), samples.iqms(x)
+    for k in range(50):
+        runs = np.repeat(np.arange(3), samples._runs[k].astype(int))
+        tables = np.repeat(np.arange(40), samples._visits[k].astype(int))
+        assert len(runs) == 2 and len(tables) == 40
+        drawn = x[np.ix_(runs, tables)]
+        assert sums[k] == pytest.approx(drawn.sum())
+        assert ratios[k] == pytest.approx(drawn.sum() / y[np.ix_(runs, tables)].sum())
+        assert iqms[k] == pytest.approx(stats.trim_mean(drawn.ravel(), 0.25))
+
+
+def test_one_runs_interval_is_scipys():
+    x = np.random.default_rng(3).exponential(size=(1, 300))
+    ours = interval(Resamples(1, 300, 9000).sums(x) / 300)
+    its = stats.bootstrap((x[0],), np.mean, n_resamples=9000, method="percentile", rng=np.random.default_rng(0)).confidence_interval
+    assert ours == pytest.approx(tuple(its), abs=0.01)
+
+
+def test_an_interval_without_news_is_none():
+    assert all(np.isnan(interval(np.zeros(100))))
+    assert all(np.isnan(interval(np.append(np.arange(99.0), np.nan))))
+    assert np.isnan(Resamples(1, 5, 100).ratios(np.ones((1, 5)), np.zeros((1, 5)))).all()
+
+
+def coverage(runs, spreads, of_iqm=False, trials=300, tables=200):
+    """How often the interval holds the true mean 0, scores being sums of normal parts: the run's, the table's, the visit's own."""
+    rng, hits = np.random.default_rng(4), 0
+    of_run, of_table, own = spreads
+    samples = Resamples(runs, tables, 400)
+    for _ in range(trials):
+        x = rng.normal(0, of_run, (runs, 1)) + rng.normal(0, of_table, (1, tables)) + rng.normal(0, own, (runs, tables))
+        low, high = interval(samples.iqms(x.round(1)) if of_iqm else samples.sums(x))
+        hits += low <= 0 <= high
+    return hits / trials
+
+
+@pytest.mark.parametrize(
+    ("runs", "spreads", "least", "most"),
+    [
+        (1, (0, 0.3, 1), 0.91, 0.98),  # only visits differ: as it says
+        (5, (0.1, 0.3, 1), 0.92, 1.0),  # all three of a size, as in play: rather too wide
+        (5, (0, 0, 1), 0.97, 1.0),  # luck alone: too wide
+        (5, (1, 0, 0.01), 0.8, 0.92),  # nothing but seeds: five are few
+    ],
+)
+def test_coverage_is_what_the_docstring_says(runs, spreads, least, most):
+    assert least <= coverage(runs, spreads) <= most
+
+
+def test_coverage_of_the_inter_quartile_mean():
+    assert 0.9 <= coverage(1, (0, 0.3, 1), of_iqm=True, trials=200, tables=100) <= 0.99
+
+
+def played(label, points):
+    """A ``Played`` with these points (runs, visits) and nothing else."""
+    return evaluate.Played(evaluate.Agent(label, ("x",) * len(points)), {"points": points, "pots": points}, [], 1000)
+
+
+def test_paired_ratio():
+    rng = np.random.default_rng(5)
+    base = rng.exponential(10.0, (1, 400))
+    exact = played("twice", 2 * base).ratios(played("base", base))["points_a_visit"]
+    assert exact["value"] == pytest.approx(2) and (exact["low"], exact["high"]) in ((None, None), pytest.approx((2, 2)))
+    near = played("near", 2 * base + rng.normal(0, 1, base.shape)).ratios(played("base", base))["points_a_visit"]
+    apart = played("apart", 2 * rng.permuted(base, axis=1)).ratios(played("base", base))["points_a_visit"]
+    assert near["low"] < 2 < near["high"] and near["high"] - near["low"] < 0.1 * (apart["high"] - apart["low"])
+    # the delta method for independent ones: the relative variances add
+    spread = base.std() / base.mean() / np.sqrt(400)
+    assert apart["high"] - apart["low"] == pytest.approx(2 * 3.92 * np.sqrt(2) * spread, rel=0.2)
+
+
+# strokes and counts --------------------------------------------------------------------------------------------------------------
+
+
+def test_counts_of_a_visit_by_hand():
+    """Two visits: red, black, red with nothing after; then a miss."""
+    s = visits.Strokes(
+        visits=2, visit=np.array([0, 1, 0, 0, 0]), number=np.array([0, 0, 1, 2, 3]), points=np.array([1.0, 0, 7, 1, 0]),
+        foul=np.array([False, False, False, False, True]), ball_on=np.array([BallOn.RED, BallOn.RED, BallOn.ANY_COLOUR, BallOn.RED, 0]),
+        cleared=np.zeros(5, bool), cue=np.zeros((5, 2)), tolerance=np.array([1e-2, 0, 1e-3, 1e-2, 0]), thinking=0.0,
+    )  # fmt: skip
+    assert s.following.tolist() == [2, -1, 3, 4, -1]
+    c = {name: values.tolist() for name, values in evaluate.counts(s).items()}
+    assert c == {
+        "points": [9, 0], "pots": [3, 0], "strokes": [4, 1], "fouls": [1, 0], "goes_on": [3, 0], "followed": [2, 0], "easy": [2, 0],
+        "colours": [1, 0], "colour_points": [7, 0], "high": [1, 0], "reds": [2, 0], "high_after_red": [1, 0], "clearances": [0, 0],
+        "visits": [1, 1], "centuries": [0, 0],
+    }  # fmt: skip
+    f = visits.summary(s)
+    assert (f["points_a_visit"], f["pots_a_visit"], f["next_pot_after_a_pot"], f["high_colours"]) == (4.5, 1.5, pytest.approx(2 / 3), 1.0)
+
+
+def test_counts_agree_with_the_summary():
+    s = visits.play(GhostBall(), 60, noise="professional")
+    c, f = evaluate.counts(s), visits.summary(s)
+    for name in ("points_a_visit", "pots_a_visit", "fouls_a_visit", "pot_rate", "next_pot_after_a_pot", "colour_value", "high_colours"):
+        above, below = evaluate.FIGURES[name]
+        assert c[above].sum() / c[below].sum() == pytest.approx(f[name])
+    assert f["next_pot_after_a_pot"] > 0.4 and np.all(c["strokes"] - c["pots"] == 1 - c["clearances"])  # a visit ends with its first miss
+
+
+# tables --------------------------------------------------------------------------------------------------------------------------
+
+
+class Watched:
+    """A player that keeps how the tables stood before its first stroke."""
+
+    def __init__(self, player):
+        self.player, self.options, self.start = player, player.options, None
+
+    def act(self, tables, observations, going):
+        if self.start is None:
+            self.start = tables.visits.positions.copy(), tables.visits.on_table.copy()
+        return self.player.act(tables, observations, going)
+
+
+@pytest.mark.parametrize("layout", ["held_out", "line_up", "colours"])
+def test_everyone_starts_from_the_same_tables(layout):
+    seeds, starts = evaluate.tables_of(layout, 12), []
+    for player, noise, fidelity in (
+        (GhostBall(), "none", "fast"),
+        (Random(), "club", "standard"),
+        (Random({"aim": "absolute"}), "none", "standard"),
+    ):
+        watched = Watched(player)
+        visits.play(watched, 12, layout=layout, noise=noise, fidelity=fidelity, first_seed=seeds)
+        starts.append(watched.start)
+    for positions, on_table in starts[1:]:
+        assert np.array_equal(positions, starts[0][0]) and np.array_equal(on_table, starts[0][1])
+
+
+def test_no_table_comes_twice_or_mirrored():
+    seeds = evaluate.tables_of("held_out", 300)
+    assert seeds == sorted(set(seeds)) and seeds[0] == visits.HELD_OUT_SEED
+    tables = SnookerVectorEnv(300, layout="held_out")
+    tables.reset(seed=seeds)
+    reds = np.sort(np.abs(tables.visits.positions[:, 1:16, 0]), axis=1)
+    apart = np.abs(reds[:, None] - reds[None]).max(axis=2) + np.eye(300)
+    assert apart.min() > 1e-6
+    with pytest.raises(ValueError, match=r"visits = 2100: must be at most 20\d\d"):
+        evaluate.tables_of("held_out", 2100)
+
+
+# the command ---------------------------------------------------------------------------------------------------------------------
+
+QUICK = ["--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"]
+
+
+@pytest.fixture(scope="module")
+def models(tmp_path_factory):
+    """Two untrained models of one recipe, as run folders."""
+    folder = tmp_path_factory.mktemp("runs")
+    tables = training_tables(2, action="discrete")
+    for seed in (0, 1):
+        (folder / f"m-{seed}").mkdir()
+        Recipe.of("ppo_mask").new_model(tables, seed).save(folder / f"m-{seed}" / "model.zip")
+    (folder / "m-0" / "results.json").write_text('{"seconds": 2.0}')
+    tables.close()
+    return folder
+
+
+def test_json_markdown_and_picture(models, tmp_path, capsys):
+    options = ["--visits", "12", "--layouts", "held_out=20", "colours", "--noise", "none", "club", "--physics", "paper,mu_bb=marlow"]
+    options += ["--resamples", "200", "--json", str(tmp_path / "a" / "r.json"), "--markdown", str(tmp_path / "r.md")]
+    agents = ["--agent", f"model={models / 'm-*'}", "random", "--against", "ghost_ball", "random"]
+    assert evaluate.main([*agents, *options, "--picture", str(tmp_path / "p.png")]) == 0
+    found = json.loads((tmp_path / "a" / "r.json").read_text(), parse_constant=lambda text: pytest.fail(f"{text} is not JSON"))
+    assert set(found) == {"command", "commit", "machine", "python", "numpy", "protocol", "agents", "results"}
+    assert found["protocol"]["layouts"] == {"held_out": 12, "colours": 12}
+    assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
+    first, second = found["agents"][0]["runs"]
+    assert first["seconds"] == 2.0 and second["seconds"] is None and first["recipe"] == "ppo_mask" and first["gamma"] == 0.95
+    assert len(found["results"]) == 3 * 2 * 2
+    for row in found["results"]:
+        assert set(row) == {
+            "agent", "layout", "noise", "fidelity", "physics", "visits", "runs", "figures", "ratios", "longest_break", "by_run", "strokes",
+            "ms_a_decision",
+        }  # fmt: skip
+        assert set(row["figures"]) == {*evaluate.FIGURES, "points_a_visit_iqm", "pots_a_visit_iqm"}
+        assert set(row["ratios"]) == {"ghost_ball", "random"} - {row["agent"]}
+        assert len(row["by_run"]["points_a_visit"]) == row["runs"] == (2 if row["agent"] == "model" else 1)
+        for f in [*row["figures"].values(), *(r for ratio in row["ratios"].values() for r in ratio.values())]:
+            assert set(f) == {"value", "low", "high"}
+            assert f["low"] is None or f["low"] <= f["high"]
+        assert np.mean(row["by_run"]["points_a_visit"]) == pytest.approx(row["figures"]["points_a_visit"]["value"])
+    text, printed = (tmp_path / "r.md").read_text(), capsys.readouterr().out
+    assert (
+        found["command"] in text
+        and found["machine"] in text
+        and "](p.png)" in text
+        and found["command"].startswith("python -m agents.evaluate --agent")
+    )
+    lines = text.splitlines()
+    for k, line in enumerate(lines):
+        if set(line) <= set("|:- ") and line:  # under each table's head
+            width = line.count("|")
+            assert lines[k - 1].count("|") == width == lines[k + 1].count("|")
+    points = report._pm(found["results"][0]["figures"]["points_a_visit"])
+    assert points in text and points in printed and "2 training seeds, fewer than 5" in printed
+    assert (tmp_path / "p.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_figures_do_not_depend_on_the_company(models, tmp_path):
+    rows = []
+    for company in ([], ["random", f"other={models / 'm-0'}"]):
+        file = tmp_path / f"{len(company)}.json"
+        evaluate.main(["--agent", *company, f"m={models / 'm-0'},{models / 'm-1'}", *QUICK, "--json", str(file)])
+        found = json.loads(file.read_text())["results"]
+        rows.append([{key: r[key] for key in r if key != "ms_a_decision"} for r in found if r["agent"] in ("m", "ghost_ball")])
+    assert rows[0] == rows[1] and len(rows[0]) == 2
+
+
+def test_what_is_said_of_fair_comparison():
+    def agent(label, shots, seconds, seeds=5):
+        return {"label": label, "runs": [{"from": f"{label}{k}", "recipe": "r", "shots": shots, "seconds": seconds} for k in range(seeds)]}
+
+    def said(*agents):
+        return " ".join(report.fairness({"agents": list(agents)}))
+
+    assert "equal shots (1,000)." in said(agent("a", 1000, 10), agent("b", 1000, 20))
+    assert "equal wall time." in said(agent("a", 1000, 10), agent("b", 2000, 10.5))
+    assert "neither" in said(agent("a", 1000, 10), agent("b", 2000, 20))
+    assert said(agent("a", 1000, 10)) == "" and "1 training seed:" in said(agent("a", 1000, 10, 1))
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--agent", "nobody"], "agent = 'nobody': must be random, "),
+        (["--agent", str(Path(__file__))], "agent = .*test_evaluate.py': must be a model's .zip"),
+        (["--agent", "x=nowhere-*"], "agent = 'nowhere-\\*': must be"),
+        (["--agent", "random", "random"], "agent = 'random': must be another"),
+        (["--agent", "random", "--against", "me"], "against = 'me': must be one of random, ghost_ball"),
+        (["--agent", "random", "--layouts", "moon=3"], "layout = 'moon': must be one of"),
+        (["--agent", "random", "--layouts", "colours=x"], "layouts = 'colours=x': must be LAYOUT or"),
+        (["--agent", "random", "--visits", "1"], "visits = 1: must be an integer in \\[2"),
+        (["--agent", "random", "--noise", "loud"], "noise = 'loud': must be one of"),
+        (["--agent", "random", "--fidelity", "true"], "fidelity = 'true': must be"),
+        (["--agent", "random", "--physics", "mars"], "physics = 'mars': must be one of"),
+        (["--agent", "random", "--physics", "paper,mu_bb"], "physics = 'paper,mu_bb': must be PRESET"),
+        (["--agent", "random", "--physics", "paper,mu_bb=-1"], "mu_bb"),
+        (["--agent", "random", "--resamples", "5"], "resamples = 5: must be an integer in"),
+        (["--agent", "random", "--layouts", "colours", "--picture", "p.png"], "layouts = 'colours': must hold held_out"),
+    ],
+)
+def test_bad_input_ends_with_one_clear_line(options, says, capsys):
+    with pytest.raises(SystemExit) as stop:
+        evaluate.main(options)
+    assert stop.value.code == 2
+    assert re.search(says, capsys.readouterr().err.strip().splitlines()[-1])
