@@ -105,4 +105,4 @@ class TablePolicy(MaskableActorCriticPolicy):
     def _build(self, lr_schedule):
         super()._build(lr_schedule)
         self.action_net, self.value_net = StrokeHead(), ValueHead()
-        self.optimizer = self.optimizer_class(self.parameters(), **({"lr": lr_schedule(1)} | self.optimizer_kwargs))
+        self.optimizer = self.optimizer_class(self.parameters(), **{**self.optimizer_kwargs, "lr": lr_schedule(1)})

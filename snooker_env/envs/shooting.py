@@ -1,5 +1,7 @@
 """How is a shot carried out, and what does the referee see of it? Noise, strike and engine in one; the event log read as a ``Stroke``."""
 
+from typing import Any
+
 import numpy as np
 
 from .._check import choice, refuse
@@ -68,7 +70,7 @@ class Shooter:
     """Everything between an intended shot and the balls at rest; one for all players of an environment."""
 
     def __init__(self, actions: Actions | Choices, noise: Noise, physics: Physics, table: Table, fidelity):
-        self.actions = actions
+        self.actions: Any = actions  # a frame is never played with Choices
         self.noise, self.physics, self.table, self.fidelity = noise, physics, table, fidelity
 
     def shoot(self, intended: tuple[float, float, float, float, float], positions, on_table, rng, *, path=False):
