@@ -1,13 +1,13 @@
 """How can a policy learn an angle of the full circle? It knows the lines of the pots: a mixture of strokes, one for each pot offered.
 
-A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots. Here the geometry is in the policy
-and the environment sees plain numbers. The density of an action (speed, side, top, aim) is::
+A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots. Here the geometry is in the
+policy and the environment sees plain numbers. The density of an action (speed, side, top, aim) is::
 
     sum over pots k of  weight_k * N(speed, side, top; means_k, stds) * N(aim; line_k + turn_k(speed, side, top), std_k)
 
-The weights are a softmax of the pots' scores. line_k is the direction to the pot's ghost ball, and turn_k moves the ghost ball round the object
-ball by the angle that ``Throw`` has learned for this cut, path and stroke: the aim is drawn after the stroke that it belongs to. Aim is
-explored in parts of each pot's own tolerance. A table that offers no pot has one component: a full hit on the nearest ball on.
+The weights are a softmax of the pots' scores. line_k is the direction to the pot's ghost ball, and turn_k moves the ghost ball round the
+object ball by the angle that ``Throw`` has learned for this cut, path and stroke: the aim is drawn after the stroke that it belongs to. It
+is explored in parts of each pot's own tolerance. A table that offers no pot has one component: a full hit on the nearest ball on.
 
     python train.py --agent ppo_absolute
 """
@@ -32,8 +32,9 @@ LINE_ENTRIES = 6
 
 LEAST_TOLERANCE = 5e-4
 """Exploring more finely [rad] than a professional can aim (0.03 degrees) shows nothing."""
-MOST_THROW = 0.1
-"""Unit of the learned turn of the line of centres [rad]: about the largest throw between clean balls."""
+THROW_UNIT = 0.3
+"""Unit of the learned turn of the line of centres [rad]: some times the largest throw, for Adam's steps are of one size whatever the unit,
+and what throws is learned from whether a ball went in."""
 
 
 def lines_of(seen):
@@ -76,19 +77,20 @@ class LineReader(TableReader):
 class Throw(nn.Module):
     """Lines (n, POTS, LINE_ENTRIES) and strokes (n, POTS, 3) -> the angle / pi by which to turn each line, at first 0.
 
-    Friction throws the object ball off the line of centres. Two balls on a wide cloth know no left or right, nor where the table's ends are:
-    the angle depends on cut, path and stroke alone, and it changes its sign in a mirror.
+    Friction throws the object ball off the line of centres. Two balls on a wide cloth know no left or right, nor where the table ends: the
+    angle depends on cut, path and stroke alone, and it changes its sign in a mirror.
     """
 
     def __init__(self, width=32):
         super().__init__()
-        self.net = nn.Sequential(nn.Linear(6, width), nn.Tanh(), nn.Linear(width, width), nn.Tanh(), nn.Linear(width, 1))
+        self.last = nn.Linear(width, 1)
+        self.net = nn.Sequential(nn.Linear(6, width), nn.Tanh(), nn.Linear(width, width), nn.Tanh(), self.last)
         self.mirror: torch.Tensor
         self.register_buffer("mirror", torch.tensor([-1.0, 1.0, 1.0, 1.0, -1.0, 1.0]), persistent=False)
 
     def start(self):
         """Begin on the straight line."""
-        nn.init.zeros_(self.net[-1].weight)
+        nn.init.zeros_(self.last.weight)
 
     def forward(self, lines, strokes):
         """One pass."""
@@ -97,7 +99,7 @@ class Throw(nn.Module):
         tip = tip / torch.linalg.vector_norm(tip, dim=2, keepdim=True).clamp(min=1.0)
         sine, cosine, path = lines[:, :, SIN_CUT], lines[:, :, COS_CUT], lines[:, :, PATH]
         known = torch.cat([torch.stack([sine, cosine, path / HALF_LENGTH - 1.0], 2), played[:, :, :1], tip], 2)
-        angle = MOST_THROW * (self.net(known) - self.net(known * self.mirror)).squeeze(2)
+        angle = THROW_UNIT * (self.net(known) - self.net(known * self.mirror)).squeeze(2)
         # the ghost ball, seen along the line, when the line of centres is turned by this angle
         turned_sine = sine * torch.cos(angle) + cosine * torch.sin(angle)
         turned_cosine = cosine * torch.cos(angle) - sine * torch.sin(angle)
@@ -144,13 +146,13 @@ class StrokeMixture(Distribution):
         return StrokeHead(), nn.Parameter(torch.full((4,), float(log_std_init)))
 
     def proba_distribution(self, log_weights, means, lines, aims_of, log_std):
-        """Set the parameters: see ``StrokeHead``."""
+        """Set the parameters: what ``StrokeHead`` gives, and the deviations."""
         self.log_weights, self.means, self.aims_of = log_weights, means, aims_of
         self.stds, self.aim_stds = log_std[:3].exp(), lines[:, :, TOLERANCE] / pi * log_std[3].exp()
         return self
 
     def log_prob(self, actions):
-        """Logarithm of the density. Aim may be off by whole turns: the nearest image counts, the others are thousands of deviations away."""
+        """Logarithm of the density. An aim counts at its image nearest to the mean: the others are thousands of deviations away."""
         strokes = actions[:, None, :3].expand_as(self.means)
         aside = nearest_image(actions[:, None, 3] - self.aims_of(strokes)) / self.aim_stds
         off = ((strokes - self.means) / self.stds).square().sum(2) + aside.square()
@@ -177,13 +179,13 @@ class StrokeMixture(Distribution):
         actions = torch.cat([strokes, nearest_image(aims)[:, :, None]], 2)
         return actions[torch.arange(len(actions), device=actions.device), chosen[:, 0]]
 
-    def actions_from_params(self, *params, deterministic=False):
+    def actions_from_params(self, log_weights, means, lines, aims_of, log_std, deterministic=False):
         """Actions of the mixture with these parameters."""
-        return self.proba_distribution(*params).get_actions(deterministic)
+        return self.proba_distribution(log_weights, means, lines, aims_of, log_std).get_actions(deterministic)
 
-    def log_prob_from_params(self, *params):
+    def log_prob_from_params(self, log_weights, means, lines, aims_of, log_std):
         """The same with their logarithmic densities."""
-        actions = self.actions_from_params(*params)
+        actions = self.actions_from_params(log_weights, means, lines, aims_of, log_std)
         return actions, self.log_prob(actions)
 
 
@@ -195,10 +197,11 @@ class AbsolutePolicy(ActorCriticPolicy):
 
     def _build(self, lr_schedule):
         super()._build(lr_schedule)
-        self.action_dist = StrokeMixture()
-        self.action_net, self.log_std = self.action_dist.proba_distribution_net(self.log_std_init)
+        self.action_dist = self.mixture = StrokeMixture()
+        self.action_net, self.log_std = self.mixture.proba_distribution_net(self.log_std_init)
         self.value_net = ValueHead()
-        self.optimizer = self.optimizer_class(self.parameters(), lr_schedule(1), **self.optimizer_kwargs)
+        self.optimizer = self.optimizer_class(self.parameters(), **{"lr": lr_schedule(1)} | self.optimizer_kwargs)
 
     def _get_action_dist_from_latent(self, latent_pi):
-        return self.action_dist.proba_distribution(*self.action_net(latent_pi), self.log_std)
+        log_weights, means, lines, aims_of = self.action_net(latent_pi)
+        return self.mixture.proba_distribution(log_weights, means, lines, aims_of, self.log_std)

@@ -2,6 +2,7 @@
 
 from copy import copy
 from math import atan2, cos, pi, sin
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +15,7 @@ from scipy.stats import norm  # noqa: E402
 from stable_baselines3 import PPO  # noqa: E402
 
 from agents import absolute, recipes, view  # noqa: E402
-from agents.absolute import LINE, MOST_THROW, OFFERED, TOLERANCE, AbsolutePolicy, nearest_image  # noqa: E402
-from agents.networks import CONTEXT  # noqa: E402
+from agents.absolute import LINE, OFFERED, THROW_UNIT, TOLERANCE, AbsolutePolicy, nearest_image  # noqa: E402
 from snooker_env.envs.actions import line  # noqa: E402
 from snooker_env.envs.choices import POTS  # noqa: E402
 from snooker_env.envs.observations import SIZE, observe  # noqa: E402
@@ -36,7 +36,7 @@ def tables(layout, n):
 
 def seen(envs):
     """What a policy sees of them, a tensor."""
-    rows = [observe("flat", env.positions, env.on_table, env.ball_on, env.on, 0, 0) for env in envs]
+    rows: Any = [observe("flat", env.positions, env.on_table, env.ball_on, env.on, 0, 0) for env in envs]
     return torch.as_tensor(view.with_pots(np.stack(rows)))
 
 
@@ -44,17 +44,19 @@ def one_red(cue, red):
     """What a policy sees of a table that holds just these."""
     positions, on_table = np.zeros((N_BALLS, 2)), np.arange(N_BALLS) < 2
     positions[0], positions[1] = cue, red
-    return torch.as_tensor(view.with_pots(observe("flat", positions, on_table, 1, mask_of([1]), 0, 0)[None]))
+    row: Any = observe("flat", positions, on_table, 1, mask_of([1]), 0, 0)
+    return torch.as_tensor(view.with_pots(row[None]))
 
 
 @pytest.fixture(scope="module")
 def model():
     """PPO with the recipe's policy, which has learned something: every number that starts at 0 is drawn."""
-    made = PPO(AbsolutePolicy, view.training_tables(2, threads=1, action="box", aim="absolute"), n_steps=8, batch_size=8, seed=3, device="cpu")
+    table = view.training_tables(2, threads=1, action="box", aim="absolute")
+    made = PPO(AbsolutePolicy, table, n_steps=8, batch_size=8, seed=3, device="cpu")
     with torch.no_grad():
-        head = made.policy.action_net
+        head: Any = made.policy.action_net
         head.pot.weight.mul_(10.0)
-        for p in (head.pot.bias, head.no_pot.bias, head.throw.net[-1].weight):
+        for p in (head.pot.bias, head.no_pot.bias, head.throw.last.weight):
             p.normal_(0.0, 0.3)
         made.policy.log_std.copy_(torch.tensor([0.2, 0.3, 0.25, 0.6]).log())
     return made
@@ -107,8 +109,8 @@ def test_log_prob_is_that_of_the_mixture(model, opened):
         assert weights.sum() == pytest.approx(1.0, abs=1e-6)
         for c in range(POTS):
             stroke = means[c] + stds * rng.normal(size=3)
-            aim = dist.aims_of(torch.as_tensor(stroke, dtype=torch.float32).expand(1, POTS, 3))[0, c].item() + 2.0 * aim_stds[c] * rng.normal()
-            action = np.float32([*stroke, aim])
+            aims = dist.aims_of(torch.as_tensor(stroke, dtype=torch.float32).expand(1, POTS, 3))[0]
+            action = np.array([*stroke, aims[c].item() + 2.0 * aim_stds[c] * rng.normal()], np.float32)
             got = dist.log_prob(torch.as_tensor(action)[None]).item()
             assert got == pytest.approx(mixture(model, table, action.astype(float)), abs=5e-3)  # float32 aims in units of narrow deviations
 
@@ -169,7 +171,7 @@ def test_samples_follow_the_density(model, opened):
 def test_aims_follow_the_lines_of_the_environment(model):
     """Without throw: every line is the direction to the pot's ghost ball, and what the environment plays leaves along it."""
     throw = model.policy.action_net.throw
-    learned = throw.net[-1].weight.clone()
+    learned = throw.last.weight.clone()
     throw.start()
     try:
         for env in tables("opened", 8):
@@ -185,7 +187,7 @@ def test_aims_follow_the_lines_of_the_environment(model):
             left = shot[3] - line(env.positions, env.on_table, env.on)
             assert abs(sin(left)) < 1e-6 and cos(left) > 0.0
     finally:
-        throw.net[-1].weight.copy_(learned)
+        throw.last.weight.copy_(learned)
 
 
 @torch.no_grad()
@@ -209,7 +211,7 @@ def test_throw_turns_the_ghost_ball_round_the_object_ball(model):
         to_pocket, path = POCKETS[int(pocket), :2] - red, np.array((gx, gy)) - cue
         d, p = to_pocket / np.hypot(*to_pocket), path / np.hypot(*path)
         sine = p[0] * d[1] - p[1] * d[0]
-        turn = MOST_THROW * 2 * 0.2 * sine
+        turn = THROW_UNIT * 2 * 0.2 * sine
         turned = (cos(turn) * d[0] - sin(turn) * d[1], sin(turn) * d[0] + cos(turn) * d[1])
         ghost = red - 2 * R * np.array(turned) - cue
         assert turns[k] == pytest.approx(atan2(ghost[1], ghost[0]) - atan2(path[1], path[0]), rel=1e-3, abs=1e-7)
@@ -288,7 +290,7 @@ def test_learn_save_load_predict(model, opened, tmp_path):
     learner.learn(16)
     moved = {name.split(".")[0] for name, p in learner.policy.named_parameters() if not torch.equal(p, before[name])}
     assert moved == {"features_extractor", "action_net", "value_net", "log_std"}
-    assert not torch.equal(learner.policy.action_net.throw.net[-1].weight, before["action_net.throw.net.4.weight"])
+    assert not torch.equal(learner.policy.action_net.throw.last.weight, before["action_net.throw.last.weight"])
     assert all(torch.isfinite(p).all() for p in learner.policy.parameters())
     for made in (learner, model):
         made.save(tmp_path / "model.zip")
@@ -298,4 +300,3 @@ def test_learn_save_load_predict(model, opened, tmp_path):
         assert all(made.action_space.contains(a) for a in actions)
         one, _ = made.predict(opened[0].numpy(), deterministic=True)
         assert one == pytest.approx(actions[0], abs=1e-4)
-    assert CONTEXT + POTS * (128 + absolute.LINE_ENTRIES) + 1 == loaded.policy.features_dim
