@@ -13,6 +13,7 @@ is explored in parts of each pot's own tolerance. A table that offers no pot has
 """
 
 from math import log, pi
+from typing import Any
 
 import torch
 from stable_baselines3.common.distributions import Distribution
@@ -200,7 +201,8 @@ class AbsolutePolicy(ActorCriticPolicy):
         self.action_dist = self.mixture = StrokeMixture()
         self.action_net, self.log_std = self.mixture.proba_distribution_net(self.log_std_init)
         self.value_net = ValueHead()
-        self.optimizer = self.optimizer_class(self.parameters(), **{"lr": lr_schedule(1)} | self.optimizer_kwargs)
+        settings: dict[str, Any] = {"lr": lr_schedule(1), **self.optimizer_kwargs}
+        self.optimizer = self.optimizer_class(self.parameters(), **settings)
 
     def _get_action_dist_from_latent(self, latent_pi):
         log_weights, means, lines, aims_of = self.action_net(latent_pi)

@@ -267,10 +267,28 @@ def test_without_a_pot_the_nearest_ball_on_is_struck(model, without_pots):
     assert torch.isfinite(total) and torch.isfinite(action).all()
     assert model.policy.action_net.no_pot.weight.grad.abs().max() > 0.0 and model.policy.action_net.pot.weight.grad.abs().max() == 0.0
     for env, aim in zip(without_pots, dist.mode()[:, 3].tolist(), strict=True):
-        assert abs(sin(pi * aim - line(env.positions, env.on_table, env.on))) < 1e-6
+        off = pi * aim - line(env.positions, env.on_table, env.on)
+        assert abs(sin(off)) < 1e-6 and cos(off) > 0.0
     for k in range(3):
         own = action[k].detach().numpy()
         assert dist.log_prob(action)[k].item() == pytest.approx(mixture(model, table[k : k + 1], own.astype(float)), abs=5e-3)
+
+
+@torch.no_grad()
+def test_the_nearest_ball_that_is_on_is_meant(model):
+    """Two reds are on and a nearer blue is not; neither red can be potted, and the second is the nearer one."""
+    rng, seen_ones, on_table = np.random.default_rng(0), 0, np.isin(np.arange(N_BALLS), (0, 1, 2, 19))
+    while seen_ones < 5:
+        positions = np.zeros((N_BALLS, 2))
+        positions[on_table] = rng.uniform((-0.85, -1.75), (0.85, 1.75), (4, 2))
+        far = np.hypot(*(positions - positions[0]).T)
+        if not far[19] < far[2] < far[1] or len(pots(positions, on_table, mask_of([1, 2]))):
+            continue
+        row: Any = observe("flat", positions, on_table, 1, mask_of([1, 2]), 0, 0)
+        aim = density(model, torch.as_tensor(view.with_pots(row[None]))).mode()[0, 3].item()
+        off = pi * aim - line(positions, on_table, mask_of([1, 2]))
+        assert abs(sin(off)) < 1e-5 and cos(off) > 0.0
+        seen_ones += 1
 
 
 def test_pots_that_are_not_there_are_never_played(model):
