@@ -87,10 +87,10 @@ def algorithm(name):
 
 
 def policy(name):
-    """A policy class of ``networks``, or a name that SB3 knows."""
-    from . import networks
+    """A policy class of ``networks`` or ``absolute``, or a name that SB3 knows."""
+    from . import absolute, networks
 
-    return getattr(networks, name, name)
+    return getattr(absolute, name, getattr(networks, name, name))
 
 
 def player_options(env_options):
