@@ -39,7 +39,7 @@ try:
     from stable_baselines3.common.callbacks import BaseCallback
 
     from agents.players import GhostBall, Model, Random
-    from agents.recipes import Recipe, algorithm, names, player_options
+    from agents.recipes import Recipe, algorithm, load_weights, names, player_options, write_atomic, write_model, zipped
     from agents.view import training_tables
     from agents.visits import play, summary
 except ImportError as error:
@@ -66,6 +66,7 @@ class Settings:
     layout: str = option("", "where training visits start [the recipe's]")
     noise: str = option("", "execution noise: none, professional, amateur, club or olympiad [the recipe's]")
     fidelity: str = option("standard", "of the simulation: fast, standard, reference or euler:N")
+    start: str = option("", "a model of the same agent to start from, its .zip or run folder")
     set: tuple = option((), "other hyper-parameters, as gamma=0", nargs="+")
     eval_visits: int = option(500, "held-out visits each agent plays at the end")
     checkpoint_every: int = option(100_000, "shots from one checkpoint to the next")
@@ -107,23 +108,6 @@ def recipe_of(settings):
 
 
 # checkpoints ---------------------------------------------------------------------------------------------------------------------
-
-
-def write_atomic(path, data):
-    """Write bytes so that ``path`` holds either the old or the new content, whole, whenever the process or the machine dies."""
-    temporary = path.with_name(path.name + ".tmp")
-    with open(temporary, "wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(temporary, path)
-
-
-def zipped(model):
-    """An SB3 model as the bytes of its zip file."""
-    file = io.BytesIO()
-    model.save(file)
-    return file.getvalue()
 
 
 def save_checkpoint(path, settings, model, seconds, curve):
@@ -242,11 +226,11 @@ def open_run(parser, given, out, resume):
 # what was learned ----------------------------------------------------------------------------------------------------------------
 
 
-def evaluate(settings, model, env_options):
+def evaluate(settings, recipe, model):
     """Figures of held-out visits, the same tables for each: the trained agent, the plain geometric player, random play."""
-    options = player_options(env_options)
-    players = {"trained": Model(model, options), "ghost_ball": GhostBall(), "random": Random(options, settings.seed)}
-    told = {key: value for key, value in env_options.items() if key in ("noise", "fidelity")}
+    options = player_options(recipe.env_kwargs)
+    players = {"trained": Model(model, options, recipe.view), "ghost_ball": GhostBall(), "random": Random(options, settings.seed)}
+    told = {key: value for key, value in recipe.env_kwargs.items() if key in ("noise", "fidelity")}
     return {name: summary(play(player, settings.eval_visits, **told)) for name, player in players.items()}
 
 
@@ -296,7 +280,7 @@ def main(argv=None):
         settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs)
         print("Compiling ...", flush=True)
         snooker_env.warmup()
-        tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, **recipe.env_kwargs)
+        tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, view=recipe.view, **recipe.env_kwargs)
     except ValueError as error:  # a bad option ends here, with the environment's own words
         parser.error(str(error))
     torch.set_num_threads(1)  # a network this small gains nothing from more, and the tables need the processors
@@ -304,6 +288,8 @@ def main(argv=None):
     try:
         out.mkdir(parents=True, exist_ok=True)
         model = load_model(state, recipe.algo, tables) if state else recipe.new_model(tables, settings.seed, str(out / "tb"))
+        if settings.start and not state:
+            load_weights(model, Path(settings.start))
         model.tensorboard_log = str(out / "tb")
         kept = state or {"seconds": 0.0, "curve": []}
         keeper = Keeper(out / "checkpoint.pkl", settings, kept["seconds"], kept["curve"], not rest.no_progress)
@@ -324,8 +310,8 @@ def main(argv=None):
 
     steps, seconds = model.num_timesteps, keeper.seconds_before
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
-    write_atomic(out / "model.zip", zipped(model))
-    figures = evaluate(settings, model, recipe.env_kwargs)
+    write_model(model, out / "model.zip")
+    figures = evaluate(settings, recipe, model)
     learned = lesson(settings.agent, steps, figures)
     results = {
         "settings": asdict(settings), "steps": steps, "seconds": seconds, "steps_per_second": steps / seconds,

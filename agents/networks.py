@@ -17,10 +17,12 @@ from snooker_env.envs.choices import POTS, SIDES, SPEEDS, STROKES, TOPS
 from snooker_env.envs.observations import SIZE
 from snooker_env.game.balls import N_BALLS
 
+from .foresight import CUE_X, ENTRIES, PICKS, STROKES_SEEN
 from .view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
 
 BALL, CONTEXT, POT = 64, 128, 128
 """Widths of the codes."""
+OUTCOME = 32
 _STATE = SIZE - 5 * N_BALLS
 _N_REDS = 15
 
@@ -84,6 +86,44 @@ class StrokeHead(nn.Module):
         return torch.where(side < 0.0, turned, scores.reshape(n, -1))
 
 
+class ForesightReader(TableReader):
+    """What is seen with ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context and a code for each outcome."""
+
+    def __init__(self, observation_space):
+        super().__init__(observation_space)
+        self._features_dim = CONTEXT + STROKES_SEEN * OUTCOME
+        self.outcome = nn.ModuleList([nn.Linear(CONTEXT, 64), nn.Linear(POT, 64), nn.Linear(ENTRIES, 64)])  # one layer from the three
+        self.code = nn.Linear(64, OUTCOME)
+        self.best = nn.Linear(OUTCOME, CONTEXT)
+
+    def forward(self, seen):
+        """One pass."""
+        n = len(seen)
+        read = super().forward(seen[:, :SHOWN])
+        context, pots, side = read[:, :CONTEXT], read[:, CONTEXT:-1].reshape(n, POTS, POT), read[:, -1:]
+        rows = seen[:, SHOWN:].reshape(n, STROKES_SEEN, ENTRIES)
+        rows = torch.cat([rows[..., :CUE_X], rows[..., CUE_X : CUE_X + 1] * side[:, None], rows[..., CUE_X + 1 :]], 2)
+        of_pot = self.outcome[1](pots).repeat_interleave(STROKES_SEEN // POTS, 1)
+        codes = torch.relu(self.code(torch.relu(self.outcome[0](context)[:, None] + of_pot + self.outcome[2](rows)))) * rows[..., :1]
+        context = context + self.best(codes.amax(1))
+        return torch.cat([context, codes.reshape(n, -1)], 1)
+
+
+class OutcomeHead(nn.Module):
+    """What ``ForesightReader`` gives -> a score for each of all choices; only those looked at may be played."""
+
+    def __init__(self):
+        super().__init__()
+        self.score = nn.Linear(OUTCOME, 1)
+        self.picks: torch.Tensor
+        self.register_buffer("picks", torch.as_tensor(PICKS), persistent=False)
+
+    def forward(self, read):
+        """One pass."""
+        scores = self.score(read[:, CONTEXT:].reshape(len(read), STROKES_SEEN, OUTCOME))[..., 0]
+        return scores.new_zeros(len(read), POTS * STROKES).index_copy(1, self.picks, scores)
+
+
 class ValueHead(nn.Module):
     """The context -> the return to be expected."""
 
@@ -105,4 +145,16 @@ class TablePolicy(MaskableActorCriticPolicy):
     def _build(self, lr_schedule):
         super()._build(lr_schedule)
         self.action_net, self.value_net = StrokeHead(), ValueHead()
+        self.optimizer = self.optimizer_class(self.parameters(), **{**self.optimizer_kwargs, "lr": lr_schedule(1)})
+
+
+class ForesightPolicy(MaskableActorCriticPolicy):
+    """A maskable policy over the strokes that ``foresight`` looks at."""
+
+    def __init__(self, *args, **kwargs):
+        super().__init__(*args, **(kwargs | {"features_extractor_class": ForesightReader, "net_arch": []}))
+
+    def _build(self, lr_schedule):
+        super()._build(lr_schedule)
+        self.action_net, self.value_net = OutcomeHead(), ValueHead()
         self.optimizer = self.optimizer_class(self.parameters(), **{**self.optimizer_kwargs, "lr": lr_schedule(1)})

@@ -11,7 +11,7 @@ import numpy as np
 from snooker_env._check import refuse
 from snooker_env.envs.choices import SIDES, SIZE, SPEEDS, STROKES, TOPS
 
-from .view import with_pots
+from .view import view_of
 
 DISCRETE = {"action": "discrete"}
 
@@ -50,16 +50,16 @@ class GhostBall:
 
 
 class Model:
-    """A trained Stable-Baselines3 model that was shown ``view.with_pots``; it plays what it thinks best."""
+    """A trained Stable-Baselines3 model that sees the tables through a view of that name; it plays what it thinks best."""
 
-    def __init__(self, model, options):
-        self.model, self.options = model, options
+    def __init__(self, model, options, view="pots"):
+        self.model, self.options, self._look = model, options, view_of(view)
 
     def act(self, tables, observations, going):
         """The model's own choice for the tables going."""
-        seen = with_pots(observations[going])
+        seen = self._look(tables, observations[going], going)
         discrete = self.options.get("action") == "discrete"
-        masks = {"action_masks": tables.action_masks()[going]} if discrete else {}
+        masks = {"action_masks": self._look.masks(tables)[going]} if discrete else {}
         actions = np.zeros(tables.action_space.shape, tables.action_space.dtype)
         actions[going] = self.model.predict(seen, deterministic=True, **masks)[0]
         return actions

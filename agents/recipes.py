@@ -1,10 +1,12 @@
 """How is an agent made? By its hyper-parameters (``hyperparams/NAME.yml``, as RL Baselines3 Zoo writes them), with Stable-Baselines3.
 
-To the Zoo's keys come ``algo`` (a file's name says which agent it is, not which algorithm) and ``first_aim_std`` (exploration of the aim at
-the start). ``learning_rate: lin_X`` falls linearly from X to nearly 0.
+To the Zoo's keys come ``algo`` (a file's name says which agent it is, not which algorithm), ``view`` (what it sees: pots or foresight) and
+``first_aim_std`` (exploration of the aim at the start). ``learning_rate: lin_X`` falls linearly from X to nearly 0.
 """
 
 import ast
+import io
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,6 +36,7 @@ class Recipe:
     n_envs: int
     env_kwargs: dict
     first_aim_std: float | None
+    view: str
     settings: dict
 
     @classmethod
@@ -46,6 +49,7 @@ class Recipe:
                 raise refuse("set", change, f"must be KEY=VALUE with a key of {', '.join(found)}")
             found[key] = _value(value)
         own = {key: found.pop(key, None) for key in ("algo", "policy", "n_timesteps", "n_envs", "env_kwargs", "first_aim_std")}
+        own["view"] = found.pop("view", "pots")
         own["n_timesteps"] = int(float(own["n_timesteps"]))
         return cls(name, settings=found, **own)
 
@@ -66,7 +70,8 @@ class Recipe:
             import math
 
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
-        model.recipe, model.env_options = self.name, dict(self.env_kwargs)  # SB3 saves and restores what it does not know, too
+        # SB3 saves and restores what it does not know, too
+        model.recipe, model.env_options, model.view = self.name, dict(self.env_kwargs), self.view
         return model
 
 
@@ -109,4 +114,34 @@ def load_player(path):
     if not data or "recipe" not in data:
         raise refuse("agent", str(path), "must be a model that train.py saved")
     model = algorithm(Recipe.of(data["recipe"]).algo).load(file, device="cpu")
-    return Model(model, player_options(data["env_options"]))
+    return Model(model, player_options(data["env_options"]), data["view"])
+
+
+def load_weights(model, path):
+    """Give a model the weights of another of the same agent. Raises ValueError."""
+    other = load_player(path).model
+    if other.recipe != model.recipe:
+        raise refuse("start", str(path), f"must be a model of {model.recipe}, not of {other.recipe}")
+    model.policy.load_state_dict(other.policy.state_dict())
+
+
+def write_atomic(path, data):
+    """Write bytes so that ``path`` holds either the old or the new content, whole, whenever the process or the machine dies."""
+    temporary = path.with_name(path.name + ".tmp")
+    with open(temporary, "wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+    os.replace(temporary, path)
+
+
+def zipped(model):
+    """An SB3 model as the bytes of its zip file."""
+    file = io.BytesIO()
+    model.save(file)
+    return file.getvalue()
+
+
+def write_model(model, path):
+    """Save an SB3 model, whole or not at all."""
+    write_atomic(path, zipped(model))

@@ -8,33 +8,16 @@ best next shot is sought without errors, worth the chance to make it times what 
 All candidates of a round meet the same errors (common random numbers): they differ by their own merits, not by luck.
 """
 
-from dataclasses import replace
-from math import erf, exp, sqrt
 from typing import Any
 
 import numpy as np
 
-from snooker_env._jit import entry
 from snooker_env.envs.choices import POTS, STROKES, TOPS
-from snooker_env.envs.noise import N_AIM, N_TIP, Noise
-from snooker_env.envs.shooting import Shooter
-from snooker_env.envs.visit import OVER, Returned, Visits, Work
-from snooker_env.game.balls import BALL_RADIUS, VALUES, balls_on_kernel, bits
-from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
-from snooker_env.physics.cue import squirt
+from snooker_env.envs.noise import Noise
 
+from .lookahead import BY_HAND, Copies, Position, prospects, spread_of
 from .players import DISCRETE, choice_of
 from .view import with_pots
-
-CHUNK = 128
-"""Copies played in one go: their work space stays in the cache."""
-
-FOLLOWS = 25.0
-"""Points that a pot is worth beside its own: what the rest of the visit brings."""
-SECOND, THIRD = 0.15, 0.05
-"""What the second and the third best pot of a position add: they leave a choice of where to go next."""
-FAR = 0.1
-"""How much less likely a pot is for each metre that the balls have to run."""
 
 KEEP = 3
 """Of a round's candidates one in so many goes on to the next."""
@@ -43,81 +26,6 @@ DEEP = 0.4
 """Share of the budget for the second shot."""
 NEXT_SHOTS = 16
 """Shots tried from each position that a finalist left."""
-
-
-@entry
-def _prospects(positions, on_table, game, errors, end_mass_ratio, constants, values, chances):
-    """For n tables: ``values`` (n,) of the positions, by hand, and ``chances`` (n, POTS) to make each of the widest pots.
-
-    ``errors`` as ``Noise.pack`` gives them; an error of the tip's side turns the cue ball by squirt, most of what goes wrong.
-    """
-    turned = squirt(errors[N_TIP], end_mass_ratio)
-    spread = max(1e-5, sqrt(errors[N_AIM] ** 2 + turned * turned))
-    found = np.empty((16, POT_COLUMNS))
-    follows, second, third, far = constants
-    for k in range(len(values)):
-        chances[k, :] = 0.0
-        values[k] = 0.0
-        p, on = positions[k], balls_on_kernel(game[k, 0], bits(on_table[k]))
-        many = find_pots(p, on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
-        a = b = c = 0.0
-        for j in range(many):
-            ball, pocket, gx, gy = int(found[j, 0]), int(found[j, 1]), found[j, 2], found[j, 3]
-            path = sqrt((gx - p[0, 0]) ** 2 + (gy - p[0, 1]) ** 2)
-            run = sqrt((POCKETS[pocket, 0] - p[ball, 0]) ** 2 + (POCKETS[pocket, 1] - p[ball, 1]) ** 2)
-            chance = erf(found[j, 5] / (spread * sqrt(2.0))) * exp(-far * (path + run))
-            if j < chances.shape[1]:
-                chances[k, j] = chance
-            worth = chance * (VALUES[ball] + follows)
-            if worth > a:
-                a, b, c = worth, a, b
-            elif worth > b:
-                b, c = worth, b
-            elif worth > c:
-                c = worth
-        values[k] = a + second * b + third * c
-
-
-class Position:
-    """Tables to copy shots from: positions (m, 22, 2), on_table (m, 22), game (m, 5)."""
-
-    def __init__(self, positions, on_table, game):
-        self.positions, self.on_table, self.game = positions, on_table, game
-
-    def __len__(self):
-        return len(self.game)
-
-    def __getitem__(self, rows):
-        return Position(self.positions[rows], self.on_table[rows], self.game[rows])
-
-
-class Copies:
-    """Plays shots on copies of positions: the rules of the tables, but the given noise."""
-
-    def __init__(self, rules, noise):
-        s = rules.shooter
-        self._visits = Visits(replace(rules, shooter=Shooter(s.actions, noise, s.physics, s.table, s.fidelity)), CHUNK)
-        self._work, self._out, self._none = Work(CHUNK), Returned(CHUNK), np.zeros(CHUNK, np.bool_)
-        self.shots = 0
-
-    def play(self, at, rows, picks, keys):
-        """Choice ``picks[i]`` on a copy of ``at[rows[i]]`` with the errors of the stream with key ``keys[i]``.
-
-        Returns the points (m,), whether the visit goes on (m,), the ``Position`` left and its flat observations.
-        """
-        m, v, out = len(rows), self._visits, self._out
-        points, goes_on, left = np.empty(m), np.empty(m, np.bool_), at[rows]
-        observations = np.empty((m, out.observations.shape[1]), np.float32)
-        for start in range(0, m, CHUNK):
-            part = slice(start, min(m, start + CHUNK))
-            n = part.stop - start
-            v.positions[:n], v.on_table[:n], v.game[:n] = left.positions[part], left.on_table[part], left.game[part]
-            v.streams[:n, 0], v.streams[:n, 1] = keys[part], 0
-            v.play(picks[part, None].astype(np.float64), self._none[:n], out, self._work)
-            left.positions[part], left.on_table[part], left.game[part] = v.positions[:n], v.on_table[:n], v.game[:n]
-            points[part], goes_on[part], observations[part] = out.reals[:n, 0], v.game[:n, OVER] == 0, out.observations[:n]
-        self.shots += m
-        return points, goes_on, left, observations
 
 
 class Search:
@@ -129,7 +37,7 @@ class Search:
 
     options = DISCRETE
 
-    def __init__(self, budget=2000, noise=None, seed=0, value=None, constants=(FOLLOWS, SECOND, THIRD, FAR)):
+    def __init__(self, budget=2000, noise=None, seed=0, value=None, constants=BY_HAND):
         self.budget, self._noise, self._value, self._constants = budget, noise, value, constants
         self._rng = np.random.default_rng(seed)
         self._rules: Any = None
@@ -154,14 +62,12 @@ class Search:
             return
         noise = rules.shooter.noise if self._noise is None else Noise.of(self._noise)
         self._rules, self._noisy, self._exact = rules, Copies(rules, noise), Copies(rules, Noise())
-        self._errors, self._end_mass_ratio = noise.pack(BALL_RADIUS), rules.shooter.physics.end_mass_ratio
+        self._spread = spread_of(noise, rules.shooter.physics)
 
     def _values(self, left, observations):
         """What the positions left are worth [points], and the chances of their widest pots."""
         values, chances = np.empty(len(left)), np.empty((len(left), POTS))
-        _prospects(
-            left.positions, left.on_table, left.game, self._errors, self._end_mass_ratio, self._constants, values, chances
-        )  # fmt: skip
+        prospects(left.positions, left.on_table, left.game, self._spread, self._constants, values, chances)
         if self._value is not None:
             values = np.asarray(self._value(with_pots(observations)), np.float64)
         return values, chances

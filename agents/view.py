@@ -5,6 +5,7 @@ from math import hypot, log10
 import numpy as np
 from gymnasium import spaces
 
+from snooker_env._check import choice
 from snooker_env._jit import entry
 from snooker_env.envs.choices import POTS
 from snooker_env.envs.observations import SIZE
@@ -65,24 +66,54 @@ VIEW_SPACE = spaces.Box(-1.0, 1.0, (SHOWN,), np.float32)
 """What the agent sees."""
 
 
-def training_tables(n, threads=None, **options):
-    """n tables of ``SnookerVecEnv``, seen with their pots: an SB3 ``VecEnv``."""
+class Pots:
+    """The view of an agent that sees the table and its pots: ``with_pots``."""
+
+    space = VIEW_SPACE
+
+    def __call__(self, tables, observations, rows=None):
+        """What is seen of the tables ``rows``, whose observations are given."""
+        return with_pots(observations)
+
+    def masks(self, tables):
+        """Which choices may be played."""
+        return tables.action_masks()
+
+
+def view_of(name, threads=None):
+    """The view of that name, "pots" or "foresight"."""
+    from .foresight import Foresight
+
+    return Foresight(threads) if choice("view", name, ("pots", "foresight")) == "foresight" else Pots()
+
+
+def training_tables(n, threads=None, view="pots", **options):
+    """n tables of ``SnookerVecEnv``, seen through a view: an SB3 ``VecEnv``."""
     from stable_baselines3.common.vec_env import VecEnvWrapper
 
     from snooker_env.sb3 import SnookerVecEnv
 
-    class WithPots(VecEnvWrapper):
-        """``with_pots`` for all tables in one go."""
+    look = view_of(view, threads)
+
+    class Viewed(VecEnvWrapper):
+        """All tables in one go. What is seen of a visit that ended holds the pots only: nothing is learned from what comes after it."""
 
         def reset(self):
-            return with_pots(self.venv.reset())
+            return look(self.venv.tables, self.venv.reset())
 
         def step_wait(self):
             observations, rewards, done, infos = self.venv.step_wait()
             ended = [info for info in infos if "terminal_observation" in info]
             if ended:
-                for info, row in zip(ended, with_pots(np.stack([info["terminal_observation"] for info in ended])), strict=True):
+                last = np.zeros((len(ended), *look.space.shape), np.float32)
+                last[:, :SHOWN] = with_pots(np.stack([info["terminal_observation"] for info in ended]))
+                for info, row in zip(ended, last, strict=True):
                     info["terminal_observation"] = row
-            return with_pots(observations), rewards, done, infos
+            return look(self.venv.tables, observations), rewards, done, infos
 
-    return WithPots(SnookerVecEnv(n, threads=threads, **options), VIEW_SPACE)
+        def env_method(self, method_name, *arguments, indices=None, **more):
+            if method_name == "action_masks":
+                return list(look.masks(self.venv.tables)[self._get_indices(indices)])
+            return self.venv.env_method(method_name, *arguments, indices=indices, **more)
+
+    return Viewed(SnookerVecEnv(n, threads=threads, **options), look.space)

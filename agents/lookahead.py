@@ -1,0 +1,109 @@
+"""What would a shot lead to? Choices played on copies of tables, and what the positions they leave promise."""
+
+from dataclasses import replace
+from math import erf, exp, sqrt
+
+import numpy as np
+
+from snooker_env._jit import entry
+from snooker_env.envs.noise import N_AIM, N_TIP
+from snooker_env.envs.shooting import Shooter
+from snooker_env.envs.visit import OVER, Returned, Visits, Work
+from snooker_env.game.balls import BALL_RADIUS, VALUES, balls_on_kernel, bits
+from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
+from snooker_env.physics.cue import squirt
+
+CHUNK = 128
+"""Copies played in one go: their work space stays in the cache."""
+
+FOLLOWS = 25.0
+"""Points that a pot is worth beside its own: what the rest of the visit brings."""
+SECOND, THIRD = 0.15, 0.05
+"""What the second and the third best pot of a position add: they leave a choice of where to go next."""
+FAR = 0.1
+"""How much less likely a pot is for each metre that the balls have to run."""
+BY_HAND = (FOLLOWS, SECOND, THIRD, FAR)
+
+
+@entry
+def prospects(positions, on_table, game, spread, constants, values, chances):
+    """For n tables: ``values`` (n,) of the positions, by hand, and ``chances`` (n, POTS) to make each of the widest pots.
+
+    ``spread`` [rad] as ``spread_of`` gives it, ``constants`` as ``BY_HAND``.
+    """
+    found = np.empty((16, POT_COLUMNS))
+    follows, second, third, far = constants
+    for k in range(len(values)):
+        chances[k, :] = 0.0
+        values[k] = 0.0
+        p, on = positions[k], balls_on_kernel(game[k, 0], bits(on_table[k]))
+        many = find_pots(p, on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
+        a = b = c = 0.0
+        for j in range(many):
+            ball, pocket, gx, gy = int(found[j, 0]), int(found[j, 1]), found[j, 2], found[j, 3]
+            path = sqrt((gx - p[0, 0]) ** 2 + (gy - p[0, 1]) ** 2)
+            run = sqrt((POCKETS[pocket, 0] - p[ball, 0]) ** 2 + (POCKETS[pocket, 1] - p[ball, 1]) ** 2)
+            chance = erf(found[j, 5] / (spread * sqrt(2.0))) * exp(-far * (path + run))
+            if j < chances.shape[1]:
+                chances[k, j] = chance
+            worth = chance * (VALUES[ball] + follows)
+            if worth > a:
+                a, b, c = worth, a, b
+            elif worth > b:
+                b, c = worth, b
+            elif worth > c:
+                c = worth
+        values[k] = a + second * b + third * c
+
+
+@entry
+def _squirt(side, end_mass_ratio):
+    return squirt(side, end_mass_ratio)
+
+
+def spread_of(noise, physics):
+    """Standard deviation [rad] of the cue ball's direction under a ``Noise``: the aim's, and the squirt of a tip that is off by its own."""
+    errors = noise.pack(BALL_RADIUS)
+    return max(1e-5, sqrt(errors[N_AIM] ** 2 + _squirt(errors[N_TIP], physics.end_mass_ratio) ** 2))
+
+
+class Position:
+    """Tables to copy shots from: positions (m, 22, 2), on_table (m, 22), game (m, 5)."""
+
+    def __init__(self, positions, on_table, game):
+        self.positions, self.on_table, self.game = positions, on_table, game
+
+    def __len__(self):
+        return len(self.game)
+
+    def __getitem__(self, rows):
+        return Position(self.positions[rows], self.on_table[rows], self.game[rows])
+
+
+class Copies:
+    """Plays shots on copies of positions: the rules of the tables, but the given noise."""
+
+    def __init__(self, rules, noise):
+        s = rules.shooter
+        self._visits = Visits(replace(rules, shooter=Shooter(s.actions, noise, s.physics, s.table, s.fidelity)), CHUNK)
+        self._work, self._out, self._none = Work(CHUNK), Returned(CHUNK), np.zeros(CHUNK, np.bool_)
+        self.shots = 0
+
+    def play(self, at, rows, picks, keys):
+        """Choice ``picks[i]`` on a copy of ``at[rows[i]]`` with the errors of the stream with key ``keys[i]``.
+
+        Returns the points (m,), whether the visit goes on (m,), the ``Position`` left and its flat observations.
+        """
+        m, v, out = len(rows), self._visits, self._out
+        points, goes_on, left = np.empty(m), np.empty(m, np.bool_), at[rows]
+        observations = np.empty((m, out.observations.shape[1]), np.float32)
+        for start in range(0, m, CHUNK):
+            part = slice(start, min(m, start + CHUNK))
+            n = part.stop - start
+            v.positions[:n], v.on_table[:n], v.game[:n] = left.positions[part], left.on_table[part], left.game[part]
+            v.streams[:n, 0], v.streams[:n, 1] = keys[part], 0
+            v.play(picks[part, None].astype(np.float64), self._none[:n], out, self._work)
+            left.positions[part], left.on_table[part], left.game[part] = v.positions[:n], v.on_table[:n], v.game[:n]
+            points[part], goes_on[part], observations[part] = out.reals[:n, 0], v.game[:n, OVER] == 0, out.observations[:n]
+        self.shots += m
+        return points, goes_on, left, observations
