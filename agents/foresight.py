@@ -25,8 +25,8 @@ PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(POTS) for 
 """The choices looked at."""
 STROKES_SEEN = len(PICKS)
 ENTRIES = 13
-"""Numbers of a row: 1 if there is such a pot, chance of this pot, points / 7, 1 if the visit goes on, where the cue ball stops (x, y), chances of
-the three likeliest next pots, value of the position by hand / 25, speed / 6.3, top / 0.4, 1 if a red was on."""
+"""Numbers of a row: 1 if there is such a pot, chance of this pot, points / 7, 1 if the visit goes on, where the cue ball stops (x, y),
+chances of the three likeliest next pots, value of the position by hand / 25, speed / 6.3, top / 0.4, 1 if a red was on."""
 CUE_X = 4
 SPACE = spaces.Box(-10.0, 10.0, (SHOWN + STROKES_SEEN * ENTRIES,), np.float32)
 _CHOSEN = np.zeros(SIZE, bool)

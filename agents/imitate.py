@@ -5,9 +5,9 @@
 
 The teacher: in positions of real visits some of the choices are played on copies of the table under execution noise, once each. A choice
 is worth its points and, if the visit goes on, the value by hand of the position it leaves (``lookahead.prospects``), the search's own
-measure. The pupil: state value + TEMPERATURE * (log-probability - its mean) is fitted to these worths by least squares, all tries of a position
-at once. So the policy becomes the softmax of what its choices are worth, and the critic their mean under it. The visits are played by the
-pupil, so it is taught where it will be (DAgger, Ross et al. 2011), and half of the tries are its own best.
+measure. The pupil: state value + TEMPERATURE * (log-probability - its mean) is fitted to these worths by least squares, all tries of a
+position at once. So the policy becomes the softmax of what its choices are worth, and the critic their mean under it. The visits are
+played by the pupil, so it is taught where it will be (DAgger, Ross et al. 2011), and half of the tries are its own best.
 """
 
 import argparse

@@ -1,28 +1,34 @@
 """What would a shot lead to? Choices played on copies of tables, and what the positions they leave promise."""
 
 from dataclasses import replace
-from math import erf, exp, sqrt
+from math import erf, exp, pi, sqrt
 
 import numpy as np
 
 from snooker_env._jit import entry
+from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
+from snooker_env.envs.choices import POTS, SIZE, chosen, masks
 from snooker_env.envs.noise import N_AIM, N_TIP
 from snooker_env.envs.shooting import Shooter
 from snooker_env.envs.visit import OVER, Returned, Visits, Work
-from snooker_env.game.balls import BALL_RADIUS, VALUES, balls_on_kernel, bits
+from snooker_env.game.balls import BALL_RADIUS, N_BALLS, VALUES, balls_on_kernel, bits
 from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
+from snooker_env.physics.cloth import COLUMNS
 from snooker_env.physics.cue import squirt
+from snooker_env.physics.polynomial import WORK
 
 CHUNK = 128
 """Copies played in one go: their work space stays in the cache."""
 
 FOLLOWS = 25.0
-"""Points that a pot is worth beside its own: what the rest of the visit brings."""
+"""Points that a pot is worth beside its own: what the rest of the visit brings, or less where less is left on the table."""
 SECOND, THIRD = 0.15, 0.05
 """What the second and the third best pot of a position add: they leave a choice of where to go next."""
 FAR = 0.1
 """How much less likely a pot is for each metre that the balls have to run."""
 BY_HAND = (FOLLOWS, SECOND, THIRD, FAR)
+SURE = (1e4, 1e-3, 0.0, 0.0)
+"""The same for one who never errs: all that is left follows."""
 
 
 @entry
@@ -38,6 +44,10 @@ def prospects(positions, on_table, game, spread, constants, values, chances):
         values[k] = 0.0
         p, on = positions[k], balls_on_kernel(game[k, 0], bits(on_table[k]))
         many = find_pots(p, on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
+        left = 7.0 if game[k, 0] == 0 else 0.0  # points: a black for each red, and after a red that was potted
+        for i in range(1, N_BALLS):
+            if on_table[k, i]:
+                left += 8.0 if VALUES[i] == 1 else VALUES[i]
         a = b = c = 0.0
         for j in range(many):
             ball, pocket, gx, gy = int(found[j, 0]), int(found[j, 1]), found[j, 2], found[j, 3]
@@ -46,7 +56,8 @@ def prospects(positions, on_table, game, spread, constants, values, chances):
             chance = erf(found[j, 5] / (spread * sqrt(2.0))) * exp(-far * (path + run))
             if j < chances.shape[1]:
                 chances[k, j] = chance
-            worth = chance * (VALUES[ball] + follows)
+            rest = max(0.0, left - VALUES[ball])
+            worth = chance * (VALUES[ball] + follows * (1.0 - exp(-rest / follows)))
             if worth > a:
                 a, b, c = worth, a, b
             elif worth > b:
@@ -80,6 +91,39 @@ class Position:
         return Position(self.positions[rows], self.on_table[rows], self.game[rows])
 
 
+@entry
+def _as_actions(positions, on_table, game, rows, picks, phys, end_mass_ratio, fidelity, n_steps, out):
+    found, motion, phase, work = np.empty((POTS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    for i in range(len(rows)):
+        k = rows[i]
+        on = balls_on_kernel(game[k, 0], bits(on_table[k]))
+        speed, side, top, aim, _ = chosen(
+            picks[i], positions[k], on_table[k], on, phys, end_mass_ratio, fidelity, n_steps, found, motion, phase, work
+        )
+        out[i, 0] = 2.0 * (speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0
+        out[i, 1], out[i, 2] = 2.0 * side, 2.0 * top
+        turned = (aim + squirt(side, end_mass_ratio)) / pi
+        out[i, 3] = turned - 2.0 * round(0.5 * turned)
+
+
+def as_actions(at, rows, picks, shooter):
+    """What the choices ``picks[i]`` at ``at[rows[i]]`` are as actions with aim="absolute": float32 (m, 4)."""
+    out = np.empty((len(rows), 4), np.float32)
+    world = shooter.physics
+    _as_actions(
+        at.positions, at.on_table, at.game, np.asarray(rows, np.int64), np.asarray(picks, np.int64), world.pack(), world.end_mass_ratio,
+        *shooter.fidelity, out,
+    )  # fmt: skip
+    return out
+
+
+def choices_at(at):
+    """Which choices there are: bool (n, SIZE)."""
+    out = np.empty((len(at), SIZE), np.bool_)
+    masks(at.positions, at.on_table, at.game[:, 0], out)
+    return out
+
+
 class Copies:
     """Plays shots on copies of positions: the rules of the tables, but the given noise."""
 
@@ -89,12 +133,13 @@ class Copies:
         self._work, self._out, self._none = Work(CHUNK), Returned(CHUNK), np.zeros(CHUNK, np.bool_)
         self.shots = 0
 
-    def play(self, at, rows, picks, keys):
-        """Choice ``picks[i]`` on a copy of ``at[rows[i]]`` with the errors of the stream with key ``keys[i]``.
+    def play(self, at, rows, actions, keys):
+        """``actions[i]`` (choices, or rows of an action space) on a copy of ``at[rows[i]]``, errors from the stream with key ``keys[i]``.
 
         Returns the points (m,), whether the visit goes on (m,), the ``Position`` left and its flat observations.
         """
         m, v, out = len(rows), self._visits, self._out
+        actions = np.asarray(actions, np.float64).reshape(m, -1)
         points, goes_on, left = np.empty(m), np.empty(m, np.bool_), at[rows]
         observations = np.empty((m, out.observations.shape[1]), np.float32)
         for start in range(0, m, CHUNK):
@@ -102,7 +147,7 @@ class Copies:
             n = part.stop - start
             v.positions[:n], v.on_table[:n], v.game[:n] = left.positions[part], left.on_table[part], left.game[part]
             v.streams[:n, 0], v.streams[:n, 1] = keys[part], 0
-            v.play(picks[part, None].astype(np.float64), self._none[:n], out, self._work)
+            v.play(actions[part], self._none[:n], out, self._work)
             left.positions[part], left.on_table[part], left.game[part] = v.positions[:n], v.on_table[:n], v.game[:n]
             points[part], goes_on[part], observations[part] = out.reals[:n, 0], v.game[:n, OVER] == 0, out.observations[:n]
         self.shots += m

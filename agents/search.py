@@ -8,15 +8,21 @@ best next shot is sought without errors, worth the chance to make it times what 
 All candidates of a round meet the same errors (common random numbers): they differ by their own merits, not by luck.
 """
 
+import os
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 
 from snooker_env.envs.choices import POTS, STROKES, TOPS
 from snooker_env.envs.noise import Noise
+from snooker_env.envs.shooting import mask
+from snooker_env.envs.visit import BALL_ON
+from snooker_env.game.balls import BALL_RADIUS, balls_on, ids_of
+from snooker_env.game.pots import pots
 
-from .lookahead import BY_HAND, Copies, Position, prospects, spread_of
-from .players import DISCRETE, choice_of
+from .lookahead import BY_HAND, SURE, Copies, Position, as_actions, choices_at, prospects, spread_of
+from .players import choice_of
 from .view import with_pots
 
 KEEP = 3
@@ -29,39 +35,56 @@ NEXT_SHOTS = 16
 
 
 class Search:
-    """Looks for the best choice with ``budget`` simulated shots a decision.
+    """Looks for the best shot with ``budget`` simulated shots a decision, at least two.
 
     ``noise``: the errors that it expects, a level or fields as the environment takes them, None for those of the tables; ``value``: worth
-    [points] of flat observations with pots (``view.with_pots``), (m, n) -> (m,), in place of the value by hand.
+    [points] of flat observations with pots (``view.with_pots``), (m, n) -> (m,), in place of the value by hand, whose ``constants`` are
+    ``lookahead.SURE`` without errors and ``BY_HAND`` with them; ``threads``: tables thought
+    about at once, with the same shots found for any number.
     """
 
-    options = DISCRETE
+    options = {"aim": "absolute"}  # noqa: RUF012 - a player's options are read, never changed
 
-    def __init__(self, budget=2000, noise=None, seed=0, value=None, constants=BY_HAND):
+    def __init__(self, budget=2000, noise=None, seed=0, value=None, constants=None, threads=None):
         self.budget, self._noise, self._value, self._constants = budget, noise, value, constants
-        self._rng = np.random.default_rng(seed)
+        self._seed, self._decisions, self._threads = seed, 0, threads or os.cpu_count() or 1
         self._rules: Any = None
-        self._noisy: Any = None
-        self._exact: Any = None
-        self.shots = 0
+        self._minds: list[_Mind] = []
+
+    @property
+    def shots(self):
         """Shots simulated so far."""
+        return sum(mind.noisy.shots + mind.exact.shots for mind in self._minds)
 
     def act(self, tables, observations, going):
-        """The choice found for each table that is going."""
-        self._prepare(tables.visits.rules)
-        masks, chosen = tables.action_masks(), np.zeros(tables.num_envs, np.int64)
+        """The shot found for each table that is going."""
         v = tables.visits
-        for k in np.flatnonzero(going).tolist():
-            here = slice(k, k + 1)
-            at = Position(v.positions[here].copy(), v.on_table[here].copy(), v.game[here].copy())
-            chosen[k] = self._best(at, np.flatnonzero(masks[k]))
-        return chosen
+        if self._rules is not v.rules:
+            self._rules, self._minds = v.rules, [_Mind(self, v.rules) for _ in range(self._threads)]
+        actions = np.zeros((tables.num_envs, 4), np.float32)
 
-    def _prepare(self, rules):
-        if self._rules is rules:
-            return
-        noise = rules.shooter.noise if self._noise is None else Noise.of(self._noise)
-        self._rules, self._noisy, self._exact = rules, Copies(rules, noise), Copies(rules, Noise())
+        def think(mind, own):
+            for k in own:
+                here = slice(k, k + 1)
+                at = Position(v.positions[here].copy(), v.on_table[here].copy(), v.game[here].copy())
+                actions[k] = mind.best(at, np.random.default_rng((self._seed, self._decisions, k)))
+
+        wanted = np.flatnonzero(going).tolist()
+        with ThreadPoolExecutor(self._threads) as pool:
+            list(pool.map(think, self._minds, (wanted[i :: self._threads] for i in range(self._threads))))
+        self._decisions += 1
+        return actions
+
+
+class _Mind:
+    """The thinking of one thread."""
+
+    def __init__(self, search, rules):
+        self.budget, self._value = search.budget, search._value
+        noise = rules.shooter.noise if search._noise is None else Noise.of(search._noise)
+        self._sure = noise.silent
+        self._constants = search._constants or (SURE if self._sure else BY_HAND)
+        self.shooter, self.noisy, self.exact = rules.shooter, Copies(rules, noise), Copies(rules, Noise())
         self._spread = spread_of(noise, rules.shooter.physics)
 
     def _values(self, left, observations):
@@ -72,15 +95,13 @@ class Search:
             values = np.asarray(self._value(with_pots(observations)), np.float64)
         return values, chances
 
-    def _best(self, at, candidates):
-        if len(candidates) == 0:
-            return 0
-        rng, spent = self._rng, 0
-        shallow, deep = self.budget, 0
-        if self.budget >= 200:
-            deep = int(DEEP * self.budget)
-            shallow -= deep
-        candidates = self._first(candidates, max(1, shallow // 2))
+    def best(self, at, rng):
+        """The action to play at the one position ``at``."""
+        if self._sure:
+            return self._exactly(at, rng)
+        deep = int(DEEP * self.budget) if self.budget >= 200 else 0
+        shallow, spent = self.budget - deep, 0
+        candidates = self._candidates(at, max(1, shallow // 2), rng)
         rounds = 1 + max(0, int(np.ceil(np.log(len(candidates) / FINALISTS) / np.log(KEEP))))
         sums, tries = np.zeros(len(candidates)), 0
         scores, records = sums, None
@@ -90,47 +111,59 @@ class Search:
             if n * each > shallow - spent:
                 break
             keys = rng.integers(0, 2**64 - 1, each, dtype=np.uint64)
-            picks = np.repeat(candidates, each)
-            points, goes_on, left, seen = self._noisy.play(at, np.zeros(len(picks), np.int64), picks, np.tile(keys, n))
-            spent += len(picks)
+            points, goes_on, left, seen = self.noisy.play(
+                at, np.zeros(n * each, np.int64), np.repeat(candidates, each, 0), np.tile(keys, n)
+            )
+            spent += n * each
             values, chances = self._values(left, seen)
-            worth = points + goes_on * values
-            sums, tries = sums + worth.reshape(n, each).sum(axis=1), tries + each
+            sums, tries = sums + (points + goes_on * values).reshape(n, each).sum(axis=1), tries + each
             scores = sums / tries
-            keep = np.argsort(-scores, kind="stable")[: FINALISTS if r >= rounds - 2 else max(FINALISTS, -(-n // KEEP))]
             if r == rounds - 1:
                 records = (points.reshape(n, each), goes_on.reshape(n, each), left, chances)
                 break
+            keep = np.argsort(-scores, kind="stable")[: FINALISTS if r == rounds - 2 else max(FINALISTS, -(-n // KEEP))]
             candidates, sums = candidates[keep], sums[keep]
-        self.shots += spent
         if deep and records is not None:
-            scores = self._second(candidates, scores, records, self.budget - spent)
+            scores = self._second(scores, records, self.budget - spent, rng)
         return candidates[np.argmax(scores)]
 
-    def _first(self, candidates, most):
-        """At most so many of the candidates, evenly from all pots."""
-        if len(candidates) <= most:
-            return candidates
-        picked = self._rng.permutation(candidates)
-        order = np.argsort(_rank(picked // STROKES), kind="stable")
-        return np.sort(picked[order[:most]])
+    def _exactly(self, at, rng):
+        """The same without errors: every try tells all, so each candidate is played once and many go into the second shot."""
+        candidates = self._candidates(at, max(1, self.budget // 2), rng)
+        n = len(candidates)
+        points, goes_on, left, seen = self.exact.play(at, np.zeros(n, np.int64), candidates, np.zeros(n, np.uint64))
+        values, chances = self._values(left, seen)
+        scores = points + goes_on * values
+        keep = np.argsort(-scores, kind="stable")[: (self.budget - n) // NEXT_SHOTS]
+        if len(keep):
+            records = (points[keep, None], goes_on[keep, None], left[keep], chances[keep])
+            scores = np.full(n, -np.inf)
+            scores[keep] = self._second(values[keep], records, self.budget - n, rng)
+        return candidates[np.argmax(scores)]
 
-    def _second(self, candidates, scores, records, budget):
+    def _candidates(self, at, most, rng):
+        """At most so many actions: the strokes at the direct pots, evenly from all pots; where there is none, shots at any ball on."""
+        on = balls_on(int(at.game[0, BALL_ON]), mask(at.on_table[0]))
+        if not len(pots(at.positions[0], at.on_table[0], on, most=1)):
+            return _at_balls(at.positions[0], ids_of(on), most, rng)
+        picks = np.flatnonzero(choices_at(at)[0])
+        if len(picks) > most:
+            picks = rng.permutation(picks)
+            picks = np.sort(picks[np.argsort(_rank(picks // STROKES), kind="stable")[:most]])
+        return as_actions(at, np.zeros(len(picks), np.int64), picks, self.shooter)
+
+    def _second(self, scores, records, budget, rng):
         """Scores of the finalists two shots deep."""
         points, goes_on, left, chances = records
         n, each = goes_on.shape
         samples = min(each, max(1, budget // (n * NEXT_SHOTS)))
-        if n * NEXT_SHOTS > budget:
+        rows = np.array([f * each + j for f in range(n) for j in np.flatnonzero(goes_on[f])[:samples].tolist()], np.int64)
+        if n * NEXT_SHOTS > budget or not len(rows):
             return scores
-        rows = [f * each + j for f in range(n) for j in np.flatnonzero(goes_on[f])[:samples].tolist()]
-        if not rows:
-            return scores
-        rows = np.array(rows)
-        who, came = np.repeat(np.arange(len(rows)), NEXT_SHOTS), chances[rows]
-        picks = self._next_shots(came).reshape(-1)
-        from_there = left[rows]
-        made, further, then, seen = self._exact.play(from_there, who, picks, np.zeros(len(picks), np.uint64))
-        self.shots += len(picks)
+        who, came, from_there = np.repeat(np.arange(len(rows)), NEXT_SHOTS), chances[rows], left[rows]
+        picks = self._next_shots(came, rng).reshape(-1)
+        actions = as_actions(from_there, who, picks, self.shooter)
+        made, further, then, seen = self.exact.play(from_there, who, actions, np.zeros(len(picks), np.uint64))
         values, _ = self._values(then, seen)
         chance = came[who, picks // STROKES]
         best = (chance * (made + further * values)).reshape(len(rows), NEXT_SHOTS).max(axis=1)
@@ -139,14 +172,22 @@ class Search:
         mean = np.divide(total, count, out=np.zeros(n), where=count > 0)
         return points.mean(axis=1) + goes_on.mean(axis=1) * mean
 
-    def _next_shots(self, chances):
+    def _next_shots(self, chances, rng):
         """Choices (m, NEXT_SHOTS) to try next where the widest pots have these chances: the strokes that are played most."""
         order = np.argsort(-chances, axis=1, kind="stable")
         half = NEXT_SHOTS // 2
-        pots = np.concatenate([np.repeat(order[:, :1], half, 1), np.repeat(order[:, 1:2], NEXT_SHOTS - half, 1)], axis=1)
-        pots = np.where(np.take_along_axis(chances, pots, 1) > 0.0, pots, order[:, :1])
-        strokes = self._rng.permuted(np.tile(_USUAL, (len(chances), 1)), axis=1)[:, :NEXT_SHOTS]
-        return pots * STROKES + strokes
+        widest = np.concatenate([np.repeat(order[:, :1], half, 1), np.repeat(order[:, 1:2], NEXT_SHOTS - half, 1)], axis=1)
+        widest = np.where(np.take_along_axis(chances, widest, 1) > 0.0, widest, order[:, :1])
+        return widest * STROKES + rng.permuted(np.tile(_USUAL, (len(chances), 1)), axis=1)[:, :NEXT_SHOTS]
+
+
+def _at_balls(positions, balls, n, rng):
+    """n actions that send the cue ball somewhere at one of the ``balls``, with any speed and spin: for breaks, plants and luck."""
+    to = positions[rng.choice(balls, n)] - positions[0]
+    reach = np.arcsin(np.minimum(1.0, 2.0 * BALL_RADIUS / np.hypot(*to.T)))
+    turned = (np.arctan2(to[:, 1], to[:, 0]) + rng.uniform(-1.0, 1.0, n) * reach) / np.pi
+    tips = rng.uniform(-0.6, 0.6, (n, 2))  # of the action's unit: within the disc
+    return np.column_stack([rng.uniform(-0.7, 1.0, n), tips, turned - 2.0 * np.round(0.5 * turned)]).astype(np.float32)
 
 
 def _rank(groups):
