@@ -101,7 +101,7 @@ class _Mind:
             return self._exactly(at, rng)
         deep = int(DEEP * self.budget) if self.budget >= 200 else 0
         shallow, spent = self.budget - deep, 0
-        candidates = self._candidates(at, max(1, shallow // 2), rng)
+        candidates = self._candidates(at, max(1, shallow // 2), max(1, shallow // 2), rng)
         rounds = 1 + max(0, int(np.ceil(np.log(len(candidates) / FINALISTS) / np.log(KEEP))))
         sums, tries = np.zeros(len(candidates)), 0
         scores, records = sums, None
@@ -129,7 +129,7 @@ class _Mind:
 
     def _exactly(self, at, rng):
         """The same without errors: every try tells all, so each candidate is played once and many go into the second shot."""
-        candidates = self._candidates(at, max(1, self.budget // 2), rng)
+        candidates = self._candidates(at, max(1, self.budget // 2), self.budget, rng)
         n = len(candidates)
         points, goes_on, left, seen = self.exact.play(at, np.zeros(n, np.int64), candidates, np.zeros(n, np.uint64))
         values, chances = self._values(left, seen)
@@ -137,15 +137,15 @@ class _Mind:
         keep = np.argsort(-scores, kind="stable")[: (self.budget - n) // NEXT_SHOTS]
         if len(keep):
             records = (points[keep, None], goes_on[keep, None], left[keep], chances[keep])
-            scores = np.full(n, -np.inf)
-            scores[keep] = self._second(values[keep], records, self.budget - n, rng)
+            better = self._second(scores[keep], records, self.budget - n, rng)
+            return candidates[keep[np.argmax(better)]]
         return candidates[np.argmax(scores)]
 
-    def _candidates(self, at, most, rng):
-        """At most so many actions: the strokes at the direct pots, evenly from all pots; where there is none, shots at any ball on."""
+    def _candidates(self, at, most, wild, rng):
+        """At most so many strokes at the direct pots, evenly from all pots; where there is none, so many wild shots at the balls on."""
         on = balls_on(int(at.game[0, BALL_ON]), mask(at.on_table[0]))
         if not len(pots(at.positions[0], at.on_table[0], on, most=1)):
-            return _at_balls(at.positions[0], ids_of(on), most, rng)
+            return _at_balls(at.positions[0], ids_of(on), wild, rng)
         picks = np.flatnonzero(choices_at(at)[0])
         if len(picks) > most:
             picks = rng.permutation(picks)
