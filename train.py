@@ -66,6 +66,7 @@ class Settings:
     layout: str = option("", "where training visits start [the recipe's]")
     noise: str = option("", "execution noise: none, professional, amateur, club or olympiad [the recipe's]")
     fidelity: str = option("standard", "of the simulation: fast, standard, reference or euler:N")
+    imitate: int = option(-1, "positions on which it is first taught by the search; -1: as many as the recipe says")
     start: str = option("", "a model of the same agent to start from, its .zip or run folder")
     set: tuple = option((), "other hyper-parameters, as gamma=0", nargs="+")
     eval_visits: int = option(500, "held-out visits each agent plays at the end")
@@ -89,7 +90,7 @@ def parse(argv):
     parser.add_argument("--no-progress", action="store_true", help="no progress bar")
     given = vars(parser.parse_args(argv))
     rest = {name: given.pop(name) for name in ("out", "resume", "no_progress")}
-    for name, low in (("steps", 0), ("envs", 0), ("seed", 0), ("eval_visits", 2), ("checkpoint_every", 1)):
+    for name, low in (("steps", 0), ("envs", 0), ("seed", 0), ("eval_visits", 2), ("checkpoint_every", 1), ("imitate", -1)):
         if given.get(name, low) < low:
             parser.error(f"--{name.replace('_', '-')} is {given[name]}, must be at least {low}")
     if "set" in given:
@@ -104,16 +105,31 @@ def recipe_of(settings):
     changes = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
     recipe.env_kwargs |= {key: value for key, value in changes.items() if value}
     recipe.n_timesteps, recipe.n_envs = settings.steps or recipe.n_timesteps, settings.envs or recipe.n_envs
+    if settings.imitate >= 0:
+        recipe.imitation = settings.imitate
+    if recipe.imitation and recipe.algo != "ppo_mask":
+        raise ValueError(f"imitate = {recipe.imitation}: must be 0 for {recipe.name}; only agents with masks can be taught by the search")
     return recipe
+
+
+def imitate(model, tables, states, settings, progress):
+    """Let the search teach the agent; the curve. It is not checkpointed: a run stopped here begins anew."""
+    from agents.imitate import teach
+
+    threads = 1 if settings.parallel == "one" else os.cpu_count() or 1
+    bar = rich.progress.Progress(disable=not progress)
+    task = bar.add_task(f"{settings.agent} learns from the search", total=states)
+    with bar:
+        return teach(model, tables, states, settings.seed, threads, lambda done, loss: bar.update(task, completed=done))
 
 
 # checkpoints ---------------------------------------------------------------------------------------------------------------------
 
 
-def save_checkpoint(path, settings, model, seconds, curve):
+def save_checkpoint(path, settings, model, seconds, curve, imitation):
     """All that training depends on, tables and random generators included: a resumed run equals an uninterrupted one."""
     state = {
-        "settings": asdict(settings), "seconds": seconds, "curve": curve, "model": zipped(model),
+        "settings": asdict(settings), "seconds": seconds, "curve": curve, "imitation": imitation, "model": zipped(model),
         "replay": getattr(model, "replay_buffer", None), "tables": model.get_env().env_method("get_state"),
         "random": (np.random.get_state(), torch.get_rng_state(), model.action_space),  # noqa: NPY002 - SB3 draws from the global one
     }  # fmt: skip
@@ -135,8 +151,9 @@ def load_model(state, algo, envs):
 class Keeper(BaseCallback):
     """Keeps the run: progress bar, learning curve, checkpoints, and an orderly stop after SIGINT or SIGTERM."""
 
-    def __init__(self, path, settings, seconds, curve, progress):
+    def __init__(self, path, settings, seconds, curve, imitation, progress):
         super().__init__()
+        self.imitation = imitation
         self.path, self.settings, self.seconds_before, self.curve = path, settings, seconds, curve
         self.bar = rich.progress.Progress(
             "[progress.description]{task.description}", rich.progress.BarColumn(), rich.progress.MofNCompleteColumn(),
@@ -182,7 +199,7 @@ class Keeper(BaseCallback):
 
     def save(self):
         """Write the checkpoint."""
-        save_checkpoint(self.path, self.settings, self.model, self.seconds, self.curve)
+        save_checkpoint(self.path, self.settings, self.model, self.seconds, self.curve, self.imitation)
         self.saved = self.num_timesteps
 
 
@@ -234,7 +251,7 @@ def evaluate(settings, recipe, model):
     return {name: summary(play(player, settings.eval_visits, **told)) for name, player in players.items()}
 
 
-def lesson(agent, steps, figures):
+def lesson(agent, steps, taught, figures):
     """What was learned, in one sentence that follows from the figures: a difference counts from two standard errors on."""
     trained, ghost, random = (figures[name] for name in ("trained", "ghost_ball", "random"))
 
@@ -244,7 +261,7 @@ def lesson(agent, steps, figures):
     def made(player):
         return f"{player['pots_a_visit']:.2f} pots and {player['points_a_visit']:.2f} points a visit"
 
-    start = f"In {steps:,} shots {agent} learned"
+    start = f"In {steps:,} shots{' after imitating the search' if taught else ''} {agent} learned"
     if not better(trained, random):
         return f"{start} nothing that {trained['visits']} visits can show: {made(trained)} against {made(random)} of random play."
     if better(trained, ghost):
@@ -277,7 +294,7 @@ def main(argv=None):
     settings, state = open_run(parser, given, out, rest.resume)
     try:
         recipe = recipe_of(settings)
-        settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs)
+        settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs, imitate=recipe.imitation)
         print("Compiling ...", flush=True)
         snooker_env.warmup()
         tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, view=recipe.view, **recipe.env_kwargs)
@@ -288,11 +305,17 @@ def main(argv=None):
     try:
         out.mkdir(parents=True, exist_ok=True)
         model = load_model(state, recipe.algo, tables) if state else recipe.new_model(tables, settings.seed, str(out / "tb"))
+        began, imitation = time.perf_counter(), state["imitation"] if state else []
         if settings.start and not state:
-            load_weights(model, Path(settings.start))
+            try:
+                load_weights(model, Path(settings.start))
+            except ValueError as error:
+                parser.error(str(error))
+        elif recipe.imitation and not state:
+            imitation = imitate(model, tables, recipe.imitation, settings, not rest.no_progress)
         model.tensorboard_log = str(out / "tb")
-        kept = state or {"seconds": 0.0, "curve": []}
-        keeper = Keeper(out / "checkpoint.pkl", settings, kept["seconds"], kept["curve"], not rest.no_progress)
+        kept = state or {"seconds": time.perf_counter() - began, "curve": []}
+        keeper = Keeper(out / "checkpoint.pkl", settings, kept["seconds"], kept["curve"], imitation, not rest.no_progress)
         before = {number: signal.signal(number, keeper.on_signal) for number in (signal.SIGINT, signal.SIGTERM)}
         print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {settings.steps:,} shots played", flush=True)
         if model.num_timesteps < settings.steps:
@@ -312,10 +335,10 @@ def main(argv=None):
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
     write_model(model, out / "model.zip")
     figures = evaluate(settings, recipe, model)
-    learned = lesson(settings.agent, steps, figures)
+    learned = lesson(settings.agent, steps, len(imitation) > 0, figures)
     results = {
         "settings": asdict(settings), "steps": steps, "seconds": seconds, "steps_per_second": steps / seconds,
-        "learned": learned, "evaluation": figures, "curve": keeper.curve, **provenance(),
+        "learned": learned, "evaluation": figures, "curve": keeper.curve, "imitation": imitation, **provenance(),
     }  # fmt: skip
     write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
     show(figures)

@@ -1,7 +1,6 @@
 """Can an agent start from what the search knows? Teach a masked policy what the search finds one shot deep; PPO goes on from there.
 
-    python -m agents.imitate --agent ppo_foresight --out runs/imitated
-    python train.py --agent ppo_foresight --start runs/imitated
+``train.py`` does it for the recipes that say so (``imitation``), or with ``--imitate POSITIONS``.
 
 The teacher: in positions of real visits some of the choices are played on copies of the table under execution noise, once each. A choice
 is worth its points and, if the visit goes on, the value by hand of the position it leaves (``lookahead.prospects``), the search's own
@@ -10,40 +9,34 @@ position at once. So the policy becomes the softmax of what its choices are wort
 played by the pupil, so it is taught where it will be (DAgger, Ross et al. 2011), and half of the tries are its own best.
 """
 
-import argparse
-import json
 import time
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
+import torch
 
-from snooker_env._check import refuse
 from snooker_env.envs.choices import POTS
 
 from .lookahead import BY_HAND, Copies, Position, prospects, spread_of
-from .recipes import Recipe
-from .view import training_tables
 
-TABLES = 128
 TRIES = 64
 """Choices tried in each position."""
 TEMPERATURE = 1.0
 """Points that make a choice e times as likely."""
-KEPT = 400
-"""Rounds of positions that are learned from again and again: some 50,000 positions."""
-UPDATES, BATCH = 4, 8
-"""Gradient steps a round, and rounds in the batch of each."""
+KEPT = 50_000
+"""Positions that are learned from again and again."""
+BATCH, PER_UPDATE = 1024, 32
+"""Positions in the batch of a gradient step, and new positions for each step."""
 EXPLORE = 0.1
 """Share of random strokes in the visits."""
 RATE = 1e-3
 
 
 class Teacher:
-    """Says what choices are worth on the tables of a ``SnookerVecEnv``."""
+    """Says what choices are worth on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the position left."""
 
-    def __init__(self, tables, threads, rng):
-        self._tables, self._rng, rules = tables, rng, tables.visits.rules
+    def __init__(self, tables, threads, rng, ahead=True):
+        self._tables, self._rng, self._ahead, rules = tables, rng, ahead, tables.visits.rules
         self._copies = [Copies(rules, rules.shooter.noise) for _ in range(threads)]
         self._spread = spread_of(rules.shooter.noise, rules.shooter.physics)
         self._pool = ThreadPoolExecutor(threads)
@@ -61,7 +54,7 @@ class Teacher:
         points, goes_on, left, _ = copies.play(at, rows, picks, keys)
         values, chances = np.empty(len(rows)), np.empty((len(rows), POTS))
         prospects(left.positions, left.on_table, left.game, self._spread, BY_HAND, values, chances)
-        return (points + goes_on * values).astype(np.float32)
+        return (points + self._ahead * goes_on * values).astype(np.float32)
 
 
 def to_try(scores, masks, rng):
@@ -73,14 +66,13 @@ def to_try(scores, masks, rng):
     return picks, np.take_along_axis(masks, picks, axis=1)
 
 
-def teach(model, venv, states, seed, threads, say=lambda *_: None):
-    """Teach ``model.policy`` on that many positions; returns the curve, a dict for each twentieth of them."""
-    import torch
-
+def teach(model, venv, states, seed, threads, say=lambda done, loss: None):
+    """Teach ``model.policy`` on that many positions; returns the curve, a dict a twentieth. With gamma 0 only points count."""
     rng, tables, policy = np.random.default_rng(seed), venv.unwrapped.tables, model.policy
-    teacher, optimizer = Teacher(tables, threads, rng), torch.optim.Adam(policy.parameters(), RATE)
+    teacher, optimizer = Teacher(tables, threads, rng, ahead=model.gamma > 0), torch.optim.Adam(policy.parameters(), RATE)
+    n, done, losses, curve, kept, began = venv.num_envs, 0, [], [], [], time.perf_counter()
     venv.seed(seed)
-    seen, kept, curve, done, losses, began = venv.reset(), [], [], 0, [], time.perf_counter()
+    seen = venv.reset()
     while done < states:
         for group in optimizer.param_groups:
             group["lr"] = RATE * (1.0 - done / states) + 1e-5
@@ -89,28 +81,23 @@ def teach(model, venv, states, seed, threads, say=lambda *_: None):
             scores = policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
         picks, there = to_try(scores, masks, rng)
         kept.append((seen, masks, picks, there, teacher.worth(picks)))
-        del kept[:-KEPT]
-        for _ in range(UPDATES if len(kept) >= BATCH else 0):
-            losses.append(_fit(model, optimizer, [kept[i] for i in rng.integers(len(kept), size=BATCH)]))
+        del kept[: -max(1, KEPT // n)]
+        for _ in range(max(1, n // PER_UPDATE)):
+            losses.append(_fit(policy, optimizer, [kept[i] for i in rng.integers(len(kept), size=max(1, BATCH // n))]))
         own = np.where(masks, scores, -np.inf).argmax(1)
-        strange = rng.random(len(own)) < EXPLORE
-        own[strange] = picks[:, -1][strange]
-        own = np.where(masks[np.arange(len(own)), own], own, masks.argmax(1))
-        seen, _, _, _ = venv.step(own)
-        done += len(own)
-        if done * 20 // states > len(curve) and losses:
-            seconds = time.perf_counter() - began
-            curve.append({"states": done, "seconds": round(seconds, 1), "loss": round(float(np.mean(losses[-200:])), 3)})
-            say(curve[-1])
+        strange = (rng.random(n) < EXPLORE) & there[:, -1]
+        seen, _, _, _ = venv.step(np.where(strange, picks[:, -1], own))
+        done += n
+        if done * 20 // states > len(curve):
+            seconds, loss = time.perf_counter() - began, float(np.mean(losses[-200:]))
+            curve.append({"states": done, "seconds": round(seconds, 1), "loss": round(loss, 3)})
+            say(done, loss)
     return curve
 
 
-def _fit(model, optimizer, rounds):
+def _fit(policy, optimizer, rounds):
     """One gradient step; the mean square error [points^2]."""
-    import torch
-
     seen, masks, picks, there, worths = (np.concatenate(column) for column in zip(*rounds, strict=True))
-    policy = model.policy
     features = policy.extract_features(torch.as_tensor(seen))
     distribution = policy._get_action_dist_from_latent(features)
     distribution.apply_masking(masks)
@@ -124,34 +111,3 @@ def _fit(model, optimizer, rounds):
     torch.nn.utils.clip_grad_norm_(policy.parameters(), 10.0)
     optimizer.step()
     return loss.item()
-
-
-def main():
-    """Command line."""
-    import torch
-
-    from .recipes import write_model
-
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--agent", default="ppo_foresight", help="a recipe with masks: ppo_mask or ppo_foresight")
-    parser.add_argument("--states", type=int, default=30_000, help="positions to teach")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--threads", type=int, default=2, help="for the simulation")
-    parser.add_argument("--out", type=Path, required=True, help="folder for model.zip and imitation.json")
-    options = parser.parse_args()
-    recipe = Recipe.of(options.agent)
-    if recipe.algo != "ppo_mask":
-        raise refuse("agent", options.agent, "must have masks: ppo_mask or ppo_foresight")
-    torch.set_num_threads(1)
-    torch.distributions.Distribution.set_default_validate_args(False)
-    venv = training_tables(TABLES, threads=options.threads, view=recipe.view, **recipe.env_kwargs)
-    model = recipe.new_model(venv, options.seed)
-    curve = teach(model, venv, options.states, options.seed, options.threads, lambda row: print(json.dumps(row), flush=True))
-    options.out.mkdir(parents=True, exist_ok=True)
-    write_model(model, options.out / "model.zip")
-    told = {"agent": options.agent, "states": options.states, "tries": TRIES, "seed": options.seed, "curve": curve}
-    (options.out / "imitation.json").write_text(json.dumps(told, indent=1) + "\n")
-
-
-if __name__ == "__main__":
-    main()

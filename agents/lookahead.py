@@ -109,10 +109,10 @@ def _as_actions(positions, on_table, game, rows, picks, phys, end_mass_ratio, fi
 def as_actions(at, rows, picks, shooter):
     """What the choices ``picks[i]`` at ``at[rows[i]]`` are as actions with aim="absolute": float32 (m, 4)."""
     out = np.empty((len(rows), 4), np.float32)
-    world = shooter.physics
+    world, (fidelity, n_steps) = shooter.physics, shooter.fidelity
     _as_actions(
         at.positions, at.on_table, at.game, np.asarray(rows, np.int64), np.asarray(picks, np.int64), world.pack(), world.end_mass_ratio,
-        *shooter.fidelity, out,
+        fidelity, n_steps, out,
     )  # fmt: skip
     return out
 

@@ -1,6 +1,7 @@
 """How is an agent made? By its hyper-parameters (``hyperparams/NAME.yml``, as RL Baselines3 Zoo writes them), with Stable-Baselines3.
 
-To the Zoo's keys come ``algo`` (a file's name says which agent it is, not which algorithm), ``view`` (what it sees: pots or foresight) and
+To the Zoo's keys come ``algo`` (a file's name says which agent it is, not which algorithm), ``view`` (what it sees: pots or foresight),
+``imitation`` (positions on which it is taught by the search first) and
 ``first_aim_std`` (exploration of the aim at the start). ``learning_rate: lin_X`` falls linearly from X to nearly 0.
 """
 
@@ -37,6 +38,7 @@ class Recipe:
     env_kwargs: dict
     first_aim_std: float | None
     view: str
+    imitation: int
     settings: dict
 
     @classmethod
@@ -49,7 +51,7 @@ class Recipe:
                 raise refuse("set", change, f"must be KEY=VALUE with a key of {', '.join(found)}")
             found[key] = _value(value)
         own = {key: found.pop(key, None) for key in ("algo", "policy", "n_timesteps", "n_envs", "env_kwargs", "first_aim_std")}
-        own["view"] = found.pop("view", "pots")
+        own |= {"view": found.pop("view", "pots"), "imitation": int(found.pop("imitation", 0))}
         own["n_timesteps"] = int(float(own["n_timesteps"]))
         return cls(name, settings=found, **own)
 

@@ -93,13 +93,13 @@ def training_tables(n, threads=None, view="pots", **options):
 
     from snooker_env.sb3 import SnookerVecEnv
 
-    look = view_of(view, threads)
+    look, base = view_of(view, threads), SnookerVecEnv(n, threads=threads, **options)
 
     class Viewed(VecEnvWrapper):
         """All tables in one go. What is seen of a visit that ended holds the pots only: nothing is learned from what comes after it."""
 
         def reset(self):
-            return look(self.venv.tables, self.venv.reset())
+            return look(base.tables, self.venv.reset())
 
         def step_wait(self):
             observations, rewards, done, infos = self.venv.step_wait()
@@ -109,11 +109,11 @@ def training_tables(n, threads=None, view="pots", **options):
                 last[:, :SHOWN] = with_pots(np.stack([info["terminal_observation"] for info in ended]))
                 for info, row in zip(ended, last, strict=True):
                     info["terminal_observation"] = row
-            return look(self.venv.tables, observations), rewards, done, infos
+            return look(base.tables, observations), rewards, done, infos
 
         def env_method(self, method_name, *arguments, indices=None, **more):
             if method_name == "action_masks":
-                return list(look.masks(self.venv.tables)[self._get_indices(indices)])
+                return list(look.masks(base.tables)[np.array(self._get_indices(indices))])
             return self.venv.env_method(method_name, *arguments, indices=indices, **more)
 
-    return Viewed(SnookerVecEnv(n, threads=threads, **options), look.space)
+    return Viewed(base, look.space)

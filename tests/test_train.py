@@ -25,8 +25,8 @@ from snooker_env.envs.actions import line  # noqa: E402
 from snooker_env.envs.observations import observe  # noqa: E402
 from snooker_env.envs.snooker import SnookerEnv  # noqa: E402
 
-AGENTS = ("ppo_mask", "ppo_target", "tqc_target")
-TINY = ["--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512"]
+AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
+TINY = ["--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512", "--imitate", "0"]
 
 
 def run(out, *options):
@@ -68,7 +68,8 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
     assert list((out / "tb").rglob("events.out.tfevents.*"))
     found = results(out)
     assert set(found) == {
-        "settings", "steps", "seconds", "steps_per_second", "learned", "evaluation", "curve", "versions", "git_commit", "processors",
+        "settings", "steps", "seconds", "steps_per_second", "learned", "evaluation", "curve", "imitation", "versions", "git_commit",
+        "processors",
     }  # fmt: skip
     assert found["settings"]["agent"] == agent and found["steps"] == 512
     assert found["steps_per_second"] == pytest.approx(512 / found["seconds"])
@@ -221,12 +222,36 @@ def test_lesson_claims_only_what_the_figures_show():
         return {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se, "visits": 100}
 
     def said(trained, ghost, random):
-        return train.lesson("ppo_mask", 1000, {"trained": trained, "ghost_ball": ghost, "random": random})
+        return train.lesson("ppo_mask", 1000, False, {"trained": trained, "ghost_ball": ghost, "random": random})
 
     assert "learned nothing" in said(player(1.0, 0.3), player(0.9, 0.3), player(0.5, 0.3))
     assert "learned nothing" in said(player(0.1, 0.1), player(0.9, 0.3), player(2.0, 0.1))
     assert "no better than the widest pot" in said(player(3.0, 0.3), player(2.9, 0.3), player(0.5, 0.1))
     assert "to leave the next ball on" in said(player(9.0, 0.3), player(2.9, 0.3), player(0.5, 0.1))
+
+
+def test_imitation_comes_first_and_is_kept(tmp_path):
+    assert train.main(["--agent", "ppo_foresight", *TINY[:-1], "256", "--out", str(tmp_path / "run")]) == 0
+    found = results(tmp_path / "run")
+    assert found["settings"]["imitate"] == 256 and found["imitation"][-1]["states"] == 256
+    assert "after imitating the search" in found["learned"]
+    assert train.main(["--resume", "--no-progress", "--steps", "1024", "--out", str(tmp_path / "run")]) == 0
+    assert results(tmp_path / "run")["imitation"] == found["imitation"]
+
+
+def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, capsys):
+    start = str(finished / "ppo_mask")
+    assert run(tmp_path / "run", "--start", start, "--set", "learning_rate=0.0") == 0
+    assert np.array_equal(weights(tmp_path / "run"), weights(finished / "ppo_mask"))
+    with pytest.raises(SystemExit) as stop:
+        run(tmp_path / "other", "--agent", "ppo_foresight", "--start", start)
+    assert stop.value.code == 2 and "must be a model of ppo_foresight" in capsys.readouterr().err
+
+
+def test_only_agents_with_masks_can_be_taught(tmp_path, capsys):
+    assert "imitate = 100: must be 0 for ppo_target" in refused(
+        capsys, "--agent", "ppo_target", "--imitate", "100", "--out", str(tmp_path / "run")
+    )
 
 
 def test_hyperparameters_can_be_changed(tmp_path):

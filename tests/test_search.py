@@ -1,0 +1,148 @@
+"""Does the search find good shots, and does the look ahead show what will happen?"""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("torch")
+from agents import foresight, lookahead, view
+from agents.lookahead import Copies, Position
+from agents.players import DISCRETE, GhostBall, Random, choice_of, player_of
+from agents.search import Search
+from agents.visits import play, summary
+from snooker_env.envs.choices import SIZE, STROKES
+from snooker_env.envs.noise import Noise
+from snooker_env.envs.vector import SnookerVectorEnv
+
+
+def tables(n, seed=0, **options):
+    env = SnookerVectorEnv(n, **options)
+    env.reset(seed=seed)
+    return env
+
+
+def position(env):
+    v = env.visits
+    return Position(v.positions.copy(), v.on_table.copy(), v.game.copy())
+
+
+def test_copies_play_what_the_tables_play():
+    env = tables(6, noise="club", **DISCRETE)
+    at, copies = position(env), Copies(env.visits.rules, env.visits.rules.shooter.noise)
+    picks = np.array([int(np.flatnonzero(m)[7]) for m in env.action_masks()])
+    assert (env.visits.streams[:, 1] != 0).any()  # the dealing drew from the streams: give the copies streams of their own and play those
+    env.visits.streams[:, 1] = 0
+    points, goes_on, left, seen = copies.play(at, np.arange(6), picks, env.visits.streams[:, 0])
+    observations, rewards, ended, _, _ = env.step(picks)
+    assert np.array_equal(rewards, points) and np.array_equal(~ended, goes_on) and np.array_equal(observations, seen)
+    assert np.array_equal(left.positions, env.visits.positions) and copies.shots == 6
+    assert not np.array_equal(at.positions, left.positions)  # the originals are as they were
+
+
+def test_choices_as_angles_are_the_same_shots():
+    """Said as a float32 angle, a choice's aim is rounded by 2e-7 rad: mostly the balls still stop within a millimetre."""
+    choices, angles = tables(40, layout="random:1", **DISCRETE), tables(40, layout="random:1", aim="absolute")
+    masks = choices.action_masks()
+    picks = np.where(masks[:, choice_of(0, 3, 2, 3)], choice_of(0, 3, 2, 3), 0)
+    actions = lookahead.as_actions(position(angles), np.arange(40), picks, angles.visits.rules.shooter)
+    assert np.abs(actions).max() <= 1.0
+    _, first, _, _, _ = choices.step(picks)
+    _, second, _, _, _ = angles.step(actions)
+    assert np.mean(first == second) > 0.95 and first.sum() > 10
+    apart = np.abs(choices.visits.positions[:, 0] - angles.visits.positions[:, 0]).max(axis=1)
+    assert np.median(apart) < 1e-3
+
+
+def test_prospects_prefer_easy_pots_and_more_to_come():
+    env = tables(1, layout="random:2")
+    at = position(env)
+    at.on_table[0, 1:] = False
+    at.on_table[0, [1, 2]] = True
+    at.game[0, 0] = 1
+    at.positions[0, :3] = (0.0, 0.0), (0.5, 0.8), (-0.7, -1.5)
+
+    def value(p, spread):
+        values, chances = np.empty(1), np.empty((1, 4))
+        lookahead.prospects(p.positions, p.on_table, p.game, spread, lookahead.BY_HAND, values, chances)
+        return values[0], chances[0]
+
+    easy, chances = value(at, 1e-3)
+    assert 0 < chances[1] <= chances[0] <= 1
+    assert value(at, 4e-3)[0] < easy  # a shakier hand
+    fewer = at[np.array([0])]
+    fewer.on_table[0, 2] = False
+    assert value(fewer, 1e-3)[0] < easy
+    nothing = at[np.array([0])]
+    nothing.on_table[0, 1:] = False
+    assert value(nothing, 1e-3)[0] == 0
+
+
+def test_search_beats_the_widest_pot_by_far():
+    searched, widest = (summary(play(player, 12, threads=1)) for player in (Search(300, seed=1), GhostBall()))
+    assert searched["pots_a_visit"] > 2.0 * widest["pots_a_visit"]
+    assert searched["next_pot_after_a_pot"] > 0.8
+
+
+def test_without_errors_search_clears_tables_and_pots_from_the_break():
+    cleared = summary(play(Search(600), 3, noise="none"))
+    assert cleared["clearances"] >= 2 / 3 and cleared["longest_break"] > 100
+    env = tables(4, layout="break_off", aim="absolute")
+    _, rewards, _, _, info = env.step(Search(600).act(env, None, np.ones(4, bool)))
+    assert (rewards > 0).sum() >= 2 and not info["foul"][rewards > 0].any()
+
+
+def test_search_finds_the_same_shots_on_any_number_of_threads():
+    env = tables(3, noise="professional", aim="absolute")
+    going = np.array([True, False, True])
+    first, second = Search(100, seed=3, threads=1), Search(100, seed=3, threads=2)
+    a, b = first.act(env, None, going), second.act(env, None, going)
+    assert np.array_equal(a, b) and not a[1].any() and a[0].any()
+    assert 100 < first.shots <= 200 and first.shots == second.shots
+    assert not np.array_equal(a, Search(100, seed=4).act(env, None, going))
+
+
+def test_search_takes_a_value_in_place_of_its_own():
+    env, asked = tables(1, noise="professional", aim="absolute"), []
+
+    def value(seen):
+        asked.append(seen.shape[1])
+        return np.zeros(len(seen))
+
+    Search(100, value=value).act(env, None, np.ones(1, bool))
+    assert asked and set(asked) == {view.SHOWN}
+
+
+def test_foresight_shows_what_happens_without_errors():
+    env = tables(5, noise="professional", **DISCRETE)
+    look = foresight.Foresight(2)
+    observations = env.reset(seed=4)[0]
+    seen = look(env, observations)
+    assert seen.shape == (5, *foresight.SPACE.shape) and foresight.SPACE.contains(seen[0])
+    assert np.array_equal(seen[:, : view.SHOWN], view.with_pots(observations))
+    rows = seen[:, view.SHOWN :].reshape(5, foresight.STROKES_SEEN, foresight.ENTRIES)
+    assert np.array_equal(rows[:, :, 0] > 0, env.action_masks()[:, foresight.PICKS])
+    exact = tables(5, noise="none", **DISCRETE)
+    for stroke in (0, 8, 14):
+        exact.reset(options={"states": env.get_state()})
+        _, rewards, ended, _, _ = exact.step(foresight.PICKS[np.full(5, stroke)])
+        row = rows[:, stroke]
+        assert np.allclose(row[:, 2], rewards / 7.0) and np.array_equal(row[:, 3] > 0, ~ended)
+        cue = exact.visits.positions[:, 0] / (view.HALF_WIDTH, view.HALF_LENGTH)
+        assert np.allclose(row[~ended, 4:6], cue[~ended], atol=1e-6)
+    part = look(env, observations[[1, 3]], np.array([False, True, False, True, False]))
+    assert np.array_equal(part, seen[[1, 3]])
+    assert look.masks(env).sum() == (rows[:, :, 0] > 0).sum() and look.masks(env).shape == (5, SIZE)
+
+
+def test_players_by_name(tmp_path):
+    assert isinstance(player_of("random"), Random) and isinstance(player_of("ghost_ball"), GhostBall)
+    assert player_of("random_absolute").options == {"aim": "absolute"} and isinstance(player_of("search", budget=7), Search)
+    for wrong in ("nobody", str(tmp_path)):
+        with pytest.raises(ValueError, match="agent = "):
+            player_of(wrong)
+
+
+def test_random_plays_only_what_is_there():
+    env = tables(50, layout="random:1", **DISCRETE)
+    picks = Random(seed=1).act(env, None, np.ones(50, bool))
+    assert env.action_masks()[np.arange(50), picks].all() and len(set(picks // STROKES)) > 1
+    assert Noise().silent
