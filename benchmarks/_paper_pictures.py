@@ -1,11 +1,6 @@
 """What do the paper's figures and the other data look like? Draws ``paper.png`` and ``paper_data.png`` from the figures of
 ``python -m benchmarks.paper``."""
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import numpy as np
 from cycler import cycler
 from matplotlib.patches import Circle, Patch
@@ -13,6 +8,7 @@ from matplotlib.patches import Circle, Patch
 import snooker_env as sn
 from snooker_env.render.scene import outline
 
+from ._command import pyplot
 from ._paper_data import A14_SHOTS, CUSHIONS, a14_throw, domenech_throw
 from ._paper_shots import CURVED, HEAD_ON, MEASURED_TO, POT, QUANTITIES, SIDES, TOPS, R
 
@@ -102,6 +98,7 @@ def _bar_panel(ax, models, column, title, accuracy):
 
 def paper(path, figures, shots, curves):
     """``paper.png``: Figs. 1, 4, 6, 7 and 8."""
+    plt = pyplot()
     with plt.rc_context(STYLE):
         figure = plt.figure(figsize=(10.4, 13.4), layout="constrained")
         grid = figure.add_gridspec(4, 2, height_ratios=(1, 1, 1.05, 1.05), width_ratios=(1.08, 1))
@@ -169,6 +166,7 @@ def _cushion_panel(ax, found):
 
 def data(path, figures):
     """``paper_data.png``: throw and cushion rebound against the other data."""
+    plt = pyplot()
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(2, 2, figsize=(10.4, 8.0), layout="constrained")
         _a14_panel(axes[0, 0], figures["throw_a14"])

@@ -9,6 +9,8 @@ import snooker_env as sn
 from snooker_env.physics import contact
 from snooker_env.simulation import MAX_EVENTS, _run
 
+from ._command import pyplot
+
 BALLS = (2, 3, 4, 6, 8, 11, 15, 22)
 BATCHES = tuple(4**k for k in range(9))  # 1 to 65,536
 THREAD_BATCH = 4096
@@ -115,10 +117,7 @@ def print_growth(found):
 
 def draw(found, file):
     """Four panels."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+    plt = pyplot()
 
     figure, ((by_balls, by_event), (by_batch, by_thread)) = plt.subplots(2, 2, figsize=(10, 7.5), layout="constrained")
     balls = [row["balls"] for row in found["balls"]]

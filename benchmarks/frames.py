@@ -25,6 +25,8 @@ from snooker_env.envs.shooting import mask, shooter_of
 from snooker_env.game.balls import BALL_RADIUS, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of
 from snooker_env.game.layouts import break_off
 
+from ._command import at_least
+
 MOST_STROKES = 20_000
 """A frame that is longer counts as a failure."""
 REPLAYED = 20
@@ -176,8 +178,8 @@ def row(kind, miss, tallies, seconds):
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--frames", type=int, default=2000, help="of each kind")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes")
+    parser.add_argument("--frames", type=at_least(1), default=2000, help="of each kind")
+    parser.add_argument("--jobs", type=at_least(1), default=os.cpu_count() or 1, help="processes")
     args = parser.parse_args()
     print("players    miss rule   frames  strokes   most  fouls %  break  best seconds   endings")
     with ProcessPoolExecutor(args.jobs, mp_context=get_context("spawn")) as pool:

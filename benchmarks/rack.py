@@ -39,6 +39,8 @@ from snooker_env.game.balls import SPOTS
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impulse import friction_coefficient
 
+from ._command import at_least, pyplot
+
 FILE = Path(__file__).parent / "pictures" / "rack.png"
 R, M = sn.Physics().R, sn.Physics().M
 REDUCED = M / 2
@@ -676,10 +678,7 @@ def verdict(models, figures):
 
 def picture(file, states, figures, samples):
     """The head-on break by three models; loose racks; whole shots."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+    plt = pyplot()
     from matplotlib.patches import Circle
 
     fig, axes = plt.subplots(2, 3, figsize=(13, 9.2), layout="constrained")
@@ -727,14 +726,15 @@ def picture(file, states, figures, samples):
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--shots", type=int, default=100, help="whole shots of each kind")
-    parser.add_argument("--orders", type=int, default=100, help="numberings of the rack")
-    parser.add_argument("--racks", type=int, default=30, help="loose racks for each gap")
+    parser.add_argument("--shots", type=at_least(1), default=100, help="whole shots of each kind")
+    parser.add_argument("--orders", type=at_least(1), default=100, help="numberings of the rack")
+    parser.add_argument("--racks", type=at_least(1), default=30, help="loose racks for each gap")
     parser.add_argument("--physics", choices=("paper", "match"), default="paper", help="restitution and friction")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--json", type=Path, help="also write every figure there")
     parser.add_argument("--out", type=Path, default=FILE, help="the picture")
     options = parser.parse_args()
+    pyplot()  # before the work: can the picture be drawn?
     models = Models(sn.Physics.preset(options.physics))
     rng = np.random.default_rng(options.seed)
     figures: dict = {"physics": options.physics, "seed": options.seed, "checks": checks(models), "cradle": cradle(models)}

@@ -25,7 +25,6 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 
 import snooker_env as sn
@@ -34,6 +33,7 @@ from snooker_env.physics import contact, table
 from snooker_env.physics.engine import PART, EventKind
 
 from . import _machine, _shots, _variants
+from ._command import at_least, pyplot
 
 STANDARD = contact.parse_fidelity("standard")[0]
 FULL, HAND, CHAOS, HOP = "everything", "a professional's hand", "aim turned by 1e-9 rad", "hop of the lifted ball"
@@ -294,8 +294,7 @@ def verdict(name, scenes):
 
 def draw(scenes, names, out):
     """Three tables in colour: how far the cue ball stops off, how many shots end otherwise, what it costs."""
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
+    plt = pyplot()
     from matplotlib.colors import LogNorm, Normalize
 
     mixed = [*names, HOP, HAND, CHAOS]
@@ -330,13 +329,14 @@ def draw(scenes, names, out):
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--shots", type=int, default=600, help="shots in each scene")
-    parser.add_argument("--repeats", type=int, default=5, help="timed runs of every shot; the best counts")
+    parser.add_argument("--shots", type=at_least(2), default=600, help="shots in each scene")
+    parser.add_argument("--repeats", type=at_least(1), default=5, help="timed runs of every shot; the best counts")
     parser.add_argument("--physics", default="match", help="the world with every model: match, or paper")
     parser.add_argument("--models", nargs="+", choices=list(MODELS), default=list(MODELS), help="only these")
     parser.add_argument("--json", type=Path, help="also write every figure there")
     parser.add_argument("--out", type=Path, default=FILE, help="the picture")
     options = parser.parse_args()
+    pyplot()  # before the work: can the picture be drawn?
 
     print(f"{_machine.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters")
     scenes, starts = {}, []

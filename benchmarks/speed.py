@@ -33,6 +33,7 @@ from snooker_env.physics.table import Table
 from snooker_env.simulation import _run
 
 from . import _machine, _speed_clock, _speed_growth, _speed_pooltool, _speed_profile, _speed_start
+from ._command import at_least, pyplot
 
 R = 0.02625
 IMPACT_FIDELITIES = ("fast", "standard", "reference", "euler:200", "euler:1000", "euler:10000")
@@ -285,16 +286,17 @@ def _simulate_seconds(p, v, w):
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--shots", type=int, default=1000, help="shots (and impacts) in a set")
-    parser.add_argument("--repeats", type=int, default=7, help="passes over a set")
+    parser.add_argument("--shots", type=at_least(2), default=1000, help="shots (and impacts) in a set")
+    parser.add_argument("--repeats", type=at_least(1), default=7, help="passes over a set")
     parser.add_argument("--parts", nargs="+", choices=PARTS, help="only these")
     parser.add_argument("--profile", action="store_true", help="the breakdown by function")
     parser.add_argument("--against", choices=["pooltool"], help="play the same shots with this peer, in a venv of its own")
-    parser.add_argument("--peer-shots", type=int, default=100, help="shots of each kind for the peer")
-    parser.add_argument("--largest-batch", type=int, default=65_536)
+    parser.add_argument("--peer-shots", type=at_least(1), default=100, help="shots of each kind for the peer")
+    parser.add_argument("--largest-batch", type=at_least(1), default=65_536)
     parser.add_argument("--json", type=Path, help="also write every figure there")
     parser.add_argument("--out", type=Path, default=FILE, help="the picture of the growth")
     options = parser.parse_args()
+    pyplot()  # before the work: can the picture be drawn?
     parts = options.parts or (() if options.profile or options.against else PARTS)
     figures: dict[str, object] = {"machine": _machine.machine()}
     print(_machine.line() + ("" if _speed_clock.HAS_COUNTER else "; no cycle counter: best of the calls"))

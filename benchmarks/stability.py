@@ -1,6 +1,6 @@
 """What breaks at the extremes? Impacts and shots at the edge of what can be asked for, each with its invariants; then a fuzz of a million.
 
-    python -m benchmarks.stability [--fuzz 1000000] [--seed 0] [--threads 2] [--json FILE] [--picture FILE]
+    python -m benchmarks.stability [--fuzz 1000000] [--seed 0] [--threads 2] [--json FILE] [--out FILE]
     python -m benchmarks.stability --replay SEED BATCH INDEX
 
 Exit code 1 if an invariant fails. ``--fuzz 0`` plays the extremes alone (10 s). Impacts are played at "fast", "standard" and
@@ -26,11 +26,13 @@ from snooker_env.physics.table import PLAY
 from snooker_env.simulation import _run
 
 from . import fuzz, invariants
+from ._command import at_least, pyplot
 
 R = 0.02625
 D = 2 * R
 EXACT = float(np.nextafter(D, 1))
 GAPS = (0.0, 1e-15, 1e-12, 1e-9)
+FILE = Path(__file__).parent / "pictures" / "stability.png"
 EXACT_FIDELITIES = ("fast", "standard", "reference")
 EULER_STEPS = (1, 2, 3, 5, 10, 20, 50, 100, 200, 1000, 10_000)
 MOST_EVENTS = 20_000
@@ -552,12 +554,9 @@ def fuzz_lines(found, seed):
 
 def draw(path, impacts, shots, euler, symmetry, found):
     """Four pictures: margins, the paper's scheme, growth of rounding, the fuzz."""
-    import matplotlib
+    plt = pyplot()
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(2, 2, figsize=(16, 13), width_ratios=(1.25, 1), layout="constrained")
+    figure, axes = plt.subplots(2, 2, figsize=(16, 16), width_ratios=(1.25, 1), height_ratios=(1.6, 1), layout="constrained")
     margins(axes[0, 0], impacts, shots)
     scheme(axes[0, 1], euler)
     chaos(axes[1, 1], *symmetry)
@@ -639,7 +638,7 @@ def invariants_of_fuzz(axis, found):
     axis.set_xticks(range(len(names)), names, rotation=30, ha="right", fontsize=8)
     axis.set_ylabel("worst figure over what is allowed")
     axis.set_title(f"{found.shots:,} random shots: the worst of each invariant (at the bottom: never violated at all)", fontsize=10)
-    axis.legend(fontsize=7, ncols=3)
+    axis.legend(fontsize=7, ncols=6, loc="lower center", bbox_to_anchor=(0.5, 0.08))
 
 
 def replay(seed, number, index):
@@ -660,13 +659,14 @@ def replay(seed, number, index):
 def main():
     """Command line; the exit code."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--fuzz", type=int, default=1_000_000, help="random shots; 0 for none")
+    parser.add_argument("--fuzz", type=at_least(0), default=1_000_000, help="random shots; 0 for none")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--threads", type=at_least(1), default=2)
     parser.add_argument("--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot of the fuzz again")
     parser.add_argument("--json", type=Path, help="also write every figure there")
-    parser.add_argument("--picture", type=Path, help="also draw them there")
+    parser.add_argument("--out", type=Path, default=FILE, help="the picture")
     options = parser.parse_args()
+    pyplot()  # before the work: can the picture be drawn?
     if options.replay:
         return int(not replay(*options.replay))
     impacts, shots = impact_extremes(), shot_extremes()
@@ -701,8 +701,7 @@ def main():
                 "failures": found.failures,
             }  # fmt: skip
         options.json.write_text(json.dumps(figures, indent=1) + "\n")
-    if options.picture:
-        draw(options.picture, impacts, shots, euler, symmetry, found)
+    draw(options.out, impacts, shots, euler, symmetry, found)
     return int(bool(failed))
 
 

@@ -12,7 +12,6 @@ import argparse
 import json
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 
 import snooker_env as sn
@@ -20,6 +19,7 @@ from snooker_env.physics import contact
 from snooker_env.physics.engine import EventKind
 
 from . import _machine, _shots
+from ._command import at_least, pyplot
 from .speed import impacts, median_impact, one_by_one, results
 
 OWN = ("fast", "standard", "reference")
@@ -180,8 +180,7 @@ def recommendation(impact_rows, sets):
 
 def draw(figures, out):
     """Time against error: impacts (angle, speed), then where the cue ball stops in each set of shots."""
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
+    plt = pyplot()
     from matplotlib.lines import Line2D
 
     fig, axes = plt.subplots(2, 2, figsize=(12, 9), layout="constrained")
@@ -235,13 +234,14 @@ def draw(figures, out):
 def main():
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--impacts", type=int, default=2000, help="impacts in the set")
-    parser.add_argument("--shots", type=int, default=1000, help="shots in each set")
-    parser.add_argument("--repeats", type=int, default=3, help="timed runs of every shot; the best counts")
+    parser.add_argument("--impacts", type=at_least(2), default=2000, help="impacts in the set")
+    parser.add_argument("--shots", type=at_least(2), default=1000, help="shots in each set")
+    parser.add_argument("--repeats", type=at_least(1), default=3, help="timed runs of every shot; the best counts")
     parser.add_argument("--physics", default="paper", help="the world of the shots: paper or match")
     parser.add_argument("--json", type=Path, help="also write every figure there")
     parser.add_argument("--out", type=Path, default=FILE, help="the picture")
     options = parser.parse_args()
+    pyplot()  # before the work: can the picture be drawn?
 
     print(_machine.line())
     impact_rows = play_impacts(options.impacts)

@@ -25,6 +25,8 @@ from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.envs.visit import Visits, Work
 
+from ._command import at_least
+
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)
 
 
@@ -207,9 +209,9 @@ def main():
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=2.0, help="of each timing")
-    parser.add_argument("--repeats", type=int, default=5)
-    parser.add_argument("--tables", type=int, default=1024)
-    parser.add_argument("--ppo-steps", type=int, default=16384)
+    parser.add_argument("--repeats", type=at_least(1), default=5)
+    parser.add_argument("--tables", type=at_least(1), default=1024)
+    parser.add_argument("--ppo-steps", type=at_least(1), default=16384)
     parser.add_argument("--json")
     args = parser.parse_args()
     snooker_env.warmup()

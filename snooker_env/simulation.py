@@ -208,7 +208,7 @@ def simulate_batch(
     start = r.copy(), v.copy(), w.copy(), here.copy()
     out = _run((r, v, w, here), physics, table, fidelity, max_events, _FIRST_LOG if events else 0, 0, threads)
     logs = [out.log(k) for k in range(len(r))] if events else None
-    for k in range(len(r)):
+    for k in np.flatnonzero(out.status != int(Status.OK)).tolist():
         if out.status[k] == Status.LOG_FULL:  # rare: a log longer than the first guess; played once more with room
             one = play(start[0][k], start[1][k], start[2][k], start[3][k], physics, table, fidelity, max_events, path=False)
             r[k], here[k], out.potted[k], out.duration[k] = one.positions, one.on_table, one.potted, one.duration

@@ -134,17 +134,19 @@ def _first_fault(positions, on_table, noses, jaws, falls, R):
                 if noses[j, 3] <= along <= noses[j, 4] and noses[j, 2] - R - noses[j, 1] * across < -OVERLAP_ALLOWED:
                     return k, i, _IN_NOSE, j
             for j in range(falls.shape[0]):
-                if hypot(x - falls[j, 0], y - falls[j, 1]) < falls[j, 2]:
+                dx, dy = x - falls[j, 0], y - falls[j, 1]
+                if dx * dx + dy * dy < falls[j, 2] * falls[j, 2]:
                     return k, i, _OVER_POCKET, j
             for j in range(jaws.shape[0]):
                 dx, dy = x - jaws[j, 0], y - jaws[j, 1]
-                d = hypot(dx, dy)
-                if d < jaws[j, 2] + R - OVERLAP_ALLOWED and dx * jaws[j, 3] + dy * jaws[j, 4] >= jaws[j, 5] * d:
+                d2, least = dx * dx + dy * dy, jaws[j, 2] + R - OVERLAP_ALLOWED
+                if d2 < least * least and dx * jaws[j, 3] + dy * jaws[j, 4] >= jaws[j, 5] * sqrt(d2):
                     return k, i, _IN_JAW, j
+        least = 2.0 * R - OVERLAP_ALLOWED
         for i in range(positions.shape[1]):
             for j in range(i + 1, positions.shape[1]):
                 dx, dy = positions[k, j, 0] - positions[k, i, 0], positions[k, j, 1] - positions[k, i, 1]
-                if on_table[k, i] and on_table[k, j] and hypot(dx, dy) < 2.0 * R - OVERLAP_ALLOWED:
+                if dx * dx + dy * dy < least * least and on_table[k, i] and on_table[k, j]:
                     return k, i, _IN_BALL, j
     return -1, -1, _SOUND, -1
 
