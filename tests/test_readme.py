@@ -25,13 +25,13 @@ def test_the_two_commands_are_those_that_ci_runs():
     assert all(f"command_of '{c.split(' && ')[1]}'" in ci for c in commands)
 
 
-MODULES = sorted(set(re.findall(r"python -m (benchmarks\.\w+)", README)))
+MODULES = sorted(set(re.findall(r"python -m ((?:benchmarks|agents)\.\w+)", README)))
 SHORT = {
     "benchmarks.paper": ["--no-pictures", "--json", "{tmp}/p.json"],
     "benchmarks.tradeoff": ["--impacts", "30", "--shots", "12", "--repeats", "1", "--out", "{tmp}/t.png"],
     "benchmarks.scene": ["--shots", "12", "--repeats", "1", "--models", "spin decay", "jaw arcs", "--out", "{tmp}/s.png"],
     "benchmarks.rack": ["--shots", "2", "--orders", "2", "--racks", "2", "--out", "{tmp}/rack.png"],
-    "benchmarks.stability": ["--fuzz", "2000"],
+    "benchmarks.stability": ["--fuzz", "2000", "--out", "{tmp}/stability.png"],
     "benchmarks.speed": [
         "--shots", "20", "--repeats", "1", "--parts", "impacts", "shots", "growth", "--largest-batch", "64", "--out", "{tmp}/speed.png",
     ],
@@ -40,6 +40,7 @@ SHORT = {
     "benchmarks.frames": ["--frames", "2", "--jobs", "1"],
     "benchmarks.layouts_picture": ["--out", "{tmp}/layouts.png"],
     "benchmarks.pictures": ["--out", "{tmp}/shot.png"],
+    "agents.evaluate": ["--agent", "random", "--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"],
     "benchmarks.vector": ["--seconds", "0.1", "--repeats", "1", "--tables", "64", "--ppo-steps", "2048"],
 }  # fmt: skip
 
