@@ -42,6 +42,7 @@ from snooker_env.game.stream import stream_of
 from snooker_env.physics.contact import parse_fidelity
 from snooker_env.physics.parameters import Physics
 
+from . import publish
 from .players import NAMES, player_of
 from .report import AXES, main_condition, markdown, show
 from .statistics import RESAMPLES, Resamples, interval, iqm
@@ -76,9 +77,12 @@ class Agent:
             label, paths = "", text
         runs = []
         for path in paths.split(","):
+            if path in publish.names():
+                path = str(publish.PRETRAINED / f"{path}.zip")
             found = [path] if path in NAMES or Path(path).exists() else sorted(glob.glob(path))
             if not found:
-                allowed = f"must be {', '.join(NAMES)}, or name models that are there: a .zip, a run folder, a pattern"
+                known = ", ".join((*NAMES, *publish.names()))
+                allowed = f"must be {known}, or name models that are there: a .zip, a run folder, a pattern"
                 raise refuse("agent", path, allowed)
             runs += found
         if equals and not label:
@@ -108,8 +112,10 @@ def _training(run):
         return {}
     model = _model(run).model
     folder = Path(run) if Path(run).is_dir() else Path(run).parent
-    results = folder / "results.json"
+    results, card = folder / "results.json", Path(run).with_suffix(".json")
     seconds = json.loads(results.read_text()).get("seconds") if results.is_file() else None
+    if Path(run).is_file() and card.is_file():
+        seconds = 3600.0 * json.loads(card.read_text())["hours"]
     return {
         "recipe": model.recipe, "shots": model.num_timesteps, "seconds": seconds, "seed": model.seed, "gamma": model.gamma,
         **{key: model.env_options.get(key, usual) for key, usual in (("noise", "none"), ("fidelity", "standard"), ("physics", "paper"))},

@@ -69,8 +69,8 @@ NAMES = ("random", "random_absolute", "ghost_ball", "search")
 
 
 def player_of(name, *, budget=2000, seed=0):
-    """The player of that name, or the model in that file or run folder. ValueError if there is none."""
-    from . import recipes
+    """The player or pre-trained model of that name, or the model in that file or run folder. ValueError if there is none."""
+    from . import publish, recipes
     from .search import Search
 
     makers = {
@@ -81,6 +81,9 @@ def player_of(name, *, budget=2000, seed=0):
     }
     if name in makers:
         return makers[name]()
+    if name in publish.names():
+        return recipes.load_player(publish.PRETRAINED / f"{name}.zip")
     if not Path(name).exists():
-        raise refuse("agent", name, f"must be {', '.join(NAMES)}, a model's .zip or a folder that holds model.zip")
+        known = ", ".join((*NAMES, *publish.names()))
+        raise refuse("agent", name, f"must be {known}, a model's .zip or a folder that holds model.zip")
     return recipes.load_player(Path(name))
