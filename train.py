@@ -1,8 +1,8 @@
 """How does an agent learn to play Snooker-v0? Train one, check it against random play on tables it never saw, and say what it learned.
 
-    python train.py                                    half an hour on two cores: maskable PPO over pot, speed and spin
-    python train.py --steps 300000                     two minutes of the same
-    python train.py --agent tqc_target --seed 1 --out runs/mine
+    python train.py                                    up to half an hour on two cores: PPO that looks one shot ahead
+    python train.py --steps 50000 --imitate 10000      a few minutes of the same
+    python train.py --agent ppo_mask --seed 1 --out runs/mine
     python train.py --resume --out runs/mine           go on after Ctrl-C, a kill or a power cut, exactly where the last checkpoint was
 
 A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; like every pickle, load only your own), ``model.zip`` (for
@@ -57,7 +57,7 @@ def option(default, text, **more):
 class Settings:
     """What makes a run the run it is."""
 
-    agent: str = option("ppo_mask", "what learns, and how: a file of agents/hyperparams", choices=tuple(names()))
+    agent: str = option("ppo_foresight", "what learns, and how: a file of agents/hyperparams", choices=tuple(names()))
     steps: int = option(0, "shots in all; 0: as many as the recipe says")
     envs: int = option(0, "tables played side by side; 0: as many as the recipe says")
     parallel: str = option("auto", "threads for the tables: auto (once called processes) is one a processor; the same shots come out",

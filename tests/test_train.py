@@ -26,7 +26,7 @@ from snooker_env.envs.observations import observe  # noqa: E402
 from snooker_env.envs.snooker import SnookerEnv  # noqa: E402
 
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
-TINY = ["--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512", "--imitate", "0"]
+TINY = ["--agent", "ppo_mask", "--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512", "--imitate", "0"]
 
 
 def run(out, *options):
@@ -231,7 +231,7 @@ def test_lesson_claims_only_what_the_figures_show():
 
 
 def test_imitation_comes_first_and_is_kept(tmp_path):
-    assert train.main(["--agent", "ppo_foresight", *TINY[:-1], "256", "--out", str(tmp_path / "run")]) == 0
+    assert train.main([*TINY[:-1], "256", "--agent", "ppo_foresight", "--out", str(tmp_path / "run")]) == 0
     found = results(tmp_path / "run")
     assert found["settings"]["imitate"] == 256 and found["imitation"][-1]["states"] == 256
     assert "after imitating the search" in found["learned"]
