@@ -16,6 +16,7 @@ without errors, at aims around its line and at a few speeds: the widest run of n
 
 from dataclasses import replace
 from math import asin, atan2, cos, hypot, pi, sin, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from snooker_env.envs.choices import POTS
 from snooker_env.envs.noise import Noise
 from snooker_env.envs.shooting import Shooter
 from snooker_env.envs.visit import BALL_ON, Returned, Visits, Work
-from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, BallOn, balls_on_kernel, bits
+from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, SPOTS, BallOn, balls_on_kernel, bits
 from snooker_env.game.pots import POCKETS, POT_COLUMNS, _window, clear_segment, find_pots
 from snooker_env.physics import cloth
 from snooker_env.physics.polynomial import WORK
@@ -367,7 +368,11 @@ class Aimer:
         self._visits = Visits(replace(rules, shooter=self._shooter), CHUNK)
         self._work, self._out, self._none = Work(CHUNK), Returned(CHUNK), np.zeros(CHUNK, np.bool_)
         self._speed = speed
-        self._world = (s.physics.pack(), s.physics.end_mass_ratio, *s.fidelity)
+        self._world: tuple[Any, float, int, int] = (s.physics.pack(), s.physics.end_mass_ratio, s.fidelity[0], s.fidelity[1])
+        # compiled here, not while somebody measures the time of a decision
+        spots, on_table = np.array(SPOTS), np.ones(N_BALLS, np.bool_)
+        indirect(spots, on_table, _RED, s.table, s.physics)
+        _solved(spots, direct(spots, on_table, _RED), np.array(SPEEDS), *self._world, np.empty((POTS, len(SPEEDS))))
 
     def actions(self, positions, on_table, game):
         """An action (4,) float32 for each of n tables: positions (n, 22, 2), on_table (n, 22), game (n, 5).
@@ -379,10 +384,10 @@ class Aimer:
         _plain(positions, on_table, game[:, BALL_ON], self._speed, *self._world, aims)
         actions = action_of(np.full(len(aims), self._speed), aims)
         for k in np.flatnonzero(~self.pots(positions, on_table, game, actions)).tolist():
-            here = positions[k], on_table[k], game[k]
-            found = self.widest(*here, direct(*here[:2], here[2][BALL_ON]))
+            p, on, state = positions[k], on_table[k], game[k]
+            found = self.widest(p, on, state, direct(p, on, state[BALL_ON]))
             if found is None:
-                found = self.widest(*here, indirect(*here[:2], here[2][BALL_ON], self._shooter.table, self._shooter.physics))
+                found = self.widest(p, on, state, indirect(p, on, state[BALL_ON], self._shooter.table, self._shooter.physics))
             if found is not None:
                 actions[k] = found[0]
         return actions
@@ -398,8 +403,8 @@ class Aimer:
         aims = lines[:, :, None] + steps[:, None, None] * (np.arange(AIMS) - 0.5 * (AIMS - 1))
         speeds = np.broadcast_to(np.array(SPEEDS)[:, None], aims.shape)
         tries = action_of(speeds.ravel(), aims.ravel())
-        copies = (np.broadcast_to(a, (len(tries), *a.shape)) for a in (positions, on_table, game))
-        good = self.pots(*copies, tries).reshape(m * len(SPEEDS), AIMS)
+        p, on, state = (np.broadcast_to(a, (len(tries), *a.shape)) for a in (positions, on_table, game))
+        good = self.pots(p, on, state, tries).reshape(m * len(SPEEDS), AIMS)
         starts, lengths = widest_run(good)
         widths = lengths * np.repeat(steps, len(SPEEDS))
         best = int(np.argmax(widths))
