@@ -23,7 +23,6 @@ import numpy as np
 from snooker_env._jit import entry, kernel
 from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED, Actions, line_of
 from snooker_env.envs.aiming import solved_aim
-from snooker_env.envs.choices import POTS
 from snooker_env.envs.noise import Noise
 from snooker_env.envs.shooting import Shooter
 from snooker_env.envs.visit import BALL_ON, Returned, Visits, Work
@@ -47,6 +46,8 @@ _BENT = 0.2
 """How far [rad] the path off a cushion or a ball may lie from the geometric one, as a turn of the ball's direction before it."""
 _THINNEST = 0.05
 """Cosine of the thinnest cut, as ``game.pots`` has it."""
+_CLOSE = 2.5 * BALL_RADIUS
+"""Two balls whose centres are nearer than this [m] make a set plant, if the line through them leads into a pocket."""
 _FAR = 1.2
 """Longest path [m] of a ball to the one that it goes off."""
 _SAMPLES = 24
@@ -153,7 +154,7 @@ def _plants(positions, present, ball, other, shots, count):
             continue
         half = width / (2.0 * run)
         aside = abs(atan2(ux * dy - uy * dx, ux * dx + uy * dy))
-        if aside < half:  # struck full it goes in: two balls that touch have no other line
+        if apart < _CLOSE and aside < half:  # struck full it goes in: two balls that touch know no other line
             half -= aside
             dx, dy = ux, uy
         mx, my = bx - reach * dx, by - reach * dy  # where A meets B
@@ -283,52 +284,51 @@ def _indirect(positions, on_table, ball_on, noses, e, shots):
 
 
 @entry
-def _direct(positions, on_table, ball_on, shots):
-    """Fill ``shots`` (m, COLUMNS) with the direct pots, widest first; returns how many there are."""
-    found = np.empty((shots.shape[0], POT_COLUMNS))
-    count = find_pots(positions, on_table, balls_on_kernel(ball_on, bits(on_table)), BALL_RADIUS, found)
-    for j in range(count):
-        pocket, row = int(found[j, 1]), shots[j]
-        row[KIND], row[BALL], row[OTHER], row[POCKET] = DIRECT, found[j, 0], -1, pocket
-        row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y] = POCKETS[pocket, 0], POCKETS[pocket, 1], found[j, 2], found[j, 3]
-        row[TOLERANCE] = row[REACH] = found[j, 5]
-    return count
+def _direct(positions, on_table, ball_on, shots, counts):
+    """Fill ``shots`` (n, m, COLUMNS) with the direct pots of n tables, widest first; ``counts`` (n,) of them.
+
+    Where there is none the first is the line to the nearest ball on, with -1 for its ball.
+    """
+    found = np.empty((shots.shape[1], POT_COLUMNS))
+    for t in range(len(counts)):
+        p, on = positions[t], balls_on_kernel(ball_on[t], bits(on_table[t]))
+        counts[t] = find_pots(p, on_table[t], on, BALL_RADIUS, found)
+        for j in range(counts[t]):
+            pocket, row = int(found[j, 1]), shots[t, j]
+            row[KIND], row[BALL], row[OTHER], row[POCKET] = DIRECT, found[j, 0], -1, pocket
+            row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y] = POCKETS[pocket, 0], POCKETS[pocket, 1], found[j, 2], found[j, 3]
+            row[TOLERANCE] = row[REACH] = found[j, 5]
+        if counts[t] == 0:
+            row, angle = shots[t, 0], line_of(p, on_table[t], on, found)
+            row[KIND], row[BALL], row[OTHER], row[POCKET], row[TOLERANCE], row[REACH] = DIRECT, -1, -1, -1, 0.0, 0.0
+            row[AIM_X] = row[GHOST_X] = p[0, 0] + cos(angle)
+            row[AIM_Y] = row[GHOST_Y] = p[0, 1] + sin(angle)
 
 
 @entry
 def _solved(positions, shots, speeds, phys, end_mass_ratio, fidelity, n_steps, aims):
-    """``aims`` (m, s) [rad]: the direction of the cue ball that sends the first ball of each shot to its aim point, at each speed."""
+    """``aims`` (m, s) [rad]: the direction of the cue ball that sends the first ball of each shot to its aim point, at each speed.
+
+    positions (m, 22, 2), shots (m, COLUMNS), speeds (s,).
+    """
     motion, state, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
     for j in range(shots.shape[0]):
-        row = shots[j]
+        p, row = positions[j], shots[j]
         for i in range(len(speeds)):
+            if row[BALL] < 0.0:
+                aims[j, i] = atan2(row[GHOST_Y] - p[0, 1], row[GHOST_X] - p[0, 0])
+                continue
             aims[j, i] = solved_aim(
-                positions, int(row[BALL]), row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y], speeds[i], 0.0, 0.0, 0.0, phys,
-                end_mass_ratio, fidelity, n_steps, motion, state, work,
-            )  # fmt: skip
-
-
-@entry
-def _plain(positions, on_table, ball_on, speed, phys, end_mass_ratio, fidelity, n_steps, aims):
-    """``aims`` (n,) [rad] on n tables: solved for the widest direct pot, or at the middle of the nearest ball on if there is none."""
-    found = np.empty((1, POT_COLUMNS))
-    motion, state, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
-    for k in range(len(aims)):
-        p, on = positions[k], balls_on_kernel(ball_on[k], bits(on_table[k]))
-        if find_pots(p, on_table[k], on, BALL_RADIUS, found):
-            ball, pocket = int(found[0, 0]), int(found[0, 1])
-            aims[k] = solved_aim(
-                p, ball, POCKETS[pocket, 0], POCKETS[pocket, 1], found[0, 2], found[0, 3], speed, 0.0, 0.0, 0.0, phys, end_mass_ratio,
+                p, int(row[BALL]), row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y], speeds[i], 0.0, 0.0, 0.0, phys, end_mass_ratio,
                 fidelity, n_steps, motion, state, work,
             )  # fmt: skip
-        else:
-            aims[k] = line_of(p, on_table[k], on, found)
 
 
-def direct(positions, on_table, ball_on, most=POTS):
-    """The direct pots (k, COLUMNS) of the balls on, widest first."""
-    shots = np.empty((most, COLUMNS))
-    return shots[: _direct(positions, on_table, ball_on, shots)]
+def direct(positions, on_table, ball_on, most=MOST):
+    """The direct pots (k, COLUMNS) of the balls on, widest first, ``most`` at the most."""
+    shots, counts = np.empty((1, most, COLUMNS)), np.empty(1, np.int64)
+    _direct(positions[None], on_table[None], np.array([ball_on]), shots, counts)
+    return shots[0, : counts[0]]
 
 
 def indirect(positions, on_table, ball_on, table, physics, most=MOST):
@@ -369,25 +369,22 @@ class Aimer:
         self._work, self._out, self._none = Work(CHUNK), Returned(CHUNK), np.zeros(CHUNK, np.bool_)
         self._speed = speed
         self._world: tuple[Any, float, int, int] = (s.physics.pack(), s.physics.end_mass_ratio, s.fidelity[0], s.fidelity[1])
-        # compiled here, not while somebody measures the time of a decision
-        spots, on_table = np.array(SPOTS), np.ones(N_BALLS, np.bool_)
-        indirect(spots, on_table, _RED, s.table, s.physics)
-        _solved(spots, direct(spots, on_table, _RED), np.array(SPEEDS), *self._world, np.empty((POTS, len(SPEEDS))))
+        indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), _RED, s.table, s.physics)  # compiled now, not while a decision is timed
 
     def actions(self, positions, on_table, game):
         """An action (4,) float32 for each of n tables: positions (n, 22, 2), on_table (n, 22), game (n, 5).
 
-        The widest direct pot along its solved line, if it goes in without errors. Else the direct pot that the simulator finds the widest,
-        else such an indirect one, else the first line all the same; without a direct pot that is the one to the nearest ball on.
+        First the widest direct pot along its solved line or, without a direct pot, the line to the nearest ball on. If that pots nothing
+        without errors, the direct pot that the simulator finds the widest; else such an indirect one; else the first line all the same.
         """
-        aims = np.empty(len(game))
-        _plain(positions, on_table, game[:, BALL_ON], self._speed, *self._world, aims)
-        actions = action_of(np.full(len(aims), self._speed), aims)
+        shots, counts, ball_on = np.empty((len(game), 1, COLUMNS)), np.empty(len(game), np.int64), game[:, BALL_ON].copy()
+        _direct(positions, on_table, ball_on, shots, counts)
+        actions = action_of(np.full(len(game), self._speed), self._solve(positions, shots[:, 0].copy(), np.array([self._speed]))[:, 0])
         for k in np.flatnonzero(~self.pots(positions, on_table, game, actions)).tolist():
             p, on, state = positions[k], on_table[k], game[k]
-            found = self.widest(p, on, state, direct(p, on, state[BALL_ON]))
+            found = self.widest(p, on, state, direct(p, on, ball_on[k]))
             if found is None:
-                found = self.widest(p, on, state, indirect(p, on, state[BALL_ON], self._shooter.table, self._shooter.physics))
+                found = self.widest(p, on, state, indirect(p, on, ball_on[k], self._shooter.table, self._shooter.physics))
             if found is not None:
                 actions[k] = found[0]
         return actions
@@ -397,8 +394,7 @@ class Aimer:
         which speed); None if none goes in."""
         if len(shots) == 0:
             return None
-        m, lines = len(shots), np.empty((len(shots), len(SPEEDS)))
-        _solved(positions, shots, np.array(SPEEDS), *self._world, lines)
+        m, lines = len(shots), self._solve(np.repeat(positions[None], len(shots), axis=0), shots, np.array(SPEEDS))
         steps = 2.0 * shots[:, REACH] / AIMS
         aims = lines[:, :, None] + steps[:, None, None] * (np.arange(AIMS) - 0.5 * (AIMS - 1))
         speeds = np.broadcast_to(np.array(SPEEDS)[:, None], aims.shape)
@@ -413,6 +409,12 @@ class Aimer:
         shot, speed = divmod(best, len(SPEEDS))
         aim = lines[shot, speed] + steps[shot] * (starts[best] + 0.5 * (lengths[best] - 1) - 0.5 * (AIMS - 1))
         return action_of([SPEEDS[speed]], [aim])[0], 0.5 * widths[best], shot, speed
+
+    def _solve(self, positions, shots, speeds):
+        """``_solved`` in this world."""
+        aims = np.empty((len(shots), len(speeds)))
+        _solved(positions, shots, speeds, *self._world, aims)
+        return aims
 
     def pots(self, positions, on_table, game, actions):
         """Which of these actions score, each on a copy of its table: (m,) bool."""
