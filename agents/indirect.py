@@ -54,7 +54,7 @@ _SAMPLES = 24
 
 SPEEDS = (1.8, 2.9, 4.4)
 """Cue speeds [m/s] at which the shots are tried."""
-AIMS = 48
+AIMS = 40
 """Aims tried a speed."""
 MOST = 3
 """Shots tried, those with the widest geometric tolerance."""
@@ -394,21 +394,26 @@ class Aimer:
         which speed); None if none goes in."""
         if len(shots) == 0:
             return None
-        m, lines = len(shots), self._solve(np.repeat(positions[None], len(shots), axis=0), shots, np.array(SPEEDS))
-        steps = 2.0 * shots[:, REACH] / AIMS
-        aims = lines[:, :, None] + steps[:, None, None] * (np.arange(AIMS) - 0.5 * (AIMS - 1))
-        speeds = np.broadcast_to(np.array(SPEEDS)[:, None], aims.shape)
-        tries = action_of(speeds.ravel(), aims.ravel())
-        p, on, state = (np.broadcast_to(a, (len(tries), *a.shape)) for a in (positions, on_table, game))
-        good = self.pots(p, on, state, tries).reshape(m * len(SPEEDS), AIMS)
-        starts, lengths = widest_run(good)
-        widths = lengths * np.repeat(steps, len(SPEEDS))
+        lines = self._solve(np.repeat(positions[None], len(shots), axis=0), shots, np.array(SPEEDS)).ravel()
+        speeds, reaches = np.tile(SPEEDS, len(shots)), np.repeat(shots[:, REACH], len(SPEEDS))
+        middles, widths = self._scan(positions, on_table, game, speeds, lines, reaches)
         best = int(np.argmax(widths))
-        if lengths[best] == 0:
+        if widths[best] == 0.0:
             return None
-        shot, speed = divmod(best, len(SPEEDS))
-        aim = lines[shot, speed] + steps[shot] * (starts[best] + 0.5 * (lengths[best] - 1) - 0.5 * (AIMS - 1))
-        return action_of([SPEEDS[speed]], [aim])[0], 0.5 * widths[best], shot, speed
+        # once more where it goes in and a step further: now the width is known to a few percent
+        reach = 0.5 * widths[best] + 2.0 * reaches[best] / AIMS
+        finer = self._scan(positions, on_table, game, speeds[best : best + 1], middles[best : best + 1], np.array([reach]))
+        middle, width = (finer[0][0], finer[1][0]) if finer[1][0] > 0.0 else (middles[best], widths[best])
+        return action_of(speeds[best : best + 1], [middle])[0], 0.5 * width, *divmod(best, len(SPEEDS))
+
+    def _scan(self, positions, on_table, game, speeds, lines, reaches):
+        """Of the widest run of aims that pot within ``reaches`` of ``lines``: middle and width [rad], (m,) each; width 0 if none does."""
+        steps = 2.0 * reaches / AIMS
+        aims = lines[:, None] + steps[:, None] * (np.arange(AIMS) - 0.5 * (AIMS - 1))
+        tries = action_of(np.repeat(speeds, AIMS), aims.ravel())
+        p, on, state = (np.broadcast_to(a, (len(tries), *a.shape)) for a in (positions, on_table, game))
+        starts, lengths = widest_run(self.pots(p, on, state, tries).reshape(-1, AIMS))
+        return lines + steps * (starts + 0.5 * (lengths - 1) - 0.5 * (AIMS - 1)), steps * lengths
 
     def _solve(self, positions, shots, speeds):
         """``_solved`` in this world."""

@@ -157,6 +157,11 @@ def test_a_cannon_goes_off_the_other_ball(aimer):
     for shot in shots[(shots[:, KIND] == CANNON)]:
         at = shot[[AIM_X, AIM_Y]]
         assert shot[BALL] == 1 and shot[OTHER] == BLUE and hypot(*(at - OFF[BLUE])) == pytest.approx(2 * R, abs=1e-9)
+        before, centres = (at - OFF[1]) / np.hypot(*(at - OFF[1])), (OFF[BLUE] - at) / (2 * R)
+        sliding = before - 0.5 * (1 + PAPER.e_b) * (before @ centres) * centres
+        rolling = 5 / 7 * sliding + 2 / 7 * before  # what is left when the cloth has made both spins the ball's own
+        pocket = POCKETS[int(shot[POCKET]), :2] - at
+        assert rolling @ pocket / np.hypot(*rolling) == pytest.approx(np.hypot(*pocket), rel=1e-9)
     hits = [(shot, tried(aimer, OFF, shot)) for shot in shots if shot[KIND] == CANNON]
     hits = [(shot, hit[0]) for shot, hit in hits if hit is not None]
     assert hits
