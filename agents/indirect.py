@@ -12,6 +12,8 @@ of the pocket, divided by all of it, is the shot's geometric tolerance.
 
 The geometry knows neither throw nor how a cushion bends a path, which is worth several degrees. So each shot is tried in the simulator
 without errors, at aims around its line and at a few speeds: the widest run of neighbouring aims that pot is the shot, its middle the aim.
+
+The player "geometric" plays so: python -m agents.evaluate --agent geometric
 """
 
 from dataclasses import replace
