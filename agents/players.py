@@ -5,15 +5,18 @@ for each of the n tables of a ``SnookerVectorEnv`` with flat observations. Only 
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from snooker_env._check import refuse
 from snooker_env.envs.choices import SIDES, SIZE, SPEEDS, STROKES, TOPS
 
+from .indirect import Aimer
 from .view import view_of
 
 DISCRETE = {"action": "discrete"}
+ABSOLUTE = {"aim": "absolute"}
 
 
 def choice_of(pot, speed, side, top):
@@ -49,6 +52,26 @@ class GhostBall:
         return np.full(len(going), self._stroke)
 
 
+class Geometric:
+    """Pots found by geometry, their aims by the simulator without errors: direct, else banks, plants and cannons, see ``indirect``."""
+
+    options = ABSOLUTE
+
+    def __init__(self, speed=2.3):
+        self._speed = speed
+        self._rules: Any = None
+        self._aimer: Any = None
+
+    def act(self, tables, observations, going):
+        """An aim and a speed for each table going."""
+        v = tables.visits
+        if self._rules is not v.rules:
+            self._rules, self._aimer = v.rules, Aimer(v.rules, self._speed)
+        actions = np.zeros((len(going), 4), np.float32)
+        actions[going] = self._aimer.actions(v.positions[going], v.on_table[going], v.game[going])
+        return actions
+
+
 class Model:
     """A trained Stable-Baselines3 model that sees the tables through a view of that name; it plays what it thinks best."""
 
@@ -65,7 +88,7 @@ class Model:
         return actions
 
 
-NAMES = ("random", "random_absolute", "ghost_ball", "search")
+NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "search")
 
 
 def player_of(name, *, budget=2000, seed=0):
@@ -75,8 +98,9 @@ def player_of(name, *, budget=2000, seed=0):
 
     makers = {
         "random": lambda: Random(seed=seed),
-        "random_absolute": lambda: Random({"aim": "absolute"}, seed),
+        "random_absolute": lambda: Random(ABSOLUTE, seed),
         "ghost_ball": GhostBall,
+        "geometric": Geometric,
         "search": lambda: Search(budget, seed=seed),
     }
     if name in makers:

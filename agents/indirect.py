@@ -1,0 +1,435 @@
+"""Which pots are there besides the direct ones, and where must the cue ball be sent for them? Geometry first, then the simulator.
+
+* bank: the object ball goes off one cushion into a pocket. It is sent at the pocket's mirror image in the line along which a ball's
+  centre meets that cushion: the nose less R.
+* plant: the object ball A drives another ball B into a pocket. Both must be on and may go down together: reds with a red on.
+* cannon: the object ball A goes off another ball into a pocket. Rolling, it keeps after the impact 5/7 of the velocity that it then has
+  and 2/7 of the one before.
+
+Every shot is a chain of straight legs, and no other ball may be nearer than 2 R to any of them. An error of the cue ball's aim becomes
+one of the object ball's direction, magnified by path / (2 R cos cut) as in ``game.pots``, and again at the next impact. The half window
+of the pocket, divided by all of it, is the shot's geometric tolerance.
+
+The geometry knows neither throw nor how a cushion bends a path, which is worth several degrees. So each shot is tried in the simulator
+without errors, at aims around its line and at a few speeds: the widest run of neighbouring aims that pot is the shot, its middle the aim.
+
+The player "geometric" plays so: python -m agents.evaluate --agent geometric
+"""
+
+from dataclasses import replace
+from math import asin, atan2, cos, hypot, pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+
+from snooker_env._jit import entry, kernel
+from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED, Actions, line_of
+from snooker_env.envs.aiming import solved_aim
+from snooker_env.envs.noise import Noise
+from snooker_env.envs.shooting import Shooter
+from snooker_env.envs.visit import BALL_ON, Returned, Visits, Work
+from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, SPOTS, BallOn, balls_on_kernel, bits
+from snooker_env.game.pots import POCKETS, POT_COLUMNS, _window, clear_segment, find_pots
+from snooker_env.physics import cloth
+from snooker_env.physics.polynomial import WORK
+from snooker_env.physics.table import OVERLAP_ALLOWED
+
+DIRECT, BANK, PLANT, CANNON = range(4)
+"""Kinds of shots."""
+(KIND, BALL, OTHER, POCKET, AIM_X, AIM_Y, GHOST_X, GHOST_Y, TOLERANCE, REACH) = range(10)
+"""Columns of a shot: its kind, the ball to strike first, the other ball (-1 if there is none), the pocket, the point that the first ball
+is sent to, where the cue ball meets it, the geometric tolerance [rad], and how far off its line [rad] the right aim may lie."""
+COLUMNS = 10
+
+_RED = int(BallOn.RED)
+_THROW = 0.09
+"""How far [rad] friction may throw a ball off the line of centres, about."""
+_BENT = 0.2
+"""How far [rad] the path off a cushion or a ball may lie from the geometric one, as a turn of the ball's direction before it."""
+_THINNEST = 0.05
+"""Cosine of the thinnest cut, as ``game.pots`` has it."""
+_CLOSE = 2.5 * BALL_RADIUS
+"""Two balls whose centres are nearer than this [m] make a set plant, if the line through them leads into a pocket."""
+_FAR = 1.2
+"""Longest path [m] of a ball to the one that it goes off."""
+_SAMPLES = 24
+
+SPEEDS = (1.8, 2.9, 4.4)
+"""Cue speeds [m/s] at which the shots are tried."""
+AIMS = 40
+"""Aims tried a speed."""
+MOST = 3
+"""Shots tried, those with the widest geometric tolerance."""
+CHUNK = 128
+"""Shots simulated in one go: their work space stays in the cache."""
+
+
+@kernel
+def _first_leg(positions, present, ball, dx, dy):
+    """The cue ball's way to send ``ball`` along d: (ghost x, ghost y, 2 R cos cut / path); the last is 0 if there is none."""
+    cx, cy = positions[0, 0], positions[0, 1]
+    reach = 2.0 * BALL_RADIUS
+    gx, gy = positions[ball, 0] - reach * dx, positions[ball, 1] - reach * dy
+    px, py = gx - cx, gy - cy
+    path = hypot(px, py)
+    room = OVERLAP_ALLOWED - BALL_RADIUS
+    if path < 1e-9 or abs(gx) > HALF_WIDTH + room or abs(gy) > HALF_LENGTH + room:
+        return gx, gy, 0.0
+    cos_cut = (px * dx + py * dy) / path
+    if cos_cut < _THINNEST or not clear_segment(positions, present, cx, cy, gx, gy, ball, 0, reach * (1.0 - 1e-9)):
+        return gx, gy, 0.0
+    return gx, gy, reach * cos_cut / path
+
+
+@kernel
+def _keep(shots, count, kind, ball, other, pocket, ax, ay, gx, gy, tolerance, reach):
+    """Put a shot in its place among the ``count`` widest so far; returns how many there are then."""
+    if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
+        return count
+    at = min(count, shots.shape[0] - 1)
+    while at > 0 and shots[at - 1, TOLERANCE] < tolerance:
+        for c in range(COLUMNS):
+            shots[at, c] = shots[at - 1, c]
+        at -= 1
+    row = shots[at]
+    row[KIND], row[BALL], row[OTHER], row[POCKET], row[AIM_X], row[AIM_Y] = kind, ball, other, pocket, ax, ay
+    row[GHOST_X], row[GHOST_Y], row[TOLERANCE], row[REACH] = gx, gy, tolerance, reach
+    return min(count + 1, shots.shape[0])
+
+
+@kernel
+def _banks(positions, present, ball, noses, shots, count):
+    """Add the banks of one ball."""
+    bx, by = positions[ball, 0], positions[ball, 1]
+    for j in range(noses.shape[0]):
+        across_x, side, line = noses[j, 0] == 0.0, noses[j, 1], noses[j, 2] - BALL_RADIUS
+        depth = line - side * (bx if across_x else by)
+        if depth < 1e-3:  # it touches the cushion
+            continue
+        for k in range(6):
+            kx, ky = POCKETS[k, 0], POCKETS[k, 1]
+            if side * (kx if across_x else ky) >= line:  # a pocket at this very cushion
+                continue
+            mx, my = (2.0 * side * line - kx, ky) if across_x else (kx, 2.0 * side * line - ky)
+            dx, dy = mx - bx, my - by
+            run = hypot(dx, dy)
+            dx, dy = dx / run, dy / run
+            s = depth / (side * (dx if across_x else dy))
+            qx, qy = bx + s * dx, by + s * dy
+            if not noses[j, 3] <= (qy if across_x else qx) <= noses[j, 4]:
+                continue
+            ex, ey = (-dx, dy) if across_x else (dx, -dy)
+            width = _window(ex * POCKETS[k, 2] + ey * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
+            if width <= 0.0:
+                continue
+            gx, gy, gain = _first_leg(positions, present, ball, dx, dy)
+            if gain <= 0.0:
+                continue
+            tolerance = width / (2.0 * run) * gain
+            if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
+                continue
+            if not clear_segment(positions, present, bx, by, qx, qy, ball, 0, 2.0 * BALL_RADIUS):
+                continue
+            if not clear_segment(positions, present, qx, qy, kx, ky, ball, 0, 2.0 * BALL_RADIUS):
+                continue
+            count = _keep(shots, count, BANK, ball, -1, k, qx, qy, gx, gy, tolerance, _BENT * gain)
+    return count
+
+
+@kernel
+def _plants(positions, present, ball, other, shots, count):
+    """Add the plants of ``ball`` onto ``other``."""
+    ax, ay, bx, by = positions[ball, 0], positions[ball, 1], positions[other, 0], positions[other, 1]
+    reach = 2.0 * BALL_RADIUS
+    ux, uy = bx - ax, by - ay
+    apart = hypot(ux, uy)
+    ux, uy = ux / apart, uy / apart
+    for k in range(6):
+        kx, ky = POCKETS[k, 0], POCKETS[k, 1]
+        dx, dy = kx - bx, ky - by
+        run = hypot(dx, dy)
+        if run < 1e-9:
+            continue
+        dx, dy = dx / run, dy / run
+        width = _window(dx * POCKETS[k, 2] + dy * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
+        if width <= 0.0 or ux * dx + uy * dy < _THINNEST:
+            continue
+        half = width / (2.0 * run)
+        aside = abs(atan2(ux * dy - uy * dx, ux * dx + uy * dy))
+        if apart < _CLOSE and aside < half:  # struck full it goes in: two balls that touch know no other line
+            half -= aside
+            dx, dy = ux, uy
+        mx, my = bx - reach * dx, by - reach * dy  # where A meets B
+        px, py = mx - ax, my - ay
+        path = hypot(px, py)
+        px, py = (px / path, py / path) if path > 1e-6 else (ux, uy)
+        cos_cut = px * dx + py * dy
+        if cos_cut < _THINNEST:
+            continue
+        second = reach * cos_cut / max(path, 1e-6)
+        gx, gy, gain = _first_leg(positions, present, ball, px, py)
+        if gain <= 0.0:
+            continue
+        # no wider than the face of the ball: a half-ball hit to either side
+        face = 0.5 * reach / hypot(gx - positions[0, 0], gy - positions[0, 1])
+        tolerance = min(half * second * gain, face)
+        if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
+            continue
+        if not clear_segment(positions, present, ax, ay, mx, my, ball, other, reach * (1.0 - 1e-9)):
+            continue
+        if not clear_segment(positions, present, bx, by, kx, ky, other, ball, reach):
+            continue
+        off = max(path, BALL_RADIUS)  # the aim is not solved for a point at no distance
+        count = _keep(
+            shots, count, PLANT, ball, other, k, ax + off * px, ay + off * py, gx, gy, tolerance, min(_THROW * second * gain, face)
+        )
+    return count
+
+
+@kernel
+def _off(ax, ay, ux, uy, apart, s, e):
+    """The ball at a, ``apart`` along u from another, meets it with the centres 2 R s beside its path and to the right of the other's:
+    (where x, y, direction before x, y, direction after x, y)."""
+    reach = 2.0 * BALL_RADIUS
+    turn = asin(reach * s / apart)
+    c, n = cos(turn), sin(turn)
+    ix, iy = ux * c + uy * n, uy * c - ux * n
+    deep = sqrt(1.0 - s * s)
+    way = apart * c - reach * deep
+    # the line of centres: turned to the left of the path
+    nx, ny = ix * deep - iy * s, iy * deep + ix * s
+    given = 5.0 / 7.0 * 0.5 * (1.0 + e) * deep
+    ox, oy = ix - given * nx, iy - given * ny
+    size = hypot(ox, oy)
+    return ax + way * ix, ay + way * iy, ix, iy, ox / size, oy / size
+
+
+@kernel
+def _passing(k, qx, qy, ox, oy):
+    """The angle [rad] by which a ball at q with direction o passes pocket k on the left."""
+    kx, ky = POCKETS[k, 0] - qx, POCKETS[k, 1] - qy
+    return atan2(kx * oy - ky * ox, kx * ox + ky * oy)
+
+
+@kernel
+def _cannons(positions, present, ball, other, e, shots, count):
+    """Add the cannons of ``ball`` off ``other``."""
+    ax, ay = positions[ball, 0], positions[ball, 1]
+    reach = 2.0 * BALL_RADIUS
+    ux, uy = positions[other, 0] - ax, positions[other, 1] - ay
+    apart = hypot(ux, uy)
+    if apart < reach + BALL_RADIUS or apart > _FAR:
+        return count
+    ux, uy = ux / apart, uy / apart
+    tx, ty = ax - positions[0, 0], ay - positions[0, 1]
+    if tx * ux + ty * uy < -0.1 * hypot(tx, ty):  # the cue ball lies on the wrong side
+        return count
+    step = 1.9 / _SAMPLES
+    for i in range(_SAMPLES):
+        low, high = -0.95 + i * step, -0.95 + (i + 1) * step
+        q0x, q0y, _, _, o0x, o0y = _off(ax, ay, ux, uy, apart, low, e)
+        q1x, q1y, _, _, o1x, o1y = _off(ax, ay, ux, uy, apart, high, e)
+        for k in range(6):
+            at_low, at_high = _passing(k, q0x, q0y, o0x, o0y), _passing(k, q1x, q1y, o1x, o1y)
+            if at_low * at_high > 0.0 or abs(at_low - at_high) > 1.0:
+                continue
+            a, b = low, high
+            for _ in range(30):
+                middle = 0.5 * (a + b)
+                qx, qy, ix, iy, ox, oy = _off(ax, ay, ux, uy, apart, middle, e)
+                if _passing(k, qx, qy, ox, oy) * at_low > 0.0:
+                    a = middle
+                else:
+                    b = middle
+            qx, qy, ix, iy, ox, oy = _off(ax, ay, ux, uy, apart, a, e)
+            width = _window(ox * POCKETS[k, 2] + oy * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
+            if width <= 0.0:
+                continue
+            gx, gy, gain = _first_leg(positions, present, ball, ix, iy)
+            if gain <= 0.0:
+                continue
+            turn = abs(asin(reach * high / apart) - asin(reach * low / apart)) / abs(at_high - at_low)
+            kx, ky = POCKETS[k, 0], POCKETS[k, 1]
+            tolerance = width / (2.0 * hypot(kx - qx, ky - qy)) * turn * gain
+            if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
+                continue
+            if not clear_segment(positions, present, ax, ay, qx, qy, ball, other, reach * (1.0 - 1e-9)):
+                continue
+            if not clear_segment(positions, present, qx, qy, kx, ky, ball, other, reach):
+                continue
+            count = _keep(shots, count, CANNON, ball, other, k, qx, qy, gx, gy, tolerance, _BENT * turn * gain)
+    return count
+
+
+@kernel
+def _find(positions, on_table, ball_on, noses, e, present, shots):
+    """Fill ``shots`` (m, COLUMNS) with the indirect ones, widest first; returns how many there are. ``present`` (22,): work space."""
+    count, on = 0, balls_on_kernel(ball_on, bits(on_table))
+    for i in range(N_BALLS):
+        present[i] = on_table[i] and i > 0  # the cue ball leaves its place
+    for ball in range(1, N_BALLS):
+        if not (on >> ball) & 1:
+            continue
+        count = _banks(positions, present, ball, noses, shots, count)
+        for other in range(1, N_BALLS):
+            if other == ball or not on_table[other]:
+                continue
+            if ball_on == _RED and (on >> other) & 1:
+                count = _plants(positions, present, ball, other, shots, count)
+            count = _cannons(positions, present, ball, other, e, shots, count)
+    return count
+
+
+@entry
+def _indirect(positions, on_table, ball_on, noses, e, shots):
+    return _find(positions, on_table, ball_on, noses, e, np.empty(N_BALLS, np.bool_), shots)
+
+
+@entry
+def _direct(positions, on_table, ball_on, shots, counts):
+    """Fill ``shots`` (n, m, COLUMNS) with the direct pots of n tables, widest first; ``counts`` (n,) of them.
+
+    Where there is none the first is the line to the nearest ball on, with -1 for its ball.
+    """
+    found = np.empty((shots.shape[1], POT_COLUMNS))
+    for t in range(len(counts)):
+        p, on = positions[t], balls_on_kernel(ball_on[t], bits(on_table[t]))
+        counts[t] = find_pots(p, on_table[t], on, BALL_RADIUS, found)
+        for j in range(counts[t]):
+            pocket, row = int(found[j, 1]), shots[t, j]
+            row[KIND], row[BALL], row[OTHER], row[POCKET] = DIRECT, found[j, 0], -1, pocket
+            row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y] = POCKETS[pocket, 0], POCKETS[pocket, 1], found[j, 2], found[j, 3]
+            row[TOLERANCE] = row[REACH] = found[j, 5]
+        if counts[t] == 0:
+            row, angle = shots[t, 0], line_of(p, on_table[t], on, found)
+            row[KIND], row[BALL], row[OTHER], row[POCKET], row[TOLERANCE], row[REACH] = DIRECT, -1, -1, -1, 0.0, 0.0
+            row[AIM_X] = row[GHOST_X] = p[0, 0] + cos(angle)
+            row[AIM_Y] = row[GHOST_Y] = p[0, 1] + sin(angle)
+
+
+@entry
+def _solved(positions, shots, speeds, phys, end_mass_ratio, fidelity, n_steps, aims):
+    """``aims`` (m, s) [rad]: the direction of the cue ball that sends the first ball of each shot to its aim point, at each speed.
+
+    positions (m, 22, 2), shots (m, COLUMNS), speeds (s,).
+    """
+    motion, state, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    for j in range(shots.shape[0]):
+        p, row = positions[j], shots[j]
+        for i in range(len(speeds)):
+            if row[BALL] < 0.0:
+                aims[j, i] = atan2(row[GHOST_Y] - p[0, 1], row[GHOST_X] - p[0, 0])
+                continue
+            aims[j, i] = solved_aim(
+                p, int(row[BALL]), row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y], speeds[i], 0.0, 0.0, 0.0, phys, end_mass_ratio,
+                fidelity, n_steps, motion, state, work,
+            )  # fmt: skip
+
+
+def direct(positions, on_table, ball_on, most=MOST):
+    """The direct pots (k, COLUMNS) of the balls on, widest first, ``most`` at the most."""
+    shots, counts = np.empty((1, most, COLUMNS)), np.empty(1, np.int64)
+    _direct(positions[None], on_table[None], np.array([ball_on]), shots, counts)
+    return shots[0, : counts[0]]
+
+
+def indirect(positions, on_table, ball_on, table, physics, most=MOST):
+    """The banks, plants and cannons (k, COLUMNS) on a ``Table`` that the geometry offers, widest first, ``most`` at the most."""
+    shots = np.empty((most, COLUMNS))
+    return shots[: _indirect(positions, on_table, ball_on, table.noses, physics.e_b, shots)]
+
+
+def action_of(speeds, aims):
+    """Actions (m, 4) float32 of ``aim="absolute"``: plain strokes at these speeds [m/s] in these directions [rad]."""
+    actions = np.zeros((len(aims), 4), np.float32)
+    actions[:, 0] = 2.0 * (np.asarray(speeds) - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0
+    turns = np.asarray(aims) / pi
+    actions[:, 3] = turns - 2.0 * np.round(turns / 2.0)
+    return actions
+
+
+def widest_run(good):
+    """Start and length of the longest run of True in each row of ``good`` (m, n); of equal ones that nearest to the middle."""
+    m, n = good.shape
+    lengths, run = np.zeros((m, n), np.int64), np.zeros(m, np.int64)
+    for i in range(n):
+        run = np.where(good[:, i], run + 1, 0)
+        lengths[:, i] = run
+    centres = np.abs(np.arange(n) - 0.5 * (lengths - 1) - 0.5 * (n - 1))
+    last = np.argmax(lengths - centres / (2.0 * n), axis=1)
+    length = lengths[np.arange(m), last]
+    return last - length + 1, length
+
+
+class Aimer:
+    """Finds shots at tables that are played by these ``Rules``, plain strokes all of them; ``speed`` [m/s] of the first one tried."""
+
+    def __init__(self, rules, speed):
+        s = rules.shooter
+        self._shooter = Shooter(Actions("absolute", False, False, s.physics), Noise(), s.physics, s.table, s.fidelity)
+        self._visits = Visits(replace(rules, shooter=self._shooter), CHUNK)
+        self._work, self._out, self._none = Work(CHUNK), Returned(CHUNK), np.zeros(CHUNK, np.bool_)
+        self._speed = speed
+        self._world: tuple[Any, float, int, int] = (s.physics.pack(), s.physics.end_mass_ratio, s.fidelity[0], s.fidelity[1])
+        indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), _RED, s.table, s.physics)  # compiled now, not while a decision is timed
+
+    def actions(self, positions, on_table, game):
+        """An action (4,) float32 for each of n tables: positions (n, 22, 2), on_table (n, 22), game (n, 5).
+
+        First the widest direct pot along its solved line or, without a direct pot, the line to the nearest ball on. If that pots nothing
+        without errors, the direct pot that the simulator finds the widest; else such an indirect one; else the first line all the same.
+        """
+        shots, counts, ball_on = np.empty((len(game), 1, COLUMNS)), np.empty(len(game), np.int64), game[:, BALL_ON].copy()
+        _direct(positions, on_table, ball_on, shots, counts)
+        actions = action_of(np.full(len(game), self._speed), self._solve(positions, shots[:, 0].copy(), np.array([self._speed]))[:, 0])
+        for k in np.flatnonzero(~self.pots(positions, on_table, game, actions)).tolist():
+            p, on, state = positions[k], on_table[k], game[k]
+            found = self.widest(p, on, state, direct(p, on, ball_on[k]))
+            if found is None:
+                found = self.widest(p, on, state, indirect(p, on, ball_on[k], self._shooter.table, self._shooter.physics))
+            if found is not None:
+                actions[k] = found[0]
+        return actions
+
+    def widest(self, positions, on_table, game, shots):
+        """Of these shots the one with the widest run of aims that pot, tried on one table: (its action, half the width [rad], which shot,
+        which speed); None if none goes in."""
+        if len(shots) == 0:
+            return None
+        lines = self._solve(np.repeat(positions[None], len(shots), axis=0), shots, np.array(SPEEDS)).ravel()
+        speeds, reaches = np.tile(SPEEDS, len(shots)), np.repeat(shots[:, REACH], len(SPEEDS))
+        middles, widths = self._scan(positions, on_table, game, speeds, lines, reaches)
+        best = int(np.argmax(widths))
+        if widths[best] == 0.0:
+            return None
+        # once more where it goes in and a step further: now the width is known to a few percent
+        reach = 0.5 * widths[best] + 2.0 * reaches[best] / AIMS
+        finer = self._scan(positions, on_table, game, speeds[best : best + 1], middles[best : best + 1], np.array([reach]))
+        middle, width = (finer[0][0], finer[1][0]) if finer[1][0] > 0.0 else (middles[best], widths[best])
+        return action_of(speeds[best : best + 1], [middle])[0], 0.5 * width, *divmod(best, len(SPEEDS))
+
+    def _scan(self, positions, on_table, game, speeds, lines, reaches):
+        """Of the widest run of aims that pot within ``reaches`` of ``lines``: middle and width [rad], (m,) each; width 0 if none does."""
+        steps = 2.0 * reaches / AIMS
+        aims = lines[:, None] + steps[:, None] * (np.arange(AIMS) - 0.5 * (AIMS - 1))
+        tries = action_of(np.repeat(speeds, AIMS), aims.ravel())
+        p, on, state = (np.broadcast_to(a, (len(tries), *a.shape)) for a in (positions, on_table, game))
+        starts, lengths = widest_run(self.pots(p, on, state, tries).reshape(-1, AIMS))
+        return lines + steps * (starts + 0.5 * (lengths - 1) - 0.5 * (AIMS - 1)), steps * lengths
+
+    def _solve(self, positions, shots, speeds):
+        """``_solved`` in this world."""
+        aims = np.empty((len(shots), len(speeds)))
+        _solved(positions, shots, speeds, *self._world, aims)
+        return aims
+
+    def pots(self, positions, on_table, game, actions):
+        """Which of these actions score, each on a copy of its table: (m,) bool."""
+        v, made = self._visits, np.empty(len(actions), np.bool_)
+        for start in range(0, len(actions), CHUNK):
+            part = slice(start, min(len(actions), start + CHUNK))
+            n = part.stop - start
+            v.positions[:n], v.on_table[:n], v.game[:n] = positions[part], on_table[part], game[part]
+            v.play(actions[part].astype(np.float64), self._none[:n], self._out, self._work)
+            made[part] = self._out.reals[:n, 0] > 0.0
+        return made
