@@ -29,7 +29,7 @@ from snooker_env.envs.noise import Noise
 from snooker_env.envs.shooting import Shooter
 from snooker_env.envs.visit import BALL_ON, Returned, Visits, Work
 from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, SPOTS, BallOn, balls_on_kernel, bits
-from snooker_env.game.pots import POCKETS, POT_COLUMNS, _window, clear_segment, find_pots
+from snooker_env.game.pots import POCKETS, POT_COLUMNS, clear_segment, find_pots, window
 from snooker_env.physics import cloth
 from snooker_env.physics.polynomial import WORK
 from snooker_env.physics.table import OVERLAP_ALLOWED
@@ -119,7 +119,7 @@ def _banks(positions, present, ball, noses, shots, count):
             if not noses[j, 3] <= (qy if across_x else qx) <= noses[j, 4]:
                 continue
             ex, ey = (-dx, dy) if across_x else (dx, -dy)
-            width = _window(ex * POCKETS[k, 2] + ey * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
+            width = window(ex * POCKETS[k, 2] + ey * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
             if width <= 0.0:
                 continue
             gx, gy, gain = _first_leg(positions, present, ball, dx, dy)
@@ -151,7 +151,7 @@ def _plants(positions, present, ball, other, shots, count):
         if run < 1e-9:
             continue
         dx, dy = dx / run, dy / run
-        width = _window(dx * POCKETS[k, 2] + dy * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
+        width = window(dx * POCKETS[k, 2] + dy * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
         if width <= 0.0 or ux * dx + uy * dy < _THINNEST:
             continue
         half = width / (2.0 * run)
@@ -242,7 +242,7 @@ def _cannons(positions, present, ball, other, e, shots, count):
                 else:
                     b = middle
             qx, qy, ix, iy, ox, oy = _off(ax, ay, ux, uy, apart, a, e)
-            width = _window(ox * POCKETS[k, 2] + oy * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
+            width = window(ox * POCKETS[k, 2] + oy * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
             if width <= 0.0:
                 continue
             gx, gy, gain = _first_leg(positions, present, ball, ix, iy)

@@ -26,7 +26,21 @@ from snooker_env.envs.observations import observe  # noqa: E402
 from snooker_env.envs.snooker import SnookerEnv  # noqa: E402
 
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
-TINY = ["--agent", "ppo_mask", "--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512", "--imitate", "0"]
+TINY = [
+    "--agent",
+    "ppo_mask",
+    "--envs",
+    "2",
+    "--eval-visits",
+    "4",
+    "--no-progress",
+    "--parallel",
+    "one",
+    "--steps",
+    "512",
+    "--imitate",
+    "0",
+]
 
 
 def run(out, *options):

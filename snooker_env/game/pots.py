@@ -33,7 +33,7 @@ POT_COLUMNS = 6
 
 
 @kernel
-def _window(cos_angle, middle):
+def window(cos_angle, middle):
     """Width w [m] of the pocket's window at an angle off its axis, by linear interpolation; 0 past the table's end."""
     angle = acos(min(1.0, max(-1.0, cos_angle))) * 57.29577951308232
     angles, widths = (_MIDDLE_ANGLE, _MIDDLE_WINDOW) if middle else (_CORNER_ANGLE, _CORNER_WINDOW)
@@ -81,11 +81,13 @@ def find_pots(positions, on_table, on, radius, pots):
             if run < 1e-9:
                 continue
             dx, dy = dx / run, dy / run
-            width = _window(dx * POCKETS[k, 2] + dy * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
+            width = window(dx * POCKETS[k, 2] + dy * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
             gx, gy = bx - d * dx, by - d * dy
             px, py = gx - cx, gy - cy
             path = hypot(px, py)
             if width <= 0.0 or path < 1e-9:
+                continue
+            if abs(gx) > HALF_WIDTH - radius + 1e-9 or abs(gy) > HALF_LENGTH - radius + 1e-9:  # the cue ball would be in the cushion
                 continue
             cos_cut = (px * dx + py * dy) / path
             if cos_cut < 0.05:  # thinner than 87 degrees
