@@ -331,6 +331,7 @@ ENV = [
         for field, allowed, wrongs in [
             ("task", "must be one of 'visit', 'frame'", ("frames", "Visit", ["visit"], {})),
             ("aim", "must be one of 'absolute', 'target'", ("relative", "Target", ["target"], {})),
+            ("action", "must be one of 'box', 'discrete'", ("plain", "Box", ["box"], {})),
             ("observation", "must be one of 'flat', 'balls'", ("pixels", "Flat", ["flat"], {})),
             ("reward", "must be one of 'points', 'points_and_fouls', 'pots'", ("score", "Points", ["points"], {})),
             ("layout", "must be one of 'opened', 'held_out', 'break_off', 'line_up', 'colours', 'snookered', "
