@@ -31,7 +31,7 @@ SHORT = {
     "benchmarks.tradeoff": ["--impacts", "30", "--shots", "12", "--repeats", "1", "--out", "{tmp}/t.png"],
     "benchmarks.scene": ["--shots", "12", "--repeats", "1", "--models", "spin decay", "jaw arcs", "--out", "{tmp}/s.png"],
     "benchmarks.rack": ["--shots", "2", "--orders", "2", "--racks", "2", "--out", "{tmp}/rack.png"],
-    "benchmarks.stability": ["--fuzz", "2000"],
+    "benchmarks.stability": ["--fuzz", "2000", "--out", "{tmp}/stability.png"],
     "benchmarks.speed": [
         "--shots", "20", "--repeats", "1", "--parts", "impacts", "shots", "growth", "--largest-batch", "64", "--out", "{tmp}/speed.png",
     ],
