@@ -38,9 +38,10 @@ try:
     import torch
     from stable_baselines3.common.callbacks import BaseCallback
 
-    from agents.players import GhostBall, Model, Random
-    from agents.recipes import Recipe, algorithm, load_weights, names, player_options, write_atomic, write_model, zipped
-    from agents.view import training_tables
+    from agents.models import Model, load_weights, player_options, write_atomic, write_model, zipped
+    from agents.players import GhostBall, Random
+    from agents.recipes import Recipe, algorithm, names
+    from agents.tables import training_tables
     from agents.visits import play, summary
 except ImportError as error:
     raise SystemExit(f'train.py: {error.name} is missing; train.py needs:  pip install "snooker-env[train]"') from None

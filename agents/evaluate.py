@@ -42,7 +42,7 @@ from snooker_env.game.stream import stream_of
 from snooker_env.physics.contact import parse_fidelity
 from snooker_env.physics.parameters import Physics
 
-from . import publish
+from .models import PRETRAINED, pretrained
 from .players import NAMES, player_of
 from .report import AXES, main_condition, markdown, show
 from .statistics import RESAMPLES, Resamples, interval, iqm
@@ -77,11 +77,11 @@ class Agent:
             label, paths = "", text
         runs = []
         for path in paths.split(","):
-            if path in publish.names():
-                path = str(publish.PRETRAINED / f"{path}.zip")
+            if path in pretrained():
+                path = str(PRETRAINED / f"{path}.zip")
             found = [path] if path in NAMES or Path(path).exists() else sorted(glob.glob(path))
             if not found:
-                known = ", ".join((*NAMES, *publish.names()))
+                known = ", ".join((*NAMES, *pretrained()))
                 allowed = f"must be {known}, or name models that are there: a .zip, a run folder, a pattern"
                 raise refuse("agent", path, allowed)
             runs += found

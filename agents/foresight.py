@@ -11,12 +11,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from gymnasium import spaces
 
-from snooker_env.envs.choices import POTS, SIDES, SIZE, SPEEDS, TOPS
+from snooker_env.envs.choices import POTS, SIDES, SIZE, SPEEDS, TOPS, choice_of
 from snooker_env.envs.noise import Noise
 from snooker_env.game.balls import HALF_LENGTH, HALF_WIDTH
 
 from .lookahead import BY_HAND, Copies, Position, prospects, spread_of
-from .players import choice_of
 from .view import SHOWN, with_pots
 
 SEEN_SPEEDS, SEEN_TOPS = (0, 2, 4, 6, 7), (0, 2, 4)

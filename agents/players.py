@@ -10,18 +10,14 @@ from typing import Any
 import numpy as np
 
 from snooker_env._check import refuse
-from snooker_env.envs.choices import SIDES, SIZE, SPEEDS, STROKES, TOPS
+from snooker_env.envs.choices import SIDES, SIZE, SPEEDS, TOPS, choice_of
 
 from .indirect import Aimer
-from .view import view_of
+from .models import PRETRAINED, load_player, pretrained
+from .search import Search
 
 DISCRETE = {"action": "discrete"}
 ABSOLUTE = {"aim": "absolute"}
-
-
-def choice_of(pot, speed, side, top):
-    """The choice with these indices into the widest pots, ``SPEEDS``, ``SIDES`` and ``TOPS``."""
-    return pot * STROKES + (speed * len(SIDES) + side) * len(TOPS) + top
 
 
 class Random:
@@ -72,30 +68,11 @@ class Geometric:
         return actions
 
 
-class Model:
-    """A trained Stable-Baselines3 model that sees the tables through a view of that name; it plays what it thinks best."""
-
-    def __init__(self, model, options, view="pots"):
-        self.model, self.options, self._look = model, options, view_of(view)
-
-    def act(self, tables, observations, going):
-        """The model's own choice for the tables going."""
-        seen = self._look(tables, observations[going], going)
-        discrete = self.options.get("action") == "discrete"
-        masks = {"action_masks": self._look.masks(tables)[going]} if discrete else {}
-        actions = np.zeros(tables.action_space.shape, tables.action_space.dtype)
-        actions[going] = self.model.predict(seen, deterministic=True, **masks)[0]
-        return actions
-
-
 NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "search")
 
 
 def player_of(name, *, budget=2000, seed=0):
     """The player or pre-trained model of that name, or the model in that file or run folder. ValueError if there is none."""
-    from . import publish, recipes
-    from .search import Search
-
     makers = {
         "random": lambda: Random(seed=seed),
         "random_absolute": lambda: Random(ABSOLUTE, seed),
@@ -105,9 +82,9 @@ def player_of(name, *, budget=2000, seed=0):
     }
     if name in makers:
         return makers[name]()
-    if name in publish.names():
-        return recipes.load_player(publish.PRETRAINED / f"{name}.zip")
+    if name in pretrained():
+        return load_player(PRETRAINED / f"{name}.zip")
     if not Path(name).exists():
-        known = ", ".join((*NAMES, *publish.names()))
+        known = ", ".join((*NAMES, *pretrained()))
         raise refuse("agent", name, f"must be {known}, a model's .zip or a folder that holds model.zip")
-    return recipes.load_player(Path(name))
+    return load_player(Path(name))

@@ -10,13 +10,9 @@ import json
 import shutil
 from pathlib import Path
 
-PRETRAINED = Path(__file__).parent / "pretrained"
+from .models import PRETRAINED
+
 DEFAULTS = {"parallel": "auto", "layout": "", "noise": "", "fidelity": "standard", "start": "", "set": []}
-
-
-def names():
-    """The pre-trained models that there are."""
-    return sorted(file.stem for file in PRETRAINED.glob("*.zip"))
 
 
 def command_of(settings):

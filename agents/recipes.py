@@ -6,16 +6,12 @@ To the Zoo's keys come ``algo`` (a file's name says which agent it is, not which
 """
 
 import ast
-import io
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
 
 from snooker_env._check import choice, refuse
-
-from .players import Model
 
 FOLDER = Path(__file__).parent / "hyperparams"
 ENV_ID = "Snooker-v0"
@@ -98,52 +94,3 @@ def policy(name):
     from . import absolute, networks
 
     return getattr(absolute, name, getattr(networks, name, name))
-
-
-def player_options(env_options):
-    """Of the options an agent was trained with, those that say how its actions are read."""
-    return {key: env_options[key] for key in ("action", "aim") if key in env_options}
-
-
-def load_player(path):
-    """A ``Model`` from a model's .zip or a run's folder. Raises ValueError."""
-    from stable_baselines3.common.save_util import load_from_zip_file
-
-    file = path / "model.zip" if path.is_dir() else path
-    if not file.is_file():
-        raise refuse("agent", str(path), "must be a model's .zip or a folder that holds model.zip")
-    data, _, _ = load_from_zip_file(file, device="cpu")
-    if not data or "recipe" not in data:
-        raise refuse("agent", str(path), "must be a model that train.py saved")
-    model = algorithm(Recipe.of(data["recipe"]).algo).load(file, device="cpu")
-    return Model(model, player_options(data["env_options"]), data["view"])
-
-
-def load_weights(model, path):
-    """Give a model the weights of another of the same agent. Raises ValueError."""
-    other = load_player(path).model
-    if other.recipe != model.recipe:
-        raise refuse("start", str(path), f"must be a model of {model.recipe}, not of {other.recipe}")
-    model.policy.load_state_dict(other.policy.state_dict())
-
-
-def write_atomic(path, data):
-    """Write bytes so that ``path`` holds either the old or the new content, whole, whenever the process or the machine dies."""
-    temporary = path.with_name(path.name + ".tmp")
-    with open(temporary, "wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(temporary, path)
-
-
-def zipped(model):
-    """An SB3 model as the bytes of its zip file."""
-    file = io.BytesIO()
-    model.save(file)
-    return file.getvalue()
-
-
-def write_model(model, path):
-    """Save an SB3 model, whole or not at all."""
-    write_atomic(path, zipped(model))

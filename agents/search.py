@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from snooker_env.envs.choices import POTS, STROKES, TOPS
+from snooker_env.envs.choices import POTS, STROKES, TOPS, choice_of
 from snooker_env.envs.noise import Noise
 from snooker_env.envs.shooting import mask
 from snooker_env.envs.visit import BALL_ON
@@ -22,7 +22,6 @@ from snooker_env.game.balls import BALL_RADIUS, balls_on, ids_of
 from snooker_env.game.pots import pots
 
 from .lookahead import BY_HAND, SURE, Copies, Position, as_actions, choices_at, prospects, spread_of
-from .players import choice_of
 from .view import with_pots
 
 KEEP = 3

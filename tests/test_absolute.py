@@ -16,6 +16,7 @@ from stable_baselines3 import PPO  # noqa: E402
 
 from agents import absolute, recipes, view  # noqa: E402
 from agents.absolute import LINE, OFFERED, THROW_UNIT, TOLERANCE, AbsolutePolicy, nearest_image  # noqa: E402
+from agents.tables import training_tables  # noqa: E402
 from snooker_env.envs.actions import line  # noqa: E402
 from snooker_env.envs.choices import POTS  # noqa: E402
 from snooker_env.envs.observations import SIZE, observe  # noqa: E402
@@ -51,7 +52,7 @@ def one_red(cue, red):
 @pytest.fixture(scope="module")
 def model():
     """PPO with the recipe's policy, which has learned something: every number that starts at 0 is drawn."""
-    table = view.training_tables(2, threads=1, action="box", aim="absolute")
+    table = training_tables(2, threads=1, action="box", aim="absolute")
     made = PPO(AbsolutePolicy, table, n_steps=8, batch_size=8, seed=3, device="cpu")
     with torch.no_grad():
         head: Any = made.policy.action_net
@@ -302,7 +303,7 @@ def test_pots_that_are_not_there_are_never_played(model):
 
 def test_learn_save_load_predict(model, opened, tmp_path):
     fresh = recipes.Recipe.of("ppo_absolute", ["n_steps=8", "batch_size=8"])
-    learner = fresh.new_model(view.training_tables(2, threads=1, **fresh.env_kwargs), seed=0)
+    learner = fresh.new_model(training_tables(2, threads=1, **fresh.env_kwargs), seed=0)
     assert type(learner.policy) is AbsolutePolicy and learner.policy.log_std[3].exp().item() == pytest.approx(fresh.first_aim_std)
     before = {name: p.detach().clone() for name, p in learner.policy.named_parameters()}
     learner.learn(16)

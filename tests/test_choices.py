@@ -7,7 +7,7 @@ from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
 from snooker_env.envs import choices
-from snooker_env.envs.choices import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
+from snooker_env.envs.choices import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game import pots
 from snooker_env.game.balls import mask_of
@@ -19,13 +19,9 @@ def native(n, **options):
     return gymnasium.make_vec("Snooker-v0", n, vectorization_mode="vector_entry_point", action="discrete", **options)
 
 
-def index(pot, speed, side, top):
-    return ((pot * len(SPEEDS) + speed) * len(SIDES) + side) * len(TOPS) + top
-
-
 def test_the_numbers_count_pots_speeds_sides_and_tops():
     assert len(SPEEDS) * len(SIDES) * len(TOPS) == STROKES and SIZE == POTS * STROKES
-    assert index(0, 0, 0, 0) == 0 and index(POTS - 1, len(SPEEDS) - 1, len(SIDES) - 1, len(TOPS) - 1) == SIZE - 1
+    assert choice_of(0, 0, 0, 0) == 0 and choice_of(POTS - 1, len(SPEEDS) - 1, len(SIDES) - 1, len(TOPS) - 1) == SIZE - 1
 
 
 @pytest.mark.parametrize("physics", ["paper", "match"])
@@ -44,7 +40,7 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         env = SnookerEnv(action="discrete", layout="random:1", physics=physics)
         env.reset(seed=0)
         env.visits.positions[0], env.visits.on_table[0], env.visits.game[0, :3] = positions, on_table, (1, 0, 0)
-        env.step(index(0, speed, side, top))
+        env.step(choice_of(0, speed, side, top))
         v, w = env._work.v[0, 0], env._work.w[0, 0]
         start = env._work.shots[0]
         shot = sn.simulate([cue, ball], [start[:2], (0, 0)], [start[2:5], (0, 0, 0)], table=None, physics=world)
@@ -69,7 +65,7 @@ def test_solved_aims_pot_more_than_straight_lines():
         )
         env.reset(seed=0)
         speed = 2 * (SPEEDS[4] - 0.2) / 6.8 - 1
-        strokes = np.full(400, index(0, 4, 1, 2)) if action == "discrete" else np.tile((speed, 0.0, 0.0, 0.0), (400, 1))
+        strokes = np.full(400, choice_of(0, 4, 1, 2)) if action == "discrete" else np.tile((speed, 0.0, 0.0, 0.0), (400, 1))
         made[action] = (env.step(strokes)[1] > 0).mean()
     assert made["discrete"] > 0.95 > made["box"] + 0.1
 
@@ -111,7 +107,7 @@ def test_without_a_pot_the_nearest_ball_on_is_struck_full():
     positions[0], positions[1], on_table[:2] = (0.0, 1.0), (0.0, 1.75), True  # at the middle of the end cushion: no pot
     env.visits.positions[0], env.visits.on_table[0], env.visits.game[0, :3] = positions, on_table, (1, 0, 0)
     assert env.action_masks().sum() == STROKES
-    info = env.step(index(0, 4, 1, 2))[4]
+    info = env.step(choice_of(0, 4, 1, 2))[4]
     assert info["first_ball"] == 1 and env.last_shot.events["time"][0] > 0
 
 

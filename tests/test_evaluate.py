@@ -19,7 +19,7 @@ from agents import evaluate, report, visits  # noqa: E402
 from agents.players import GhostBall, Random  # noqa: E402
 from agents.recipes import Recipe  # noqa: E402
 from agents.statistics import Resamples, interval, iqm  # noqa: E402
-from agents.view import training_tables  # noqa: E402
+from agents.tables import training_tables  # noqa: E402
 from snooker_env.envs.vector import SnookerVectorEnv  # noqa: E402
 from snooker_env.game.balls import BallOn  # noqa: E402
 

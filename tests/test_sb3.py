@@ -11,6 +11,7 @@ from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.evaluation import evaluate_policy
 
 from agents import view
+from agents.tables import training_tables
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.visit import COUNTS, REALS
 from snooker_env.sb3 import SnookerVecEnv
@@ -127,7 +128,7 @@ def test_the_pots_are_shown_for_all_tables_as_for_one():
     def with_pots(observation):
         return view.with_pots(observation[None])[0]
 
-    many, one = view.training_tables(5, aim="target", noise="club"), SnookerEnv(aim="target", noise="club")
+    many, one = training_tables(5, aim="target", noise="club"), SnookerEnv(aim="target", noise="club")
     many.seed(11)
     shown = many.reset()
     assert many.observation_space.contains(shown[0])

@@ -6,10 +6,10 @@ import pytest
 pytest.importorskip("torch")
 from agents import foresight, lookahead, view
 from agents.lookahead import Copies, Position
-from agents.players import DISCRETE, GhostBall, Random, choice_of, player_of
+from agents.players import DISCRETE, GhostBall, Random, player_of
 from agents.search import Search
 from agents.visits import play, summary
-from snooker_env.envs.choices import SIZE, STROKES
+from snooker_env.envs.choices import SIZE, STROKES, choice_of
 from snooker_env.envs.noise import Noise
 from snooker_env.envs.vector import SnookerVectorEnv
 

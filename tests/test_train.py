@@ -19,7 +19,7 @@ pytest.importorskip("rich")
 pytest.importorskip("tensorboard")
 
 import train  # noqa: E402
-from agents import recipes, view, visits  # noqa: E402
+from agents import models, view, visits  # noqa: E402
 from agents.players import GhostBall  # noqa: E402
 from snooker_env.envs.actions import line  # noqa: E402
 from snooker_env.envs.observations import observe  # noqa: E402
@@ -50,7 +50,7 @@ def run(out, *options):
 
 def weights(out):
     """Every parameter of the saved model, flat."""
-    model = recipes.load_player(out).model
+    model = models.load_player(out).model
     return np.concatenate([p.detach().numpy().ravel() for p in model.policy.parameters()])
 
 
@@ -97,7 +97,7 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
 
 @pytest.mark.parametrize("agent", AGENTS)
 def test_saved_model_plays_as_it_was_judged(finished, agent):
-    again = visits.summary(visits.play(recipes.load_player(finished / agent / "model.zip"), 4))
+    again = visits.summary(visits.play(models.load_player(finished / agent / "model.zip"), 4))
     assert again == results(finished / agent)["evaluation"]["trained"]
 
 
@@ -270,7 +270,7 @@ def test_only_agents_with_masks_can_be_taught(tmp_path, capsys):
 
 def test_hyperparameters_can_be_changed(tmp_path):
     assert run(tmp_path / "run", "--set", "gamma=0", "n_steps=32") == 0
-    model = recipes.load_player(tmp_path / "run").model
+    model = models.load_player(tmp_path / "run").model
     assert model.gamma == 0 and model.n_steps == 32
     assert results(tmp_path / "run")["settings"]["set"] == ["gamma=0", "n_steps=32"]
 

@@ -26,6 +26,11 @@ STROKES = len(SPEEDS) * len(SIDES) * len(TOPS)
 SIZE = POTS * STROKES
 
 
+def choice_of(pot, speed, side, top):
+    """The choice with these places: of the pots, widest first, and in ``SPEEDS``, ``SIDES`` and ``TOPS``."""
+    return pot * STROKES + (speed * len(SIDES) + side) * len(TOPS) + top
+
+
 @kernel
 def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_steps, found, motion, state, work):
     """(speed, side, top, aim, elevation) of choice ``index``, as ``actions.shot_of``; found (POTS, POT_COLUMNS), motion (2, COLUMNS),
