@@ -266,7 +266,11 @@ def lesson(agent, steps, taught, figures):
     if not better(trained, random):
         return f"{start} nothing that {trained['visits']} visits can show: {made(trained)} against {made(random)} of random play."
     if better(trained, ghost):
-        return f"{start} to pot and to leave the next ball on: {made(trained)}, {made(ghost)} of the widest pot played softly every time."
+        again = [f"{100 * (player['next_pot_after_a_pot'] or 0.0):.0f} %" for player in (trained, ghost)]
+        return (
+            f"{start} more than the widest pot played softly every time: {made(trained)} against {made(ghost)}; "
+            f"after a pot the next one follows in {again[0]}, not {again[1]}."
+        )
     return f"{start} to pot, but no better than the widest pot played softly every time: {made(trained)} against {made(ghost)}."
 
 

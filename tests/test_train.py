@@ -233,7 +233,7 @@ def test_every_player_meets_the_same_tables():
 
 def test_lesson_claims_only_what_the_figures_show():
     def player(points, se):
-        return {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se, "visits": 100}
+        return {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se, "visits": 100, "next_pot_after_a_pot": 0.9}
 
     def said(trained, ghost, random):
         return train.lesson("ppo_mask", 1000, False, {"trained": trained, "ghost_ball": ghost, "random": random})
@@ -241,7 +241,7 @@ def test_lesson_claims_only_what_the_figures_show():
     assert "learned nothing" in said(player(1.0, 0.3), player(0.9, 0.3), player(0.5, 0.3))
     assert "learned nothing" in said(player(0.1, 0.1), player(0.9, 0.3), player(2.0, 0.1))
     assert "no better than the widest pot" in said(player(3.0, 0.3), player(2.9, 0.3), player(0.5, 0.1))
-    assert "to leave the next ball on" in said(player(9.0, 0.3), player(2.9, 0.3), player(0.5, 0.1))
+    assert "more than the widest pot" in said(player(9.0, 0.3), player(2.9, 0.3), player(0.5, 0.1))
 
 
 def test_imitation_comes_first_and_is_kept(tmp_path):
