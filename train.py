@@ -28,6 +28,7 @@ from pathlib import Path
 import numpy as np
 
 import snooker_env
+from snooker_env.envs.vector import processors
 
 try:
     import rich.box
@@ -117,7 +118,7 @@ def imitate(model, tables, states, settings, progress):
     """Let the search teach the agent; the curve. It is not checkpointed: a run stopped here begins anew."""
     from agents.imitate import teach
 
-    threads = 1 if settings.parallel == "one" else os.cpu_count() or 1
+    threads = 1 if settings.parallel == "one" else processors()
     bar = rich.progress.Progress(disable=not progress)
     task = bar.add_task(f"{settings.agent} learns from the search", total=states)
     with bar:

@@ -5,17 +5,16 @@ strokes and no others. Looking costs as many simulated shots as there are rows: 
 far quicker than ``search``.
 """
 
-import os
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 from gymnasium import spaces
 
 from snooker_env.envs.choices import POTS, SIDES, SIZE, SPEEDS, TOPS, choice_of
 from snooker_env.envs.noise import Noise
-from snooker_env.game.balls import HALF_LENGTH, HALF_WIDTH
+from snooker_env.envs.vector import processors
+from snooker_env.envs.visit import BALL_ON
+from snooker_env.game.balls import HALF_LENGTH, HALF_WIDTH, BallOn
 
-from .lookahead import BY_HAND, Copies, Position, prospects, spread_of
+from .lookahead import BY_HAND, Copies, Position, prospects_of, spread_of
 from .view import SHOWN, with_pots
 
 SEEN_SPEEDS, SEEN_TOPS = (0, 2, 4, 6, 7), (0, 2, 4)
@@ -38,35 +37,24 @@ class Foresight:
     space = SPACE
 
     def __init__(self, threads=None):
-        self.threads = threads or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else threads or os.cpu_count() or 1
-        self._rules = None
+        self._threads, self._rules = threads or processors(), None
 
     def __call__(self, tables, observations, rows=None):
         """What is seen of the tables ``rows`` (all if None), whose observations are given: float32 (n, SHOWN + STROKES_SEEN * ENTRIES)."""
         v = tables.visits
         if self._rules is not v.rules:
             self._rules, shooter = v.rules, v.rules.shooter
-            self._copies = [Copies(v.rules, Noise()) for _ in range(self.threads)]
-            self._spread = spread_of(shooter.noise, shooter.physics)
-            self._pool = ThreadPoolExecutor(self.threads)
+            self._copies, self._spread = Copies(v.rules, Noise(), self._threads), spread_of(shooter.noise, shooter.physics)
         rows = np.arange(tables.num_envs) if rows is None else np.flatnonzero(rows)
         at = Position(v.positions[rows], v.on_table[rows], v.game[rows])
-        masks = tables.action_masks()[rows][:, PICKS]
-        parts = np.array_split(np.arange(len(rows)), self.threads)
-        ahead = self._pool.map(lambda c, p: self._ahead(c, at[p], masks[p]), self._copies, parts)
-        return np.concatenate([with_pots(observations), np.concatenate(list(ahead)).reshape(len(rows), -1)], 1)
+        ahead = self._ahead(at, tables.action_masks()[rows][:, PICKS])
+        return np.concatenate([with_pots(observations), ahead.reshape(len(rows), -1)], 1)
 
-    def _ahead(self, copies, at, masks):
-        n = len(at)
-        seen = np.zeros((n, STROKES_SEEN, ENTRIES), np.float32)
-        table, stroke = np.nonzero(masks)
-        if not n:
-            return seen
-        now, next_values = np.empty((n, POTS)), np.empty(n)
-        prospects(at.positions, at.on_table, at.game, self._spread, BY_HAND, next_values, now)
-        points, goes_on, left, _ = copies.play(at, table, PICKS[stroke], np.zeros(len(table), np.uint64))
-        values, chances = np.empty(len(table)), np.empty((len(table), 8))
-        prospects(left.positions, left.on_table, left.game, self._spread, BY_HAND, values, chances)
+    def _ahead(self, at, masks):
+        n, (table, stroke) = len(at), np.nonzero(masks)
+        now = prospects_of(at, self._spread)[1]
+        points, goes_on, left, _ = self._copies.play(at, table, PICKS[stroke], np.zeros(len(table), np.uint64))
+        values, chances = prospects_of(left, self._spread, most=8)
         row = np.zeros((len(table), ENTRIES), np.float32)
         row[:, 0], row[:, 1] = 1.0, now[table, stroke // (STROKES_SEEN // POTS)]
         row[:, 2], row[:, 3] = points / 7.0, goes_on
@@ -75,7 +63,8 @@ class Foresight:
         row[:, 9] = values / BY_HAND[0]
         row[:, 4:10] *= goes_on[:, None]
         row[:, 10], row[:, 11] = np.array(SPEEDS)[_SPEED[stroke]] / SPEEDS[-1], np.array(TOPS)[_TOP[stroke]] / TOPS[-1]
-        row[:, 12] = at.game[table, 0] == 1
+        row[:, 12] = at.game[table, BALL_ON] == BallOn.RED
+        seen = np.zeros((n, STROKES_SEEN, ENTRIES), np.float32)
         seen[table, stroke] = row
         return seen
 

@@ -3,21 +3,18 @@
 ``train.py`` does it for the recipes that say so (``imitation``), or with ``--imitate POSITIONS``.
 
 The teacher: in positions of real visits some of the choices are played on copies of the table under execution noise, once each. A choice
-is worth its points and, if the visit goes on, the value by hand of the position it leaves (``lookahead.prospects``), the search's own
+is worth its points and, if the visit goes on, the value by hand of the position it leaves (``lookahead.prospects_of``), the search's own
 measure. The pupil: state value + TEMPERATURE * (log-probability - its mean) is fitted to these worths by least squares, all tries of a
 position at once. So the policy becomes the softmax of what its choices are worth, and the critic their mean under it. The visits are
 played by the pupil, so it is taught where it will be (DAgger, Ross et al. 2011), and half of the tries are its own best.
 """
 
 import time
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import torch
 
-from snooker_env.envs.choices import POTS
-
-from .lookahead import BY_HAND, Copies, Position, prospects, spread_of
+from .lookahead import Copies, Position, prospects_of, spread_of
 
 TRIES = 64
 """Choices tried in each position."""
@@ -37,24 +34,16 @@ class Teacher:
 
     def __init__(self, tables, threads, rng, ahead=True):
         self._tables, self._rng, self._ahead, rules = tables, rng, ahead, tables.visits.rules
-        self._copies = [Copies(rules, rules.shooter.noise) for _ in range(threads)]
+        self._copies = Copies(rules, rules.shooter.noise, threads)
         self._spread = spread_of(rules.shooter.noise, rules.shooter.physics)
-        self._pool = ThreadPoolExecutor(threads)
 
     def worth(self, picks):
         """Points that the choices ``picks`` (n, k) brought, one try of each, with the value of what they left: float32 (n, k)."""
         v, (n, k) = self._tables.visits, picks.shape
+        keys = self._rng.integers(0, 2**63, n * k, dtype=np.uint64)
         at = Position(v.positions, v.on_table, v.game)
-        rows, keys = np.repeat(np.arange(n), k), self._rng.integers(0, 2**63, n * k, dtype=np.uint64)
-        parts = np.array_split(np.arange(n * k), len(self._copies))
-        worths = self._pool.map(lambda c, p: self._worth(c, at, rows[p], picks.ravel()[p], keys[p]), self._copies, parts)
-        return np.concatenate(list(worths)).reshape(n, k)
-
-    def _worth(self, copies, at, rows, picks, keys):
-        points, goes_on, left, _ = copies.play(at, rows, picks, keys)
-        values, chances = np.empty(len(rows)), np.empty((len(rows), POTS))
-        prospects(left.positions, left.on_table, left.game, self._spread, BY_HAND, values, chances)
-        return (points + self._ahead * goes_on * values).astype(np.float32)
+        points, goes_on, left, _ = self._copies.play(at, np.repeat(np.arange(n), k), picks.ravel(), keys)
+        return (points + self._ahead * goes_on * prospects_of(left, self._spread)[0]).astype(np.float32).reshape(n, k)
 
 
 def to_try(scores, masks, rng):

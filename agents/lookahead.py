@@ -1,5 +1,6 @@
 """What would a shot lead to? Choices played on copies of tables, and what the positions they leave promise."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from math import erf, exp, pi, sqrt
 
@@ -9,13 +10,16 @@ from snooker_env._jit import entry
 from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
 from snooker_env.envs.choices import POTS, SIZE, chosen, masks
 from snooker_env.envs.noise import N_AIM, N_TIP
+from snooker_env.envs.observations import SIZE as SIZE_SEEN
 from snooker_env.envs.shooting import Shooter
-from snooker_env.envs.visit import OVER, Returned, Visits, Work
-from snooker_env.game.balls import BALL_RADIUS, N_BALLS, VALUES, balls_on_kernel, bits
+from snooker_env.envs.visit import BALL_ON, OVER, Returned, Visits, Work
+from snooker_env.game.balls import BALL_RADIUS, N_BALLS, VALUES, BallOn, balls_on_kernel, bits
 from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
 from snooker_env.physics.cloth import COLUMNS
 from snooker_env.physics.cue import squirt
 from snooker_env.physics.polynomial import WORK
+
+_ANY_COLOUR = int(BallOn.ANY_COLOUR)
 
 CHUNK = 128
 """Copies played in one go: their work space stays in the cache."""
@@ -32,8 +36,8 @@ SURE = (1e4, 1e-3, 0.0, 0.0)
 
 
 @entry
-def prospects(positions, on_table, game, spread, constants, values, chances):
-    """For n tables: ``values`` (n,) of the positions, by hand, and ``chances`` (n, POTS) to make each of the widest pots.
+def _prospects(positions, on_table, game, spread, constants, values, chances):
+    """For n tables: ``values`` (n,) of the positions, by hand, and ``chances`` (n, most) to make each of the widest pots.
 
     ``spread`` [rad] as ``spread_of`` gives it, ``constants`` as ``BY_HAND``.
     """
@@ -42,9 +46,9 @@ def prospects(positions, on_table, game, spread, constants, values, chances):
     for k in range(len(values)):
         chances[k, :] = 0.0
         values[k] = 0.0
-        p, on = positions[k], balls_on_kernel(game[k, 0], bits(on_table[k]))
+        p, on = positions[k], balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
         many = find_pots(p, on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
-        left = 7.0 if game[k, 0] == 0 else 0.0  # points: a black for each red, and after a red that was potted
+        left = 7.0 if game[k, BALL_ON] == _ANY_COLOUR else 0.0  # points: a black for each red, and after a red that was potted
         for i in range(1, N_BALLS):
             if on_table[k, i]:
                 left += 8.0 if VALUES[i] == 1 else VALUES[i]
@@ -78,6 +82,13 @@ def spread_of(noise, physics):
     return max(1e-5, sqrt(errors[N_AIM] ** 2 + _squirt(errors[N_TIP], physics.end_mass_ratio) ** 2))
 
 
+def prospects_of(at, spread, constants=BY_HAND, most=POTS):
+    """``prospects`` of a ``Position``: its values (n,) and the chances (n, most) of the widest pots."""
+    values, chances = np.empty(len(at)), np.empty((len(at), most))
+    _prospects(at.positions, at.on_table, at.game, spread, constants, values, chances)
+    return values, chances
+
+
 class Position:
     """Tables to copy shots from: positions (m, 22, 2), on_table (m, 22), game (m, 5)."""
 
@@ -96,7 +107,7 @@ def _as_actions(positions, on_table, game, rows, picks, phys, end_mass_ratio, fi
     found, motion, phase, work = np.empty((POTS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
     for i in range(len(rows)):
         k = rows[i]
-        on = balls_on_kernel(game[k, 0], bits(on_table[k]))
+        on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
         speed, side, top, aim, _ = chosen(
             picks[i], positions[k], on_table[k], on, phys, end_mass_ratio, fidelity, n_steps, found, motion, phase, work
         )
@@ -120,17 +131,19 @@ def as_actions(at, rows, picks, shooter):
 def choices_at(at):
     """Which choices there are: bool (n, SIZE)."""
     out = np.empty((len(at), SIZE), np.bool_)
-    masks(at.positions, at.on_table, at.game[:, 0], out)
+    masks(at.positions, at.on_table, at.game[:, BALL_ON], out)
     return out
 
 
 class Copies:
-    """Plays shots on copies of positions: the rules of the tables, but the given noise."""
+    """Plays shots on copies of positions: the rules of the tables, but the given noise. On any number of threads the same comes out."""
 
-    def __init__(self, rules, noise):
+    def __init__(self, rules, noise, threads=1):
         s = rules.shooter
-        self._visits = Visits(replace(rules, shooter=Shooter(s.actions, noise, s.physics, s.table, s.fidelity)), CHUNK)
-        self._work, self._out, self._none = Work(CHUNK), Returned(CHUNK), np.zeros(CHUNK, np.bool_)
+        self._rules = replace(rules, shooter=Shooter(s.actions, noise, s.physics, s.table, s.fidelity))
+        self._desks = [(Visits(self._rules, CHUNK), Work(CHUNK), Returned(CHUNK)) for _ in range(threads)]
+        self._none = np.zeros(CHUNK, np.bool_)
+        self._pool = ThreadPoolExecutor(threads) if threads > 1 else None
         self.shots = 0
 
     def play(self, at, rows, actions, keys):
@@ -138,17 +151,25 @@ class Copies:
 
         Returns the points (m,), whether the visit goes on (m,), the ``Position`` left and its flat observations.
         """
-        m, v, out = len(rows), self._visits, self._out
+        m = len(rows)
         actions = np.asarray(actions, np.float64).reshape(m, -1)
         points, goes_on, left = np.empty(m), np.empty(m, np.bool_), at[rows]
-        observations = np.empty((m, out.observations.shape[1]), np.float32)
-        for start in range(0, m, CHUNK):
-            part = slice(start, min(m, start + CHUNK))
-            n = part.stop - start
-            v.positions[:n], v.on_table[:n], v.game[:n] = left.positions[part], left.on_table[part], left.game[part]
-            v.streams[:n, 0], v.streams[:n, 1] = keys[part], 0
-            v.play(actions[part], self._none[:n], out, self._work)
-            left.positions[part], left.on_table[part], left.game[part] = v.positions[:n], v.on_table[:n], v.game[:n]
-            points[part], goes_on[part], observations[part] = out.reals[:n, 0], v.game[:n, OVER] == 0, out.observations[:n]
+        observations = np.empty((m, SIZE_SEEN), np.float32)
+
+        def play_at(desk, first):
+            v, work, out = desk
+            for start in range(first * CHUNK, m, len(self._desks) * CHUNK):
+                part = slice(start, min(m, start + CHUNK))
+                n = part.stop - start
+                v.positions[:n], v.on_table[:n], v.game[:n] = left.positions[part], left.on_table[part], left.game[part]
+                v.streams[:n, 0], v.streams[:n, 1] = keys[part], 0
+                v.play(actions[part], self._none[:n], out, work)
+                left.positions[part], left.on_table[part], left.game[part] = v.positions[:n], v.on_table[:n], v.game[:n]
+                points[part], goes_on[part], observations[part] = out.reals[:n, 0], v.game[:n, OVER] == 0, out.observations[:n]
+
+        if self._pool is None:
+            play_at(self._desks[0], 0)
+        else:
+            list(self._pool.map(play_at, self._desks, range(len(self._desks))))
         self.shots += m
         return points, goes_on, left, observations

@@ -8,20 +8,20 @@ best next shot is sought without errors, worth the chance to make it times what 
 All candidates of a round meet the same errors (common random numbers): they differ by their own merits, not by luck.
 """
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 
-from snooker_env.envs.choices import POTS, STROKES, TOPS, choice_of
+from snooker_env.envs.choices import STROKES, TOPS, choice_of
 from snooker_env.envs.noise import Noise
 from snooker_env.envs.shooting import mask
+from snooker_env.envs.vector import processors
 from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import BALL_RADIUS, balls_on, ids_of
 from snooker_env.game.pots import pots
 
-from .lookahead import BY_HAND, SURE, Copies, Position, as_actions, choices_at, prospects, spread_of
+from .lookahead import BY_HAND, SURE, Copies, Position, as_actions, choices_at, prospects_of, spread_of
 from .view import with_pots
 
 KEEP = 3
@@ -36,17 +36,15 @@ NEXT_SHOTS = 16
 class Search:
     """Looks for the best shot with ``budget`` simulated shots a decision, at least two.
 
-    ``noise``: the errors that it expects, a level or fields as the environment takes them, None for those of the tables; ``value``: worth
-    [points] of flat observations with pots (``view.with_pots``), (m, n) -> (m,), in place of the value by hand, whose ``constants`` are
-    ``lookahead.SURE`` without errors and ``BY_HAND`` with them; ``threads``: tables thought
-    about at once, with the same shots found for any number.
+    ``value``: worth [points] of flat observations with pots (``view.with_pots``), (m, n) -> (m,), in place of the value by hand;
+    ``threads``: tables thought about at once, with the same shots found for any number.
     """
 
     options = {"aim": "absolute"}  # noqa: RUF012 - a player's options are read, never changed
 
-    def __init__(self, budget=2000, noise=None, seed=0, value=None, constants=None, threads=None):
-        self.budget, self._noise, self._value, self._constants = budget, noise, value, constants
-        self._seed, self._decisions, self._threads = seed, 0, threads or os.cpu_count() or 1
+    def __init__(self, budget=2000, seed=0, value=None, threads=None):
+        self.budget, self.value = budget, value
+        self._seed, self._decisions, self._threads = seed, 0, threads or processors()
         self._rules: Any = None
         self._minds: list[_Mind] = []
 
@@ -79,20 +77,15 @@ class _Mind:
     """The thinking of one thread."""
 
     def __init__(self, search, rules):
-        self.budget, self._value = search.budget, search._value
-        noise = rules.shooter.noise if search._noise is None else Noise.of(search._noise)
-        self._sure = noise.silent
-        self._constants = search._constants or (SURE if self._sure else BY_HAND)
-        self.shooter, self.noisy, self.exact = rules.shooter, Copies(rules, noise), Copies(rules, Noise())
-        self._spread = spread_of(noise, rules.shooter.physics)
+        noise = rules.shooter.noise
+        self.budget, self._value, self.shooter = search.budget, search.value, rules.shooter
+        self.noisy, self.exact = Copies(rules, noise), Copies(rules, Noise())
+        self._sure, self._spread = noise.silent, spread_of(noise, rules.shooter.physics)
 
     def _values(self, left, observations):
         """What the positions left are worth [points], and the chances of their widest pots."""
-        values, chances = np.empty(len(left)), np.empty((len(left), POTS))
-        prospects(left.positions, left.on_table, left.game, self._spread, self._constants, values, chances)
-        if self._value is not None:
-            values = np.asarray(self._value(with_pots(observations)), np.float64)
-        return values, chances
+        values, chances = prospects_of(left, self._spread, SURE if self._sure else BY_HAND)
+        return values if self._value is None else np.asarray(self._value(with_pots(observations)), np.float64), chances
 
     def best(self, at, rng):
         """The action to play at the one position ``at``."""

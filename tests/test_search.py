@@ -61,8 +61,7 @@ def test_prospects_prefer_easy_pots_and_more_to_come():
     at.positions[0, :3] = (0.0, 0.0), (0.5, 0.8), (-0.7, -1.5)
 
     def value(p, spread):
-        values, chances = np.empty(1), np.empty((1, 4))
-        lookahead.prospects(p.positions, p.on_table, p.game, spread, lookahead.BY_HAND, values, chances)
+        values, chances = lookahead.prospects_of(p, spread)
         return values[0], chances[0]
 
     easy, chances = value(at, 1e-3)

@@ -32,7 +32,7 @@ LEAST = 8
 PICTURES = ("rgb_array", "ansi")
 
 
-def _cores():
+def processors():
     """Processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
@@ -60,7 +60,7 @@ class SnookerVectorEnv(VectorEnv):
             raise refuse("task", task, 'must be "visit" here; for whole frames use vectorization_mode="sync" or "async"')
         choice("task", task, ("visit",))
         self.num_envs = integer("num_envs", num_envs, 1, 2**24)
-        self._threads = min(1024, _cores()) if threads is None else integer("threads", threads, 1, 1024)
+        self._threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
         self.autoreset_mode = autoreset_mode if isinstance(autoreset_mode, AutoresetMode) else AutoresetMode(autoreset_mode)
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
         if render_mode is not None:
