@@ -12,7 +12,7 @@ import numpy as np
 from snooker_env._check import refuse
 from snooker_env.envs.choices import SIDES, SIZE, SPEEDS, TOPS, choice_of
 
-from .indirect import Aimer
+from .aimer import Aimer
 from .models import PRETRAINED, load_player, pretrained
 from .search import Search
 

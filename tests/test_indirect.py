@@ -7,7 +7,8 @@ import pytest
 
 import snooker_env
 from agents import indirect as ind
-from agents.indirect import AIM_X, AIM_Y, BALL, BANK, CANNON, GHOST_X, GHOST_Y, KIND, OTHER, PLANT, POCKET, TOLERANCE, Aimer
+from agents.aimer import Aimer, widest_run
+from agents.indirect import AIM_X, AIM_Y, BALL, BANK, CANNON, GHOST_X, GHOST_Y, KIND, OTHER, PLANT, POCKET, TOLERANCE
 from agents.players import player_of
 from agents.visits import play
 from snooker_env.envs.actions import line
@@ -290,7 +291,7 @@ def test_the_widest_run():
     rng = np.random.default_rng(0)
     good = rng.random((300, 17)) < 0.6
     good[0], good[1] = False, True
-    starts, lengths = ind.widest_run(good)
+    starts, lengths = widest_run(good)
     for row, start, length in zip(good, starts, lengths, strict=True):
         runs = [(a, b - a) for a in range(17) for b in range(a + 1, 18) if row[a:b].all()]
         longest = max([n for _, n in runs], default=0)
