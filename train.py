@@ -19,7 +19,6 @@ import os
 import pickle
 import platform
 import signal
-import subprocess
 import sys
 import time
 from dataclasses import asdict, dataclass, field, fields, replace
@@ -39,6 +38,7 @@ try:
     import torch
     from stable_baselines3.common.callbacks import BaseCallback
 
+    from agents.commit import commit
     from agents.models import Model, load_weights, player_options, write_atomic, write_model, zipped
     from agents.players import GhostBall, Random
     from agents.recipes import Recipe, algorithm, names
@@ -216,12 +216,17 @@ def provenance():
             versions[name] = importlib.metadata.version(name)
         except importlib.metadata.PackageNotFoundError:
             versions[name] = "not installed: source tree"
-    git = ["git", "-C", str(Path(__file__).resolve().parent), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
-    try:
-        commit = subprocess.run(git, capture_output=True, text=True, check=True).stdout.strip()
-    except (OSError, subprocess.CalledProcessError):
-        commit = None
-    return {"versions": versions, "git_commit": commit, "processors": os.cpu_count()}
+    return {"versions": versions, "git_commit": commit(), "processors": os.cpu_count()}
+
+
+def command_of(settings):
+    """The command that makes this run."""
+    words = ["python", "train.py"]
+    for f in fields(Settings):
+        value = getattr(settings, f.name)
+        if f.name == "agent" or (value != f.default and f.name not in ("parallel", "eval_visits", "checkpoint_every")):
+            words += ["--" + f.name, *map(str, value if f.name == "set" else [value])]
+    return " ".join(words)
 
 
 def open_run(parser, given, out, resume):
@@ -343,7 +348,8 @@ def main(argv=None):
     figures = evaluate(settings, recipe, model)
     learned = lesson(settings.agent, steps, len(imitation) > 0, figures)
     results = {
-        "settings": asdict(settings), "steps": steps, "seconds": seconds, "steps_per_second": steps / seconds,
+        "command": command_of(settings), "settings": asdict(settings), "steps": steps, "seconds": seconds,
+        "steps_per_second": steps / seconds,
         "learned": learned, "evaluation": figures, "curve": keeper.curve, "imitation": imitation, **provenance(),
     }  # fmt: skip
     write_atomic(out / "results.json", json.dumps(results, indent=1).encode())

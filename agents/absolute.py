@@ -24,8 +24,9 @@ from snooker_env.envs.choices import POTS
 from snooker_env.envs.observations import SIZE
 from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS
 
+from . import view
 from .networks import CONTEXT, POT, TableReader, ValueHead
-from .view import POT_ENTRIES
+from .view import POT_ENTRIES, tolerance_of
 
 LINE_ENTRIES = 6
 """Numbers that ``lines_of`` gives of each pot."""
@@ -54,7 +55,7 @@ def lines_of(seen):
     first = torch.where(offered[:, :1] > 0.0, pots[:, 0, 1:3], nearest)
     direction = torch.cat([first[:, None], pots[:, 1:, 1:3]], 1)
     line = torch.atan2(direction[:, :, 1], direction[:, :, 0]) / pi
-    tolerance = (10.0 ** (2.0 * (pots[:, :, 7] - 1.0))).clamp(min=LEAST_TOLERANCE)
+    tolerance = tolerance_of(pots[:, :, view.TOLERANCE]).clamp(min=LEAST_TOLERANCE)
     return torch.stack([offered, line, pots[:, :, 3], pots[:, :, 4], (pots[:, :, 5] + 1.0) * HALF_LENGTH, tolerance], 2)
 
 

@@ -17,17 +17,13 @@ trained with several seeds; a PATH may be a pattern. Intervals are 95 % bootstra
 """
 
 import argparse
-import glob
 import json
 import os
 import platform
 import shlex
-import subprocess
 import sys
-import zipfile
 import zlib
 from dataclasses import dataclass
-from functools import cache
 from itertools import product
 from pathlib import Path
 
@@ -42,8 +38,9 @@ from snooker_env.game.stream import stream_of
 from snooker_env.physics.contact import parse_fidelity
 from snooker_env.physics.parameters import Physics
 
-from .models import PRETRAINED, pretrained
-from .players import NAMES, player_of
+from .commit import commit
+from .contestants import Agent, player_for
+from .players import NAMES
 from .report import AXES, main_condition, markdown, show
 from .statistics import RESAMPLES, Resamples, interval, iqm
 from .visits import CENTURY, HELD_OUT_SEED, Strokes, play
@@ -56,70 +53,6 @@ EASY = POT_WINDOWS["easy"][0]
 HIGH = 6
 """Pink and black are colours of high value."""
 PICTURE = Path(__file__).parent / "pictures" / "destinations.png"
-
-
-# who plays -----------------------------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Agent:
-    """What is compared: a player, or the models of one way to train, one for each seed."""
-
-    label: str
-    runs: tuple
-    """Names, model files or run folders."""
-
-    @classmethod
-    def of(cls, text):
-        """From NAME, PATH or LABEL=PATH,PATH,... Raises ValueError."""
-        label, equals, paths = text.partition("=") if not Path(text).exists() else ("", "", "")
-        if not equals:
-            label, paths = "", text
-        runs = []
-        for path in paths.split(","):
-            if path in pretrained():
-                path = str(PRETRAINED / f"{path}.zip")
-            found = [path] if path in NAMES or Path(path).exists() else sorted(glob.glob(path))
-            if not found:
-                known = ", ".join((*NAMES, *pretrained()))
-                allowed = f"must be {known}, or name models that are there: a .zip, a run folder, a pattern"
-                raise refuse("agent", path, allowed)
-            runs += found
-        if equals and not label:
-            raise refuse("agent", text, "must have a label before the =")
-        path = Path(runs[0])
-        return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs))
-
-    def trained(self):
-        """What is known of how each run was made: a dict a run, {} for a player that was not trained."""
-        return [_training(run) for run in self.runs]
-
-
-@cache
-def _model(path):
-    if Path(path).is_file() and not zipfile.is_zipfile(path):
-        raise refuse("agent", path, "must be a model's .zip or a folder that holds model.zip")
-    return player_of(path)
-
-
-def _player(run, budget, seed):
-    """A fresh player, or a model, read once."""
-    return player_of(run, budget=budget, seed=seed) if run in NAMES else _model(run)
-
-
-def _training(run):
-    if run in NAMES:
-        return {}
-    model = _model(run).model
-    folder = Path(run) if Path(run).is_dir() else Path(run).parent
-    results, card = folder / "results.json", Path(run).with_suffix(".json")
-    seconds = json.loads(results.read_text()).get("seconds") if results.is_file() else None
-    if Path(run).is_file() and card.is_file():
-        seconds = 3600.0 * json.loads(card.read_text())["hours"]
-    return {
-        "recipe": model.recipe, "shots": model.num_timesteps, "seconds": seconds, "seed": model.seed, "gamma": model.gamma,
-        **{key: model.env_options.get(key, usual) for key, usual in (("noise", "none"), ("fidelity", "standard"), ("physics", "paper"))},
-    }  # fmt: skip
 
 
 # what is played ------------------------------------------------------------------------------------------------------------------
@@ -258,7 +191,7 @@ def play_agent(agent, condition, seeds, budget, resamples):
     options = {"layout": condition["layout"], "noise": condition["noise"], "fidelity": condition["fidelity"]}
     physics = world(condition["physics"])
     runs = [
-        play(_player(run, budget, number), len(seeds), first_seed=seeds, physics=physics, **options)
+        play(player_for(run, budget, number), len(seeds), first_seed=seeds, physics=physics, **options)
         for number, run in enumerate(agent.runs)
     ]
     each = [counts(strokes) for strokes in runs]
@@ -270,12 +203,10 @@ def play_agent(agent, condition, seeds, budget, resamples):
 
 def provenance():
     """What computed these figures: commit and machine."""
-    root = Path(__file__).resolve().parents[1]
-    told = subprocess.run(["git", "describe", "--always", "--dirty", "--abbrev=40"], cwd=root, capture_output=True, text=True, check=False)
     cpuinfo = Path("/proc/cpuinfo")
     cpus = [line.split(":", 1)[1].strip() for line in cpuinfo.read_text().splitlines() if "model name" in line] if cpuinfo.exists() else []
     machine = f"{cpus[0] if cpus else platform.processor() or 'unknown'}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
-    return {"commit": told.stdout.strip() or "unknown", "machine": machine, "python": platform.python_version(), "numpy": np.__version__}
+    return {"commit": commit() or "unknown", "machine": machine, "python": platform.python_version(), "numpy": np.__version__}
 
 
 def parser():
@@ -379,7 +310,7 @@ def main(argv=None):
         ) from None
     snooker_env.warmup()
     for agent in agents:  # compiled before the clock runs
-        play(_player(agent.runs[0], args.budget, 0), 2)
+        play(player_for(agent.runs[0], args.budget, 0), 2)
     report = {
         "command": "python -m agents.evaluate " + shlex.join(argv), **provenance(),
         "protocol": {

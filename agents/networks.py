@@ -136,25 +136,28 @@ class ValueHead(nn.Module):
         return self.value(read[:, :CONTEXT])
 
 
-class TablePolicy(MaskableActorCriticPolicy):
-    """A maskable policy that reads with ``TableReader`` and scores with ``StrokeHead``."""
+class _Policy(MaskableActorCriticPolicy):
+    """A maskable policy of a reader and a head for the choices; the value comes from the reader's context."""
+
+    reader: type[TableReader]
+    head: type[nn.Module]
 
     def __init__(self, *args, **kwargs):
-        super().__init__(*args, **(kwargs | {"features_extractor_class": TableReader, "net_arch": []}))
+        super().__init__(*args, **(kwargs | {"features_extractor_class": self.reader, "net_arch": []}))
 
     def _build(self, lr_schedule):
         super()._build(lr_schedule)
-        self.action_net, self.value_net = StrokeHead(), ValueHead()
+        self.action_net, self.value_net = self.head(), ValueHead()
         self.optimizer = self.optimizer_class(self.parameters(), **{**self.optimizer_kwargs, "lr": lr_schedule(1)})
 
 
-class ForesightPolicy(MaskableActorCriticPolicy):
-    """A maskable policy over the strokes that ``foresight`` looks at."""
+class TablePolicy(_Policy):
+    """Sees the table and its pots, scores all strokes."""
 
-    def __init__(self, *args, **kwargs):
-        super().__init__(*args, **(kwargs | {"features_extractor_class": ForesightReader, "net_arch": []}))
+    reader, head = TableReader, StrokeHead
 
-    def _build(self, lr_schedule):
-        super()._build(lr_schedule)
-        self.action_net, self.value_net = OutcomeHead(), ValueHead()
-        self.optimizer = self.optimizer_class(self.parameters(), **{**self.optimizer_kwargs, "lr": lr_schedule(1)})
+
+class ForesightPolicy(_Policy):
+    """Sees what ``foresight`` shows, scores the strokes that it looked at."""
+
+    reader, head = ForesightReader, OutcomeHead

@@ -12,24 +12,12 @@ from pathlib import Path
 
 from .models import PRETRAINED
 
-DEFAULTS = {"parallel": "auto", "layout": "", "noise": "", "fidelity": "standard", "start": "", "set": []}
-
-
-def command_of(settings):
-    """The ``train.py`` command of a run's settings."""
-    words = ["python", "train.py", "--agent", settings["agent"]]
-    for name in ("steps", "envs", "imitate", "seed", "layout", "noise", "fidelity", "start", "set"):
-        value = settings[name]
-        if value != DEFAULTS.get(name):
-            words += ["--" + name, *map(str, value if isinstance(value, list) else [value])]
-    return " ".join(words)
-
 
 def card_of(run, limits):
     """What is told of a run folder's model."""
     found = json.loads((run / "results.json").read_text())
     return {
-        "command": command_of(found["settings"]), "seed": found["settings"]["seed"], "commit": found["git_commit"],
+        "command": found["command"], "seed": found["settings"]["seed"], "commit": found["git_commit"],
         "hours": round(found["seconds"] / 3600.0, 3), "shots": found["steps"], "imitated": found["settings"]["imitate"],
         "scores": found["evaluation"], "learned": found["learned"], "versions": found["versions"], "limits": limits,
     }  # fmt: skip

@@ -18,6 +18,13 @@ SHOWN = SIZE + POTS * POT_ENTRIES
 # Entries that change sign when the table is seen in a mirror, left and right exchanged.
 BALL_X = 0
 POT_X, CUT = (1, 9, 11), 3
+TOLERANCE = 7
+"""The entry that shows the tolerance, see ``tolerance_of``."""
+
+
+def tolerance_of(shown):
+    """The tolerance [rad] of a pot whose entry ``TOLERANCE`` is this (array or tensor)."""
+    return 10.0 ** (2.0 * (shown - 1.0))
 
 
 @entry
@@ -42,7 +49,7 @@ def _add_pots(observations, shown):
             to_pocket = hypot(POCKETS[pocket, 0] - bx, POCKETS[pocket, 1] - by)
             row[at], row[at + 1], row[at + 2], row[at + 3], row[at + 4] = 1.0, px, py, px * ry - py * rx, found[p, 4]
             row[at + 5], row[at + 6] = away / HALF_LENGTH - 1.0, to_pocket / HALF_LENGTH - 1.0
-            row[at + 7], row[at + 8] = 1.0 + log10(found[p, 5]) / 2.0, VALUES[ball] / 7.0
+            row[at + TOLERANCE], row[at + 8] = 1.0 + log10(found[p, 5]) / 2.0, VALUES[ball] / 7.0
             row[at + 9], row[at + 10] = bx / HALF_WIDTH, by / HALF_LENGTH
             row[at + 11], row[at + 12] = POCKETS[pocket, 0] / HALF_WIDTH, POCKETS[pocket, 1] / HALF_LENGTH
             for c in range(at, at + POT_ENTRIES):

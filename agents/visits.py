@@ -10,7 +10,7 @@ from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import BallOn
 
-from .view import with_pots
+from .view import TOLERANCE, tolerance_of, with_pots
 
 HELD_OUT_SEED = 1_000_000
 """Seed of the first held-out table; table k has this + k."""
@@ -110,7 +110,7 @@ def play(
 def _tolerance(observations, here):
     """Of the widest pot on each table ``here`` [rad]."""
     widest = with_pots(observations[here])[:, SIZE:]
-    return np.where(widest[:, 0] > 0, 10.0 ** (2.0 * (widest[:, 7] - 1.0)), 0.0)
+    return np.where(widest[:, 0] > 0, tolerance_of(widest[:, TOLERANCE]), 0.0)
 
 
 def summary(strokes):

@@ -82,8 +82,8 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
     assert list((out / "tb").rglob("events.out.tfevents.*"))
     found = results(out)
     assert set(found) == {
-        "settings", "steps", "seconds", "steps_per_second", "learned", "evaluation", "curve", "imitation", "versions", "git_commit",
-        "processors",
+        "command", "settings", "steps", "seconds", "steps_per_second", "learned", "evaluation", "curve", "imitation", "versions",
+        "git_commit", "processors",
     }  # fmt: skip
     assert found["settings"]["agent"] == agent and found["steps"] == 512
     assert found["steps_per_second"] == pytest.approx(512 / found["seconds"])
@@ -273,6 +273,7 @@ def test_hyperparameters_can_be_changed(tmp_path):
     model = models.load_player(tmp_path / "run").model
     assert model.gamma == 0 and model.n_steps == 32
     assert results(tmp_path / "run")["settings"]["set"] == ["gamma=0", "n_steps=32"]
+    assert results(tmp_path / "run")["command"].endswith("--agent ppo_mask --steps 512 --envs 2 --imitate 0 --set gamma=0 n_steps=32")
 
 
 @pytest.mark.parametrize("missing", ["stable_baselines3", "torch", "rich", "tensorboard"])

@@ -36,8 +36,8 @@ def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_ste
     """(speed, side, top, aim, elevation) of choice ``index``, as ``actions.shot_of``; found (POTS, POT_COLUMNS), motion (2, COLUMNS),
     state (2,) and work are work space."""
     pot, stroke = index // STROKES, index % STROKES
-    speed = SPEEDS[stroke // 15]
-    side, top = SIDES[stroke // 5 % 3], TOPS[stroke % 5]
+    speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
+    side, top = SIDES[stroke // len(TOPS) % len(SIDES)], TOPS[stroke % len(TOPS)]
     many = find_pots(positions, on_table, on, BALL_RADIUS, found)
     if many == 0:
         aim = line_of(positions, on_table, on, found)
