@@ -283,7 +283,7 @@ def lesson(agent, steps, taught, figures):
 def show(figures):
     """Print them."""
     title = f"A visit, over {figures['random']['visits']} held-out ones, the same for all (± standard error)"
-    table = rich.table.Table(title=title, box=rich.box.SIMPLE, pad_edge=False)
+    table = rich.table.Table(title=title, box=rich.box.SIMPLE, pad_edge=False, collapse_padding=True)
     table.add_column("agent", no_wrap=True)
     for name in ("pots", "points", "fouls", "pot rate", "next pot", "best"):
         table.add_column(name, justify="right", no_wrap=True)

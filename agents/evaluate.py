@@ -43,7 +43,7 @@ from .contestants import Agent, player_for
 from .players import NAMES
 from .report import AXES, main_condition, markdown, show
 from .statistics import RESAMPLES, Resamples, interval, iqm
-from .visits import CENTURY, HELD_OUT_SEED, Strokes, play
+from .visits import CENTURY, HELD_OUT_SEED, MAXIMUM, Strokes, play
 
 PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
 """Visits on each layout."""
@@ -98,6 +98,7 @@ FIGURES = {
     "pots_a_visit": ("pots", "visits"),
     "fouls_a_visit": ("fouls", "visits"),
     "centuries": ("centuries", "visits"),
+    "maximums": ("maximums", "visits"),
     "clearances": ("clearances", "visits"),
     "pot_rate": ("pots", "strokes"),
     "next_pot_after_a_pot": ("followed", "goes_on"),
@@ -123,7 +124,8 @@ def counts(s: Strokes):
         "clearances": s.made & s.cleared,
     }  # fmt: skip
     sums = {name: s.a_visit(values) for name, values in entries.items()}
-    return sums | {"visits": np.ones(s.visits), "centuries": (sums["points"] >= CENTURY).astype(float)}
+    breaks = {"centuries": sums["points"] >= CENTURY, "maximums": sums["points"] >= MAXIMUM}
+    return sums | {"visits": np.ones(s.visits)} | {name: made.astype(float) for name, made in breaks.items()}
 
 
 def figure(value, samples):

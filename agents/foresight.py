@@ -1,34 +1,41 @@
-"""What would the cue ball do? Some strokes at each pot, played without errors in the mind: the view of an agent that looks one shot ahead.
+"""Where would the cue ball go? Some strokes at the two widest pots, played a few times in the mind: the view of an agent that looks ahead.
 
-Behind ``view.with_pots`` come ``STROKES_SEEN`` rows, one for each stroke at each pot, with what it would lead to. The agent may play these
-strokes and no others. Looking costs as many simulated shots as there are rows: the agent is slower than one that only sees the table, and
-far quicker than ``search``.
+Behind ``view.with_pots`` come ``STROKES_SEEN`` rows, one for each stroke at each of these pots, with what it would lead to: means over the
+errors of ``looks.LOOKS``, scaled by the execution noise of the tables (one look if there is none). The agent may play these strokes and no
+others. Looking costs 120 simulated shots a decision: the agent is slower than one that only sees the table, far quicker than ``search``.
+
+Fewer pots and strokes with more looks each make more than the other way round: the widest two pots of the four are played nearly always,
+and what an error does to the next pot is hard to tell from one outcome.
 """
 
 import numpy as np
 from gymnasium import spaces
 
-from snooker_env.envs.choices import POTS, SIDES, SIZE, SPEEDS, TOPS, choice_of
-from snooker_env.envs.noise import Noise
+from snooker_env.envs.choices import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from snooker_env.envs.vector import processors
 from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import HALF_LENGTH, HALF_WIDTH, BallOn
 
 from .lookahead import BY_HAND, Copies, Position, prospects_of, spread_of
+from .looks import LOOKS
 from .view import SHOWN, with_pots
 
-SEEN_SPEEDS, SEEN_TOPS = (0, 2, 4, 6, 7), (0, 2, 4)
+POTS_SEEN = 2
+SEEN_SPEEDS, SEEN_TOPS = (1, 3, 5, 7), (0, 2, 4)
 """Places in ``SPEEDS`` and ``TOPS``; without side."""
-PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(POTS) for s in SEEN_SPEEDS for t in SEEN_TOPS])
+PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(POTS_SEEN) for s in SEEN_SPEEDS for t in SEEN_TOPS])
 """The choices looked at."""
 STROKES_SEEN = len(PICKS)
-ENTRIES = 13
-"""Numbers of a row: 1 if there is such a pot, chance of this pot, points / 7, 1 if the visit goes on, where the cue ball stops (x, y),
-chances of the three likeliest next pots, value of the position by hand / 25, speed / 6.3, top / 0.4, 1 if a red was on."""
-CUE_X = 4
+(THERE, CHANCE, SCORED, GOES_ON, POINTS, CUE_X, CUE_Y, FIRST, SECOND, THIRD, VALUE, SPREAD, SPEED, TOP, RED_ON) = range(15)
+"""Places in a row: 1 if there is such a pot, its chance by its width; share of looks that score, that go on; mean points / 7; of those that
+go on: where the cue ball stops (x, y), chances of the three likeliest next pots; mean value by hand of what is left / 25 (0 for a visit
+that ended), its standard deviation; speed / 6.3, top / 0.4, 1 if a red was on."""
+ENTRIES = RED_ON + 1
 SPACE = spaces.Box(-10.0, 10.0, (SHOWN + STROKES_SEEN * ENTRIES,), np.float32)
 _CHOSEN = np.zeros(SIZE, bool)
 _CHOSEN[PICKS] = True
+_SPEEDS = np.array(SPEEDS)[PICKS % STROKES // (len(SIDES) * len(TOPS))] / SPEEDS[-1]
+_TOPS = np.array(TOPS)[PICKS % len(TOPS)] / TOPS[-1]
 
 
 class Foresight:
@@ -42,29 +49,31 @@ class Foresight:
     def __call__(self, tables, observations, rows=None):
         """What is seen of the tables ``rows`` (all if None), whose observations are given: float32 (n, SHOWN + STROKES_SEEN * ENTRIES)."""
         v = tables.visits
-        if self._rules is not v.rules:
-            self._rules, shooter = v.rules, v.rules.shooter
-            self._copies, self._spread = Copies(v.rules, Noise(), self._threads), spread_of(shooter.noise, shooter.physics)
         rows = np.arange(tables.num_envs) if rows is None else np.flatnonzero(rows)
         at = Position(v.positions[rows], v.on_table[rows], v.game[rows])
-        ahead = self._ahead(at, tables.action_masks()[rows][:, PICKS])
+        ahead = self.ahead(v.rules, at, tables.action_masks()[rows][:, PICKS])
         return np.concatenate([with_pots(observations), ahead.reshape(len(rows), -1)], 1)
 
-    def _ahead(self, at, masks):
-        n, (table, stroke) = len(at), np.nonzero(masks)
-        now = prospects_of(at, self._spread)[1]
-        points, goes_on, left, _ = self._copies.play(at, table, PICKS[stroke], np.zeros(len(table), np.uint64))
-        values, chances = prospects_of(left, self._spread, most=8)
-        row = np.zeros((len(table), ENTRIES), np.float32)
-        row[:, 0], row[:, 1] = 1.0, now[table, stroke // (STROKES_SEEN // POTS)]
-        row[:, 2], row[:, 3] = points / 7.0, goes_on
-        row[:, 4:6] = left.positions[:, 0] / (HALF_WIDTH, HALF_LENGTH)
-        row[:, 6:9] = -np.sort(-chances, axis=1)[:, :3]
-        row[:, 9] = values / BY_HAND[0]
-        row[:, 4:10] *= goes_on[:, None]
-        row[:, 10], row[:, 11] = np.array(SPEEDS)[_SPEED[stroke]] / SPEEDS[-1], np.array(TOPS)[_TOP[stroke]] / TOPS[-1]
-        row[:, 12] = at.game[table, BALL_ON] == BallOn.RED
-        seen = np.zeros((n, STROKES_SEEN, ENTRIES), np.float32)
+    def ahead(self, rules, at, masks):
+        """The rows (n, STROKES_SEEN, ENTRIES) of the ``Position`` at; all 0 where ``masks`` (n, STROKES_SEEN) says there is no such pot."""
+        if self._rules is not rules:
+            self._rules, noise = rules, rules.shooter.noise
+            self._looks = np.array(LOOKS[:1] if noise.silent else LOOKS, np.uint64)
+            self._copies, self._spread = Copies(rules, noise, self._threads), spread_of(noise, rules.shooter.physics)
+        table, stroke = np.nonzero(masks)
+        k, m = len(self._looks), len(table)
+        points, goes_on, left, _ = self._copies.play(at, np.tile(table, k), np.tile(PICKS[stroke], k), np.repeat(self._looks, m))
+        values, chances = self._copies.prospects(left, self._spread, most=8)
+        values, points, goes_on = (goes_on * values).reshape(k, m), points.reshape(k, m), goes_on.reshape(k, m)
+        share = (goes_on / np.maximum(1, goes_on.sum(0)))[:, :, None]
+        row = np.empty((m, ENTRIES), np.float32)
+        row[:, THERE], row[:, CHANCE] = 1.0, prospects_of(at, self._spread)[1][table, PICKS[stroke] // STROKES]
+        row[:, SCORED], row[:, GOES_ON], row[:, POINTS] = (points > 0).mean(0), goes_on.mean(0), points.mean(0) / 7.0
+        row[:, CUE_X : CUE_Y + 1] = (share * (left.positions[:, 0] / (HALF_WIDTH, HALF_LENGTH)).reshape(k, m, 2)).sum(0)
+        row[:, FIRST : THIRD + 1] = (share * -np.sort(-chances, axis=1)[:, :3].reshape(k, m, 3)).sum(0)
+        row[:, VALUE], row[:, SPREAD] = values.mean(0) / BY_HAND[0], values.std(0) / BY_HAND[0]
+        row[:, SPEED], row[:, TOP], row[:, RED_ON] = _SPEEDS[stroke], _TOPS[stroke], at.game[table, BALL_ON] == BallOn.RED
+        seen = np.zeros((*masks.shape, ENTRIES), np.float32)
         seen[table, stroke] = row
         return seen
 
@@ -73,5 +82,6 @@ class Foresight:
         return tables.action_masks() & _CHOSEN
 
 
-_SPEED = np.tile(np.repeat(SEEN_SPEEDS, len(SEEN_TOPS)), POTS)
-_TOP = np.tile(SEEN_TOPS, POTS * len(SEEN_SPEEDS))
+def worth_by_hand(ahead):
+    """Points that the strokes of rows (n, STROKES_SEEN, ENTRIES) promise, value left included; -inf where there is none."""
+    return np.where(ahead[..., THERE] > 0, 7.0 * ahead[..., POINTS] + BY_HAND[0] * ahead[..., VALUE], -np.inf)

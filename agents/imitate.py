@@ -14,19 +14,19 @@ import time
 import numpy as np
 import torch
 
-from .lookahead import Copies, Position, prospects_of, spread_of
+from .lookahead import Copies, Position, spread_of
 
 TRIES = 64
-"""Choices tried in each position."""
+"""Choices tried in each position: half of them the pupil's best, half at random."""
 TEMPERATURE = 1.0
 """Points that make a choice e times as likely."""
 KEPT = 50_000
 """Positions that are learned from again and again."""
-BATCH, PER_UPDATE = 1024, 32
+BATCH, PER_UPDATE = 512, 8
 """Positions in the batch of a gradient step, and new positions for each step."""
 EXPLORE = 0.1
 """Share of random strokes in the visits."""
-RATE = 1e-3
+RATE = 3e-3
 
 
 class Teacher:
@@ -37,17 +37,24 @@ class Teacher:
         self._copies = Copies(rules, rules.shooter.noise, threads)
         self._spread = spread_of(rules.shooter.noise, rules.shooter.physics)
 
-    def worth(self, picks):
-        """Points that the choices ``picks`` (n, k) brought, one try of each, with the value of what they left: float32 (n, k)."""
-        v, (n, k) = self._tables.visits, picks.shape
-        keys = self._rng.integers(0, 2**63, n * k, dtype=np.uint64)
-        at = Position(v.positions, v.on_table, v.game)
-        points, goes_on, left, _ = self._copies.play(at, np.repeat(np.arange(n), k), picks.ravel(), keys)
-        return (points + self._ahead * goes_on * prospects_of(left, self._spread)[0]).astype(np.float32).reshape(n, k)
+    def worth(self, picks, there):
+        """Points that the choices ``picks`` (n, k) that are ``there`` (n, k) brought, one try of each, with the value of what they left.
+
+        float32 (n, k), 0 where there is none.
+        """
+        v, (row, column) = self._tables.visits, np.nonzero(there)
+        keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
+        points, goes_on, left, _ = self._copies.play(Position(v.positions, v.on_table, v.game), row, picks[row, column], keys)
+        worth = np.zeros(picks.shape, np.float32)
+        worth[row, column] = points + self._ahead * goes_on * self._copies.prospects(left, self._spread)[0]
+        return worth
 
 
 def to_try(scores, masks, rng):
-    """``TRIES`` choices of each row of masks (n, SIZE), half with the highest scores, half at random; and which of them are there."""
+    """``TRIES`` choices of each row of masks (n, SIZE), half with the highest scores, half at random; and which of them are there.
+
+    A choice can be in both halves.
+    """
     half = TRIES // 2
     best = np.argpartition(np.where(masks, -scores, np.inf), half, axis=1)[:, :half]
     any_of = np.argpartition(np.where(masks, rng.random(masks.shape), np.inf), TRIES - half, axis=1)[:, : TRIES - half]
@@ -69,7 +76,7 @@ def teach(model, venv, states, seed, threads, say=lambda done, loss: None):
         with torch.no_grad():
             scores = policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
         picks, there = to_try(scores, masks, rng)
-        kept.append((seen, masks, picks, there, teacher.worth(picks)))
+        kept.append((seen, masks, picks, there, teacher.worth(picks, there)))
         del kept[: -max(1, KEPT // n)]
         for _ in range(max(1, n // PER_UPDATE)):
             losses.append(_fit(policy, optimizer, [kept[i] for i in rng.integers(len(kept), size=max(1, BATCH // n))]))

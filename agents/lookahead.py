@@ -173,3 +173,12 @@ class Copies:
             list(self._pool.map(play_at, self._desks, range(len(self._desks))))
         self.shots += m
         return points, goes_on, left, observations
+
+    def prospects(self, at, spread, constants=BY_HAND, most=POTS):
+        """``prospects_of``, shared among the threads."""
+        if self._pool is None or len(at) < 2 * CHUNK:
+            return prospects_of(at, spread, constants, most)
+        ends = np.linspace(0, len(at), len(self._desks) + 1).astype(int)
+        parts = self._pool.map(lambda a, b: prospects_of(at[a:b], spread, constants, most), ends[:-1], ends[1:])
+        values, chances = (np.concatenate(column) for column in zip(*parts, strict=True))
+        return values, chances

@@ -17,7 +17,7 @@ from snooker_env.envs.choices import POTS, SIDES, SPEEDS, STROKES, TOPS
 from snooker_env.envs.observations import SIZE
 from snooker_env.game.balls import N_BALLS
 
-from .foresight import CUE_X, ENTRIES, PICKS, STROKES_SEEN
+from .foresight import CUE_X, ENTRIES, PICKS, POTS_SEEN, STROKES_SEEN
 from .view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
 
 BALL, CONTEXT, POT = 64, 128, 128
@@ -103,7 +103,7 @@ class ForesightReader(TableReader):
         context, pots, side = read[:, :CONTEXT], read[:, CONTEXT:-1].reshape(n, POTS, POT), read[:, -1:]
         rows = seen[:, SHOWN:].reshape(n, STROKES_SEEN, ENTRIES)
         rows = torch.cat([rows[..., :CUE_X], rows[..., CUE_X : CUE_X + 1] * side[:, None], rows[..., CUE_X + 1 :]], 2)
-        of_pot = self.outcome[1](pots).repeat_interleave(STROKES_SEEN // POTS, 1)
+        of_pot = self.outcome[1](pots[:, :POTS_SEEN]).repeat_interleave(STROKES_SEEN // POTS_SEEN, 1)
         codes = torch.relu(self.code(torch.relu(self.outcome[0](context)[:, None] + of_pot + self.outcome[2](rows)))) * rows[..., :1]
         context = context + self.best(codes.amax(1))
         return torch.cat([context, codes.reshape(n, -1)], 1)

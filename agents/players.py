@@ -13,6 +13,8 @@ from snooker_env._check import refuse
 from snooker_env.envs.choices import SIDES, SIZE, SPEEDS, TOPS, choice_of
 
 from .aimer import Aimer
+from .foresight import PICKS, Foresight, worth_by_hand
+from .lookahead import Position
 from .models import PRETRAINED, load_player, pretrained
 from .search import Search
 
@@ -48,6 +50,22 @@ class GhostBall:
         return np.full(len(going), self._stroke)
 
 
+class Lookahead:
+    """What ``ppo_foresight`` sees, judged by hand instead of by a network: the mean of points and the value of what is left."""
+
+    options = DISCRETE
+
+    def __init__(self):
+        self._foresight = Foresight()
+
+    def act(self, tables, observations, going):
+        """The stroke that promises most at each table going."""
+        v, picks = tables.visits, np.zeros(len(going), np.int64)
+        at, masks = Position(v.positions[going], v.on_table[going], v.game[going]), tables.action_masks()[going][:, PICKS]
+        picks[going] = PICKS[worth_by_hand(self._foresight.ahead(v.rules, at, masks)).argmax(1)]
+        return picks
+
+
 class Geometric:
     """Pots found by geometry, their aims by the simulator without errors: direct, else banks, plants and cannons, see ``indirect``."""
 
@@ -68,7 +86,7 @@ class Geometric:
         return actions
 
 
-NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "search")
+NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "lookahead", "search")
 
 
 def player_of(name, *, budget=2000, seed=0):
@@ -78,6 +96,7 @@ def player_of(name, *, budget=2000, seed=0):
         "random_absolute": lambda: Random(ABSOLUTE, seed),
         "ghost_ball": GhostBall,
         "geometric": Geometric,
+        "lookahead": Lookahead,
         "search": lambda: Search(budget, seed=seed),
     }
     if name in makers:

@@ -159,7 +159,8 @@ def conditions(report):
                     ratios = [_pm(r["ratios"][other]["points_a_visit"]) if other in r["ratios"] else "1" for other in p["against"]]
                     scored.append(
                         [*head, _pm(f["points_a_visit"]), _pm(f["points_a_visit_iqm"]), *ratios, _pm(f["pots_a_visit"]),
-                         _pm(f["pots_a_visit_iqm"]), _share(f["centuries"]), _share(f["clearances"]), str(r["longest_break"])]
+                         _pm(f["pots_a_visit_iqm"]), *(_share(f[key]) for key in ("centuries", "maximums", "clearances")),
+                         str(r["longest_break"])]
                     )  # fmt: skip
                     shares = ("pot_rate", "next_pot_after_a_pot", "easy_pot_left_by_a_pot")
                     colours = ("high_colours", "high_colour_after_a_red")
@@ -171,7 +172,7 @@ def conditions(report):
                 times = [f"times {other}" for other in p["against"]]
                 tables.append(
                     Table(f"{where}: what was scored", ["noise", "agent", "points a visit", "inter-quartile", *times, "pots a visit",
-                          "inter-quartile", "centuries %", "clearances %", "best"], scored, 2, True)
+                          "inter-quartile", "centuries %", "147s %", "clearances %", "best"], scored, 2, True)
                 )  # fmt: skip
                 tables.append(
                     Table(f"{where}: how the cue ball was placed", ["noise", "agent", "pot rate %", "next pot %", "easy left %",

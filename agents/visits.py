@@ -16,6 +16,8 @@ HELD_OUT_SEED = 1_000_000
 """Seed of the first held-out table; table k has this + k."""
 CENTURY = 100
 """Points of a visit that make a century break."""
+MAXIMUM = 147
+"""Points of the largest break from all 15 reds: a black after each."""
 
 
 @dataclass

@@ -126,7 +126,7 @@ def test_counts_of_a_visit_by_hand():
     assert c == {
         "points": [9, 0], "pots": [3, 0], "strokes": [4, 1], "fouls": [1, 0], "goes_on": [3, 0], "followed": [2, 0], "easy": [2, 0],
         "colours": [1, 0], "colour_points": [7, 0], "high": [1, 0], "reds": [2, 0], "high_after_red": [1, 0], "clearances": [0, 0],
-        "visits": [1, 1], "centuries": [0, 0],
+        "visits": [1, 1], "centuries": [0, 0], "maximums": [0, 0],
     }  # fmt: skip
     f = visits.summary(s)
     assert (f["points_a_visit"], f["pots_a_visit"], f["next_pot_after_a_pot"], f["high_colours"]) == (4.5, 1.5, pytest.approx(2 / 3), 1.0)

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
+import torch
 
-pytest.importorskip("sb3_contrib")
-torch = pytest.importorskip("torch")
 from agents import imitate
 from agents.imitate import Teacher, teach, to_try
 from agents.lookahead import Position, prospects_of, spread_of
@@ -25,8 +24,10 @@ def test_a_choice_is_worth_its_points_and_what_it_leaves():
     venv = tables(8, noise="none")
     env = venv.unwrapped.tables
     picks = np.array([np.flatnonzero(m)[[20, 37, 60]] for m in env.action_masks()])
+    there = np.ones(picks.shape, bool)
     states = env.get_state()
-    worth, points_only = (Teacher(env, threads, np.random.default_rng(0), ahead).worth(picks) for threads, ahead in ((2, True), (1, False)))
+    worth = Teacher(env, 2, np.random.default_rng(0)).worth(picks, there)
+    points_only = Teacher(env, 1, np.random.default_rng(0), ahead=False).worth(picks, there)
     shooter = env.visits.rules.shooter
     for k in range(picks.shape[1]):
         env.reset(options={"states": states})
@@ -38,9 +39,13 @@ def test_a_choice_is_worth_its_points_and_what_it_leaves():
             after = np.where(ended, 0.0, after)
         assert np.allclose(worth[:, k], rewards + after, rtol=1e-6) and np.array_equal(points_only[:, k], rewards)
     assert worth.max() > 5.0
+    there[2:5, 1] = False
+    env.reset(options={"states": states})
+    some = Teacher(env, 1, np.random.default_rng(0)).worth(picks, there)
+    assert not some[~there].any() and np.array_equal(some[there], worth[there])
 
 
-def test_half_of_the_tries_are_the_best_and_none_is_tried_twice():
+def test_half_of_the_tries_are_the_best():
     rng = np.random.default_rng(0)
     masks = np.zeros((5, SIZE), bool)
     masks[:, : 2 * STROKES] = True

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
+import torch
 
-pytest.importorskip("sb3_contrib")
-torch = pytest.importorskip("torch")
 from agents.foresight import CUE_X, ENTRIES, PICKS, SPACE, STROKES_SEEN
 from agents.networks import BALL, CONTEXT, POT, ForesightReader, OutcomeHead, StrokeHead, TableReader, ValueHead
 from agents.view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN, VIEW_SPACE, with_pots
