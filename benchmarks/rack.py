@@ -24,402 +24,30 @@ import json
 import os
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from functools import cache
-from itertools import pairwise
-from math import asin, cos, pi, sin, sqrt
+from math import sqrt
 from pathlib import Path
 
-import numba
 import numpy as np
-from scipy.optimize import brentq, nnls
 
 import snooker_env as sn
 from snooker_env.game.balls import SPOTS
 from snooker_env.physics.engine import EventKind
-from snooker_env.physics.impulse import friction_coefficient
 
 from ._command import at_least, pyplot
+from ._rack_breaks import apex_break, break_off
+from ._rack_checks import checks
+from ._rack_compliant import LAWS, STEP, R, compliant
+from ._rack_models import Models, misplaced, sharers, shares
+from ._rack_picture import picture
+from ._rack_simultaneous import contacts, gauss_seidel, simultaneous
 
 FILE = Path(__file__).parent / "pictures" / "rack.png"
-R, M = sn.Physics().R, sn.Physics().M
-REDUCED = M / 2
-YOUNG, POISSON = 5e9, 0.34
-HERTZ = 4 / 3 * YOUNG / (2 * (1 - POISSON**2)) * sqrt(R / 2)
-"""Hertz's constant of two equal balls [N/m^1.5]."""
-
-STEP, SPAN = 1e-7, 10e-3
-"""The micro-step, and when the engine takes over [s]."""
-TOUCHING = 2e-6
-"""Gap [m] up to which the simultaneous solution counts two balls as touching."""
 CORNERS = (11, 15)
 MIRRORED = np.array([0, *(1 + k for row in range(5) for k in range(row * (row + 1) // 2 + row, row * (row + 1) // 2 - 1, -1))])
 """Which ball is the mirror image of ball i in the rack."""
 CENTRE = SPOTS[1:16].mean(0)
 NEAR = 0.25
 """A red within this distance [m] of the rack's centre has hardly left it."""
-
-# Speeds after an elastic break by Hertz contacts without friction, dead centre, the cue ball at 10 units, by ball (the mirror images left
-# out): the computed answer to "Perfectly centered break of a perfectly aligned pool ball rack" (MathOverflow, 2014).
-PUBLISHED = {0: 1.79, 1: 1.20, 2: 1.57, 4: 1.42, 5: 0.12, 7: 1.31, 8: 0.25, 11: 5.60, 12: 2.57, 13: 2.63}
-
-
-@dataclass(frozen=True)
-class Law:
-    """A contact law F = k d^p + c d^q d'."""
-
-    p: float
-    q: float
-    k: float
-
-
-def contact_time(speed):
-    """How long two balls touch [s], Hertz without loss: 2.943 d / v with d the greatest overlap."""
-    return 2.943 / speed * (1.25 * REDUCED * speed**2 / HERTZ) ** 0.4
-
-
-LAWS = {
-    "Hertz": Law(1.5, 0.25, HERTZ),
-    "Hertz, q = 1/2": Law(1.5, 0.5, HERTZ),
-    "linear": Law(1.0, 0.0, REDUCED * (pi / contact_time(5.0)) ** 2),
-}
-
-
-@numba.njit(nogil=True)
-def _unit_restitution(p, q, damping):
-    """Restitution of x'' = -(x^p + damping x^q x'), never pulling, from x = 0, x' = 1."""
-    dt = 1e-5
-    x, v = 0.5 * dt, 1.0
-    while True:
-        force = x**p + damping * x**q * v
-        if v < 0.0 and force <= 0.0:
-            return -v
-        v -= force * dt
-        x += v * dt
-        if x <= 0.0:
-            return -v
-
-
-@cache
-def damping(law, e, speed=5.0):
-    """c that gives one pair the restitution e at that closing speed [m/s] (for q = (p - 1) / 2: at every speed)."""
-    if e == 1.0:
-        return 0.0
-    unit = float(brentq(lambda c: _unit_restitution(law.p, law.q, c) - e, 0.0, 2.0, xtol=1e-10))  # pyright: ignore[reportArgumentType]
-    length = (REDUCED * speed**2 / law.k) ** (1 / (law.p + 1))
-    return unit * REDUCED * speed / length ** (1 + law.q)
-
-
-@numba.njit(nogil=True)
-def micro_steps(r, v, w, p, q, k, c, g, mu_s, friction, dt, steps):
-    """Balls r (n, 2), v (n, 3), w (n, 3) through ``steps`` steps, in place: half a drift, the impulses of all contacts, half a drift.
-
-    Returns the energy [J] gone into dampers, friction between balls, friction on the cloth, lifting and landing; the greatest overlap [m].
-    """
-    n = len(r)
-    z = np.zeros(n)
-    dv, dw = np.zeros((n, 3)), np.zeros((n, 3))
-    first, second, n_near = np.zeros(n * n, np.int64), np.zeros(n * n, np.int64), 0
-    lost, deepest = np.zeros(4), 0.0
-    spin = 2.5 / (M * R)
-    drift_per_list = 0.0
-    for _ in range(steps):
-        fastest = 0.0
-        for i in range(n):
-            r[i, 0] += 0.5 * dt * v[i, 0]
-            r[i, 1] += 0.5 * dt * v[i, 1]
-            fastest = max(fastest, abs(v[i, 0]) + abs(v[i, 1]))
-        drift_per_list -= 2.0 * fastest * dt
-        if drift_per_list <= 0.0:  # who may touch before two balls have closed by half a millimetre?
-            n_near, drift_per_list = 0, 5e-4
-            for i in range(n):
-                for j in range(i + 1, n):
-                    if (r[i, 0] - r[j, 0]) ** 2 + (r[i, 1] - r[j, 1]) ** 2 < (2.0 * R + 1e-3) ** 2:
-                        first[n_near], second[n_near] = i, j
-                        n_near += 1
-        dv[:] = 0.0
-        dw[:] = 0.0
-        for m in range(n_near):
-            i, j = first[m], second[m]
-            nx, ny = r[j, 0] - r[i, 0], r[j, 1] - r[i, 1]
-            d = nx * nx + ny * ny
-            if d >= 4.0 * R * R:
-                continue
-            d = sqrt(d)
-            nx, ny, depth = nx / d, ny / d, 2.0 * R - d
-            deepest = max(deepest, depth)
-            closing = (v[i, 0] - v[j, 0]) * nx + (v[i, 1] - v[j, 1]) * ny
-            spring = k * depth**p
-            force = max(0.0, spring + c * depth**q * closing)
-            lost[0] += (force - spring) * closing * dt
-            # slip of i on j at the contact: v_i - v_j + R (w_i + w_j) x n, without its normal part
-            wz = w[i, 2] + w[j, 2]
-            sx = v[i, 0] - v[j, 0] - closing * nx - R * wz * ny
-            sy = v[i, 1] - v[j, 1] - closing * ny + R * wz * nx
-            sz = v[i, 2] - v[j, 2] + R * ((w[i, 0] + w[j, 0]) * ny - (w[i, 1] + w[j, 1]) * nx)
-            s = sqrt(sx * sx + sy * sy + sz * sz)
-            pn = force * dt
-            fx = fy = fz = 0.0
-            if s > 0.0:
-                f = min(friction_coefficient(s, friction) * pn, M * s / 7.0)
-                fx, fy, fz = -f * sx / s, -f * sy / s, -f * sz / s
-                lost[1] += f * s
-            ax, ay, az = (fx - pn * nx) / M, (fy - pn * ny) / M, fz / M
-            dv[i, 0] += ax
-            dv[i, 1] += ay
-            dv[i, 2] += az
-            dv[j, 0] -= ax
-            dv[j, 1] -= ay
-            dv[j, 2] -= az
-            tx, ty, tz = spin * ny * fz, -spin * nx * fz, spin * (nx * fy - ny * fx)  # n x f, the same for both balls
-            dw[i, 0] += tx
-            dw[i, 1] += ty
-            dw[i, 2] += tz
-            dw[j, 0] += tx
-            dw[j, 1] += ty
-            dw[j, 2] += tz
-        for i in range(n):
-            load, vz = 0.0, v[i, 2] + dv[i, 2] - g * dt
-            if z[i] <= 0.0 and vz <= 0.0:
-                lost[3] += 0.5 * M * v[i, 2] ** 2
-                z[i], load, vz = 0.0, -M * vz, 0.0
-            v[i, 2] = vz
-            z[i] += vz * dt
-            bx, by = v[i, 0] - R * w[i, 1], v[i, 1] + R * w[i, 0]
-            s = sqrt(bx * bx + by * by)
-            if load > 0.0 and s > 0.0:
-                f = min(mu_s * load, M * s / 3.5)
-                lost[2] += f * s
-                fx, fy = -f * bx / s, -f * by / s
-                dv[i, 0] += fx / M
-                dv[i, 1] += fy / M
-                dw[i, 0] += spin * fy
-                dw[i, 1] -= spin * fx
-            v[i, 0] += dv[i, 0]
-            v[i, 1] += dv[i, 1]
-            for a in range(3):
-                w[i, a] += dw[i, a]
-            r[i, 0] += 0.5 * dt * v[i, 0]
-            r[i, 1] += 0.5 * dt * v[i, 1]
-    lost[3] += M * g * z.sum()
-    return lost, deepest
-
-
-def compliant(r, v, w, physics, law=LAWS["Hertz"], dt=STEP, span=SPAN, stiffer=1.0):
-    """Balls after ``span`` seconds of micro-steps: r (n, 2), v (n, 3), w (n, 3), energy lost (4,) [J], greatest overlap [m]."""
-    r, v, w = r.copy(), np.column_stack([v, np.zeros(len(v))]), w.copy()
-    law = Law(law.p, law.q, law.k * stiffer)
-    constants = law.p, law.q, law.k, damping(law, physics.e_b), physics.g, physics.mu_s, physics.friction_law
-    return r, v, w, *micro_steps(r, v, w, *constants, dt, round(span / dt))
-
-
-@numba.njit(nogil=True)
-def _gauss_seidel(i, j, nx, ny, v, e, tolerance):
-    """The simultaneous solution: velocities v (n, 2) become those after the impact; returns the sweeps taken."""
-    impulse, moved = np.zeros(len(i)), v.copy()
-    sweeps, change = 0, np.inf
-    while change >= tolerance:
-        sweeps, change = sweeps + 1, 0.0
-        for m in range(len(i)):
-            a, b = i[m], j[m]
-            closing = (moved[a, 0] - moved[b, 0]) * nx[m] + (moved[a, 1] - moved[b, 1]) * ny[m]
-            more = max(-impulse[m], 0.5 * closing)
-            impulse[m] += more
-            moved[a, 0] -= more * nx[m]
-            moved[a, 1] -= more * ny[m]
-            moved[b, 0] += more * nx[m]
-            moved[b, 1] += more * ny[m]
-            change = max(change, abs(more))
-    v += (1.0 + e) * (moved - v)
-    return sweeps
-
-
-def contacts(r):
-    """Touching pairs i, j and the unit vectors (nx, ny) from i to j."""
-    i, j = np.triu_indices(len(r), 1)
-    d = r[j] - r[i]
-    far = np.hypot(*d.T)
-    near = far < 2 * R + TOUCHING
-    return i[near], j[near], d[near, 0] / far[near], d[near, 1] / far[near]
-
-
-def simultaneous(r, v, e):
-    """Velocities (n, 2) after the simultaneous impact of all touching balls."""
-    v = v.copy()
-    _gauss_seidel(*contacts(r), v, e, 1e-13 * np.abs(v).max())
-    return v
-
-
-def simultaneous_by_nnls(r, v, e):
-    """The same by another road: the velocities nearest to v that close no contact are those of a non-negative least squares problem."""
-    i, j, nx, ny = contacts(r)
-    rows = np.zeros((len(i), len(r), 2))
-    for m in range(len(i)):
-        rows[m, i[m]], rows[m, j[m]] = (-nx[m], -ny[m]), (nx[m], ny[m])
-    rows = rows.reshape(len(i), -1)
-    impulse, _ = nnls(rows.T, -v.ravel(), maxiter=100_000)
-    return v + (1 + e) * (rows.T @ impulse).reshape(-1, 2)
-
-
-def meet(r, direction, start):
-    """Where the cue ball, going along ``direction`` from ``start``, first touches another ball."""
-    a = r[1:] - start
-    along, off = a @ direction, a[:, 0] * direction[1] - a[:, 1] * direction[0]
-    hit = np.abs(off) < 2 * R
-    return start + direction * (along[hit] - np.sqrt((2 * R) ** 2 - off[hit] ** 2)).min()
-
-
-def rolling(r, direction, speed):
-    """Velocities and spins when the cue ball rolls and the rest is still."""
-    v, w = np.zeros((len(r), 2)), np.zeros((len(r), 3))
-    v[0] = speed * direction
-    w[0, :2] = speed / R * np.array([-direction[1], direction[0]])
-    return v, w
-
-
-def apex_break(speed, offset, gap=0.0, rng=None):
-    """The cue ball meets the foremost of 15 reds, the colours off the table; ``offset`` [R] of its line from the rack's axis.
-
-    gap [m]: the rack's pitch is 2 R + gap; with ``rng`` each red is also moved at random within gap / 2, so that gaps are 0 to 2 gap.
-    """
-    r = SPOTS[:16].copy()
-    r[1:] = r[1] + (r[1:] - r[1]) * (1 + gap / (2 * R))
-    if rng is not None:
-        angle, size = rng.uniform(0, 2 * pi, 15), 0.5 * gap * np.sqrt(rng.uniform(0, 1, 15))
-        r[1:] += np.column_stack([size * np.cos(angle), size * np.sin(angle)])
-    along = np.array([0.0, 1.0])
-    tilt = asin(offset / 2)
-    r[0] = r[1] + 2 * R * np.array([sin(tilt), -cos(tilt)])
-    return r, *rolling(r, along, speed)
-
-
-def break_off(rng):
-    """A break-off as it is played: all 22 balls, the cue ball from the D thin onto the end red of the back row."""
-    r = SPOTS.copy()
-    start = np.array([rng.uniform(0.08, 0.2), SPOTS[0, 1] - rng.uniform(0, 0.1)])
-    to = r[15] + [rng.uniform(0.01, 0.04), 0] - start
-    direction = to / np.hypot(*to)
-    r[0] = meet(r, direction, start)
-    return r, *rolling(r, direction, rng.uniform(2.5, 4.5))
-
-
-def shares(v, w, speed):
-    """Each ball's energy over the rolling cue ball's."""
-    return ((v[:, :2] ** 2).sum(1) + 0.4 * R**2 * (w**2).sum(1)) / (1.4 * speed**2)
-
-
-def misplaced(a, b):
-    """Of two lists of shares: how much would have to change its place, what is lost being a place too."""
-    return 0.5 * float(np.abs(a - b).sum() + abs(a.sum() - b.sum()))
-
-
-def sharers(x):
-    return float(x[1:16].sum() ** 2 / (x[1:16] ** 2).sum())
-
-
-def apart(r):
-    """Positions with the last nanometres of overlap taken out, as the engine wants them."""
-    r = r.copy()
-    for _ in range(1000):
-        d = r[None] - r[:, None]
-        far = np.hypot(*d.transpose(2, 0, 1))
-        bad = np.argwhere(np.triu(far < 2 * R, 1))
-        if not len(bad):
-            break
-        for i, j in bad:
-            push = (0.5 * (2 * R - far[i, j]) + 1e-10) * d[i, j] / far[i, j]
-            r[i] -= push
-            r[j] += push
-    return r
-
-
-class Models:
-    """The models, by name: from balls at impact to their state after SPAN, and to rest."""
-
-    def __init__(self, physics):
-        self.physics = physics
-        self.slippery = sn.Physics.preset("paper", e_b=physics.e_b, mu_bb=0.0)
-        self.names = (*LAWS, "sequence", "simultaneous")
-
-    def after(self, name, r, v, w, physics=None):
-        """r, v, w after SPAN."""
-        physics = physics or self.physics
-        if name in LAWS:
-            return compliant(r, v, w, physics, LAWS[name])[:3]
-        if name == "simultaneous":
-            v = simultaneous(r, v, physics.e_b)
-        return sn.simulate(r, v, w, "match", physics).at(SPAN)
-
-    def energy(self, name, r, v, w, physics=None):
-        """Shares (n,) after SPAN."""
-        _, v1, w1 = self.after(name, r, v, w, physics)
-        return shares(v1, w1, np.hypot(*v[0]))
-
-    def to_rest(self, name, r, v, w):
-        """The whole shot (a ``Shot`` that starts after SPAN for contact laws), and the shares (n,) after SPAN."""
-        speed = np.hypot(*v[0])
-        if name in LAWS:
-            r, v, w = self.after(name, r, v, w)
-            return sn.simulate(apart(r), v[:, :2], w, "match", self.physics), shares(v, w, speed)
-        if name == "simultaneous":
-            v = simultaneous(r, v, self.physics.e_b)
-        shot = sn.simulate(r, v, w, "match", self.physics)
-        _, v, w = shot.at(SPAN)
-        return shot, shares(v, w, speed)
-
-
-def checks(models):
-    """Is the yardstick itself right?"""
-    print("The yardstick checked\n  one pair against this project's impact model (rolling cue ball; largest difference over the speed)")
-    figures = {}
-    floating = sn.Physics.preset("paper", g=1e-9)  # the impact model has no weight
-    for name, law in LAWS.items():
-        row = {}
-        for speed in (0.05, 1.0, 5.0):
-            worst = 0.0
-            for cut in (0.0, 0.5, 1.0):
-                n = np.array([sin(cut), cos(cut)])
-                r = np.array([[0, 0], 2 * R * n])
-                v, w = rolling(r, np.array([0.0, 1.0]), speed)
-                # the law with q = 1/2 has the wanted restitution at 5 m/s along the line of centres only: compare where it has
-                if law.q == 0.5 and (cut or speed < 5.0):
-                    continue
-                dt, span = (STEP, 1e-3) if speed > 0.5 else (5 * STEP, 2e-3)
-                _, v1, w1, *_ = compliant(r, v, w, floating, law, dt, span)
-                v3 = np.column_stack([v, np.zeros(2)])
-                a, wa, b, wb = sn.collide_balls(v3[0], w[0], v3[1], w[1], (*n, 0.0), floating, "reference")
-                d = np.abs(np.concatenate([v1[0] - a, v1[1] - b, R * (w1[0] - wa), R * (w1[1] - wb)]))
-                worst = max(worst, float(d.max()) / speed)
-            if worst:
-                row[speed] = worst
-        figures[f"pair {name}"] = row
-        print(f"    {name:15s}" + "".join(f"   {speed:g} m/s {x:.1e}" for speed, x in row.items()))
-    elastic = sn.Physics.preset("paper", e_b=1.0, mu_bb=0.0, mu_s=1e-9, g=1e-9)
-    print("  the published elastic break without friction (largest difference of a speed; cue ball 10): ", end="")
-    for speed in (0.05, 5.0):
-        r, v, w = apex_break(speed, 0.0)
-        _, v1, _, _, deepest = compliant(r, v, 0 * w, elastic, dt=2 * STEP, span=SPAN * (5 / speed) ** 0.2)
-        found = 10 / speed * np.hypot(v1[:, 0], v1[:, 1])
-        worst = max(abs(found[i] - x) for i, x in PUBLISHED.items())
-        figures[f"published {speed}"] = float(worst)
-        print(f"{worst:.3f} at {speed:g} m/s (overlap {deepest / R:.4f} R)", end="; " if speed < 5 else "\n")
-    r, v, w = apex_break(5.0, 0.1)
-    parts = []
-    for dt in (4e-7, 2e-7, 1e-7, 5e-8):
-        _, v1, w1, lost, _ = compliant(r, v, w, models.physics, dt=dt)
-        left = 0.5 * M * ((v1**2).sum() + 0.4 * R**2 * (w1**2).sum())
-        parts.append((dt, shares(v1, w1, 5.0), 1 - (left + lost.sum()) / (0.7 * M * 25)))
-    print("  halving the step (break at 5 m/s, offset 0.1 R): energy misplaced against the next; energy unaccounted for")
-    for (dt, x, open_), (_, y, _) in pairwise(parts):
-        figures[f"step {dt:g}"] = {"misplaced": misplaced(x, y), "unaccounted": open_}
-        print(f"    {dt * 1e6:4.2f} us  {misplaced(x, y):.1e}  {open_:+.1e}")
-    x = parts[2][1]
-    _, v1, w1, *_ = compliant(r, v, w, models.physics, stiffer=2.0)
-    figures["stiffer"] = misplaced(x, shares(v1, w1, 5.0))
-    print(f"  twice the stiffness misplaces {figures['stiffer']:.1e}")
-    figures["lcp"] = float(np.abs(simultaneous(r, v, 0.89) - simultaneous_by_nnls(r, v, 0.89)).max() / 5)
-    print(f"  the simultaneous solution against non-negative least squares: {figures['lcp']:.1e} of the speed\n")
-    return figures
 
 
 def cradle(models):
@@ -608,10 +236,10 @@ def cost(models, repeats=5):
     pairs = contacts(r)
     shot = sn.simulate(r, v, w, "match", models.physics)
     at_once = int((shot.events["time"] < 1e-9).sum())
-    sweeps = _gauss_seidel(*pairs, v.copy(), models.physics.e_b, 5e-13)
+    sweeps = gauss_seidel(*pairs, v.copy(), models.physics.e_b, 5e-13)
     figures: dict = {
         "sequence, the whole shot": median(lambda: sn.simulate(r, v, w, "match", models.physics)),
-        "simultaneous": median(lambda: _gauss_seidel(*pairs, v.copy(), models.physics.e_b, 5e-13)),
+        "simultaneous": median(lambda: gauss_seidel(*pairs, v.copy(), models.physics.e_b, 5e-13)),
     }
     print("Cost of one break at 5 m/s, offset 0.1 R, one core")
     print(f"  sequence, the whole shot to rest, {at_once} impacts of it at once  {figures['sequence, the whole shot']:9.0f} us")
@@ -674,53 +302,6 @@ def verdict(models, figures):
     )
     print("\n".join(lines))
     return lines
-
-
-def picture(file, states, figures, samples):
-    """The head-on break by three models; loose racks; whole shots."""
-    plt = pyplot()
-    from matplotlib.patches import Circle
-
-    fig, axes = plt.subplots(2, 3, figsize=(13, 9.2), layout="constrained")
-    r = apex_break(5.0, 0.0)[0]
-    colours = {"Hertz": "C0", "Hertz, q = 1/2": "C4", "linear": "C2", "sequence": "C3", "simultaneous": "C1"}
-    for ax, name in zip(axes[0], ("Hertz", "sequence", "simultaneous"), strict=True):
-        v, x = states[name]
-        for i in range(16):
-            shade = plt.get_cmap("Reds")(min(1.0, 0.04 + 3.0 * x[i])) if i else "white"
-            ax.add_patch(Circle(r[i], R, facecolor=shade, edgecolor="0.25", lw=0.8))
-            ax.text(*r[i], f"{100 * x[i]:.1f}" if x[i] < 0.0995 else f"{100 * x[i]:.0f}", ha="center", va="center", fontsize=8,
-                    color="white" if i and x[i] > 0.12 else "black")  # fmt: skip
-            if np.hypot(*v[i]) > 0.1:
-                start = r[i] + v[i] / np.hypot(*v[i]) * R
-                ax.annotate("", start + 0.045 * v[i], start, arrowprops={"arrowstyle": "-|>", "color": colours[name], "lw": 1.3})
-        ax.set(xlim=(-0.235, 0.235), ylim=(r[0, 1] - 0.19, r[15, 1] + 0.18), aspect="equal", xticks=[], yticks=[])
-        what = {"Hertz": "compliant (Hertz)"}.get(name, name)
-        ax.set_title(f"{what}: energy of each ball [%], {100 * (1 - x.sum()):.0f} % lost", fontsize=10, color=colours[name])
-    ax = axes[1, 0]
-    found = figures["gaps"]
-    place = np.arange(len(found))
-    for model, shift in (("hertz", -0.08), ("sequence", 0.08)):
-        for side, marker in ((0, "<"), (1, ">")):
-            mean = [100 * row[model][side] for row in found]
-            sd = [100 * row[model + "_sd"][side] for row in found]
-            name = "Hertz" if model == "hertz" else model
-            ax.errorbar(place + shift + 0.05 * side, mean, sd, fmt=marker, color=colours[name], capsize=2, ms=6,
-                        label=f"{name}, {'left' if side == 0 else 'right'} corner ball")  # fmt: skip
-    ax.set_xticks(place, [f"{row['gap'] * 1e6:g}" for row in found])
-    ax.set(xlabel="mean gap of the rack [um]", ylabel="share of the energy [%], mean and deviation over racks", ylim=(0, 45))
-    ax.set_title("loose racks, 5 m/s, 0.1 R off the axis", fontsize=10)
-    ax.legend(fontsize=8, ncols=2, loc="upper right")
-    for ax, kind in zip(axes[1, 1:], ("apex, touching", "break-off"), strict=True):
-        for name, colour in colours.items():
-            x = np.sort(samples[kind, name])
-            ax.step(x, np.arange(1, len(x) + 1) / len(x), where="post", color=colour, label=name, lw=1.8 if name == "sequence" else 1.2)
-        ax.set(xlabel="reds' mean distance from the rack's centre, at rest [m]", ylabel="share of shots below", ylim=(0, 1))
-        ax.set_title({"apex, touching": "whole shots: apex of a touching rack"}.get(kind, f"whole shots: {kind}"), fontsize=10)
-        ax.legend(fontsize=8)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(file, dpi=110)
-    print(file)
 
 
 def main():
