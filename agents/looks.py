@@ -1,7 +1,7 @@
 """Which errors should a look ahead try? Five sets of them that together are like all: ``python -m agents.looks`` finds them again.
 
 Where a shot under execution noise leads is a mean over five numbers (errors of speed, side, top, aim, elevation). A mean over a few draws
-is poor when the draws happen to lie on one side. ``LOOKS`` are keys of streams (``game.stream``) whose errors have been chosen: of each kind
+is poor when they happen to lie on one side. ``LOOKS`` are keys of streams (``game.stream``) whose errors have been chosen: of each kind
 they are nearly the five values that are equally likely (-1.28, -0.52, 0, 0.52, 1.28 standard deviations), and one kind says little of
 another. They are the same for all positions and strokes, so strokes differ by their merits.
 
