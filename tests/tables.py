@@ -1,0 +1,45 @@
+"""How does a test of the environment set up a table, strike, and compare what comes back bit for bit?"""
+
+import numpy as np
+
+from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
+from snooker_env.game.balls import CUE, N_BALLS, SPOTS
+
+LAYOUTS = ("opened", "held_out", "break_off", "line_up", "colours", "random:0", "random:1", "random:15")
+INFO = {
+    "points": float, "break": float, "foul": bool, "penalty": int, "pots": int, "fouls": int, "first_ball": int, "ball_on": int,
+    "events": int, "seconds": float,
+}  # fmt: skip
+
+
+def table_state(env, places, ball_on, points=0, **fields):
+    """Put balls {id: (x, y)} and nothing else on the table."""
+    positions, on_table = SPOTS.copy(), [False] * N_BALLS
+    for ball, place in places.items():
+        positions[ball], on_table[ball] = place, True
+    if not env.np_random_seed:
+        env.reset(seed=1)
+    state = env.get_state() | {"positions": positions.tolist(), "on_table": on_table, "ball_on": int(ball_on), "points": points}
+    env.set_state(state | {"in_hand": False, "over": False} | fields)
+
+
+def after_strike(env, action):
+    """The cue ball's velocity and spin as it leaves the tip."""
+    env.step(np.array(action, np.float32))
+    _, v, w = env.last_shot.at(0.0)
+    return v[CUE], w[CUE]
+
+
+def speed_of(a):
+    return MIN_SPEED + (a + 1) / 2 * (MAX_SPEED - MIN_SPEED)
+
+
+def jsonable(x):
+    """Arrays as bytes, so that equality is equality of bits."""
+    if isinstance(x, np.ndarray):
+        return (x.dtype.str, x.shape, x.tobytes())
+    if isinstance(x, dict):
+        return {k: jsonable(v) for k, v in x.items()}
+    if isinstance(x, list | tuple):
+        return [jsonable(v) for v in x]
+    return x
