@@ -9,7 +9,7 @@ import snooker_env as sn
 from benchmarks import _paper_data as data
 from benchmarks import _paper_shots as shots
 from benchmarks import paper
-from tests.oracles import impact as oracle
+from tests.oracles.paper_tables import PAPER_ROWS
 from tests.physics.test_impacts import CUTS, THROW
 
 
@@ -17,11 +17,11 @@ def test_the_tables_file_holds_what_the_other_tests_hold():
     """Two copies of the paper's numbers, typed apart: they differ where the file keeps the printed slip."""
     rows = shots.tables()
     for q in shots.QUANTITIES:
-        assert rows[f"measured_{q}"].tolist() == [getattr(r, f"measured_{q}") for r in oracle.PAPER_ROWS]
-        different = np.flatnonzero(rows[f"printed_{q}"] != [getattr(r, q) for r in oracle.PAPER_ROWS]).tolist()
+        assert rows[f"measured_{q}"].tolist() == [getattr(r, f"measured_{q}") for r in PAPER_ROWS]
+        different = np.flatnonzero(rows[f"printed_{q}"] != [getattr(r, q) for r in PAPER_ROWS]).tolist()
         assert different == ([3] if q == "v_c" else [])
     assert [rows[k].tolist() for k in ("v0_m_s", "topspin_rad_s", "cut_deg")] == [
-        [getattr(r, k) for r in oracle.PAPER_ROWS] for k in ("v0", "w_t", "cut")
+        [getattr(r, k) for r in PAPER_ROWS] for k in ("v0", "w_t", "cut")
     ]
 
 

@@ -22,7 +22,7 @@ from collections.abc import Callable
 import numba
 import numpy as np
 
-from .impact import Friction, ball_ball
+from .ball_ball import Friction, ball_ball
 
 ZERO_SLIP = 1e-12  # [m/s] a slip below this is rolling; a real slip ends by a cut step, exactly
 APPROACH = 1e-10  # [m/s] touching balls that approach more slowly than this are left alone
@@ -185,7 +185,7 @@ def simulate(
     e, mu_bb : restitution and friction between balls, used by the default ``impact`` only.
     dt : step [s]. The result does not depend on it beyond rounding unless a phase of motion and a contact begin and end within one step;
         halve it to see.
-    impact : callable (v1, w1, v2, w2, normal) -> (v1, w1, v2, w2), arrays (3,), normal (3,) from ball 1 to ball 2; ``impact.ball_ball``
+    impact : callable (v1, w1, v2, w2, normal) -> (v1, w1, v2, w2), arrays (3,), normal (3,) from ball 1 to ball 2; ``ball_ball.ball_ball``
         with the given parameters if None. Vertical velocities it returns are dropped.
     log : if a list is given, (time, i, j) of each impact is appended.
 

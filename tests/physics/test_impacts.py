@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from tests.oracles import impact as oracle
+from tests.oracles.ball_ball import ball_ball
+from tests.oracles.ball_cushion import ball_cushion
+from tests.oracles.paper_tables import PAPER_ROWS, after_slip, incoming
 from tests.physics.cases import R, cushion_impacts, impacts
 
 FIDELITIES = ("fast", "standard", "reference", "euler:400")
@@ -36,12 +38,12 @@ def energy(v, w):
 
 
 def predicted(row, fidelity):
-    v1, w1, v2, w2, normal = oracle.incoming(row)
+    v1, w1, v2, w2, normal = incoming(row)
     after = sn.collide_balls(v1, w1, v2, w2, normal, "paper", fidelity)
-    return np.array(oracle.after_slip(*after, v1, R=R))
+    return np.array(after_slip(*after, v1, R=R))
 
 
-@pytest.mark.parametrize("row", oracle.PAPER_ROWS, ids=lambda row: f"V0={row.v0}")
+@pytest.mark.parametrize("row", PAPER_ROWS, ids=lambda row: f"V0={row.v0}")
 def test_euler_10000_gives_the_printed_tables(row):
     """Tables 1 and 2, row 4 as corrected: 20 numbers as printed, speeds to a millimetre a second, angles to a hundredth of a degree."""
     got = predicted(row, "euler:10000")
@@ -49,7 +51,7 @@ def test_euler_10000_gives_the_printed_tables(row):
     assert np.round(got[2:], 2).tolist() == [row.angle_c, row.angle_o]
 
 
-@pytest.mark.parametrize("row", oracle.PAPER_ROWS, ids=lambda row: f"V0={row.v0}")
+@pytest.mark.parametrize("row", PAPER_ROWS, ids=lambda row: f"V0={row.v0}")
 def test_reference_is_close_to_the_printed_tables(row):
     got = predicted(row, "reference")
     assert np.abs(got[:2] - [row.v_c, row.v_o]).max() < 0.001
@@ -71,7 +73,7 @@ def test_euler_converges_to_reference_at_first_order():
 
 def truth_of(case, mu_bb):
     c = case
-    return oracle.ball_ball(c["v1"], c["w1"], c["v2"], c["w2"], c["normal"], R=R, M=M, e=c["e"], mu_bb=mu_bb, mu_s=c["mu_s"])
+    return ball_ball(c["v1"], c["w1"], c["v2"], c["w2"], c["normal"], R=R, M=M, e=c["e"], mu_bb=mu_bb, mu_s=c["mu_s"])
 
 
 @pytest.fixture(scope="module")
@@ -113,7 +115,7 @@ def test_cushion_agrees_with_the_oracle():
     errors = {"reference": [], "standard": []}
     for c in cushion_impacts(100, seed=7):
         physics = sn.Physics(e_c=c["e"], mu_c=c["mu_w"], mu_s=c["mu_s"])
-        truth = oracle.ball_cushion(c["v"], c["w"], c["normal"], R=R, M=M, e=c["e"], mu_w=c["mu_w"], mu_s=c["mu_s"], sin_theta=0.4)
+        truth = ball_cushion(c["v"], c["w"], c["normal"], R=R, M=M, e=c["e"], mu_w=c["mu_w"], mu_s=c["mu_s"], sin_theta=0.4)
         for fidelity, found in errors.items():
             found.append(worst(sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity), truth, np.linalg.norm(c["v"])))
     assert max(errors["reference"]) < 1e-9

@@ -1,0 +1,18 @@
+"""Which fixtures do several test files share? A window that needs no display."""
+
+import pytest
+
+
+@pytest.fixture
+def screen(monkeypatch):
+    """A display that is none; shots are drawn without waiting for the clock."""
+    pytest.importorskip("pygame")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    shown = []
+
+    def play(self, scenes, fps=30.0):
+        shown.append((len(list(scenes)), fps))
+        return True
+
+    monkeypatch.setattr("snooker_env.render.pygame_view.Window.play", play)
+    return shown

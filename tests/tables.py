@@ -1,0 +1,67 @@
+"""How does a test of the environment set up a table, strike, and compare what comes back bit for bit?"""
+
+import numpy as np
+
+from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.game.balls import BLACK, CUE, N_BALLS, PINK, SPOTS
+from snooker_env.game.frame import Frame
+
+LAYOUTS = ("opened", "held_out", "break_off", "line_up", "colours", "random:0", "random:1", "random:15")
+INFO = {
+    "points": float, "break": float, "foul": bool, "penalty": int, "pots": int, "fouls": int, "first_ball": int, "ball_on": int,
+    "events": int, "seconds": float,
+}  # fmt: skip
+PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}
+"""Red 1 can be potted along the target line, red 2 is out of the way."""
+
+
+def table_state(env, places, ball_on, points=0, **fields):
+    """Put balls {id: (x, y)} and nothing else on the table."""
+    positions, on_table = SPOTS.copy(), [False] * N_BALLS
+    for ball, place in places.items():
+        positions[ball], on_table[ball] = place, True
+    if not env.np_random_seed:
+        env.reset(seed=1)
+    state = env.get_state() | {"positions": positions.tolist(), "on_table": on_table, "ball_on": int(ball_on), "points": points}
+    env.set_state(state | {"in_hand": False, "over": False} | fields)
+
+
+def frame_env(**options):
+    return SnookerEnv(**{"task": "frame", "aim": "target", "decision": True, "placement": True} | options)
+
+
+def frame_state(env, places, frame, **state):
+    """Put balls {id: (x, y)} and nothing else on the table, in the middle of a ``Frame`` given by its fields."""
+    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
+    for ball, place in places.items():
+        positions[ball], on_table[ball] = place, True
+    env.reset(seed=1)
+    mask = sum(1 << ball for ball in places if ball)
+    fields = {"on_table": mask, "in_hand": False, "miss": env.frames.table.miss} | frame
+    plain = Frame(**fields).to_dict()
+    saved = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": plain}
+    env.reset(options={"state": env.get_state() | saved | state})
+    return env
+
+
+def after_strike(env, action):
+    """The cue ball's velocity and spin as it leaves the tip."""
+    env.step(np.array(action, np.float32))
+    _, v, w = env.last_shot.at(0.0)
+    return v[CUE], w[CUE]
+
+
+def speed_of(a):
+    return MIN_SPEED + (a + 1) / 2 * (MAX_SPEED - MIN_SPEED)
+
+
+def jsonable(x):
+    """Arrays as bytes, so that equality is equality of bits."""
+    if isinstance(x, np.ndarray):
+        return (x.dtype.str, x.shape, x.tobytes())
+    if isinstance(x, dict):
+        return {k: jsonable(v) for k, v in x.items()}
+    if isinstance(x, list | tuple):
+        return [jsonable(v) for v in x]
+    return x

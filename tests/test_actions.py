@@ -1,0 +1,176 @@
+"""What does an action mean? Aim, speed, tip, elevation and placement, read from the ball as it leaves the tip."""
+
+import math
+
+import numpy as np
+import pytest
+
+from snooker_env.envs.actions import MAX_ELEVATION, TARGET_SPAN
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.game.balls import BALL_RADIUS as R
+from snooker_env.game.balls import BAULK_Y, BLACK, CUE, D_RADIUS, N_BALLS, SPOTS, BallOn
+from snooker_env.game.pots import POCKETS, pots
+from tests.tables import after_strike, speed_of, table_state
+
+
+@pytest.mark.parametrize("side", [0.0, 1.0, -1.0, 0.5])
+@pytest.mark.parametrize("aim", [-1.0, -0.75, -0.3, 0.0, 0.1, 0.5, 0.99])
+def test_absolute_aim_is_the_direction_in_which_the_ball_leaves(side, aim):
+    """Also with side spin: the squirt is compensated, so the cue itself points elsewhere."""
+    env = SnookerEnv(render_mode="ansi")
+    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    v, w = after_strike(env, [0.0, side, 0.0, aim])
+    direction = math.pi * float(np.float32(aim))
+    assert math.remainder(math.atan2(v[1], v[0]) - direction, 2 * math.pi) == pytest.approx(0.0, abs=1e-9)
+    assert np.hypot(*v) == pytest.approx(speed_of(0.0), rel=1e-12)
+    # right side turns the ball anticlockwise as seen from above: w = (5/2) v b / R^2 [TP A.30]
+    assert w[2] == pytest.approx(2.5 * speed_of(0.0) * 0.5 * side / R, rel=1e-12)
+
+
+def test_squirt_is_what_is_compensated():
+    """With the same action, but no end mass to speak of in the formula, the cue's own direction is another one."""
+    heavy, light = (SnookerEnv(physics={"end_mass_ratio": ratio}) for ratio in (5.0, 1e9))
+    cues = []
+    for env in (heavy, light):
+        cues.append(env.actions.shot([0, 1, 0, 0.25], SPOTS, np.ones(N_BALLS, bool), 2)[3])
+    assert cues[1] == pytest.approx(math.pi / 4, abs=1e-8)
+    assert cues[0] - cues[1] == pytest.approx(-math.atan(2.5 * 0.5 * math.sqrt(0.75) / (1 + 5 + 2.5 * 0.75)), abs=1e-8)
+
+
+@pytest.mark.parametrize(("a", "speed"), [(-1.0, 0.2), (1.0, 7.0), (0.0, 3.6), (-0.5, 1.9)])
+def test_speed_is_linear_between_its_ends(a, speed):
+    env = SnookerEnv(render_mode="ansi")
+    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    assert np.hypot(*after_strike(env, [a, 0, 0, 0.3])[0]) == pytest.approx(speed, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("side", "top", "b", "t"),
+    [(1, 0, 0.5, 0), (0, 1, 0, 0.5), (0, -1, 0, -0.5), (1, 1, math.sqrt(0.125), math.sqrt(0.125)), (-0.6, 0.8, -0.3, 0.4),
+     (0.9, -1, 0.45 / math.sqrt(1.81), -0.5 / math.sqrt(1.81)), (0.5, 0.25, 0.25, 0.125)],
+)  # fmt: skip
+def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
+    """A pair outside is drawn back along its own direction, one inside is as it is."""
+    env = SnookerEnv(render_mode="ansi")
+    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    _, w = after_strike(env, [0.0, side, top, 0.0])
+    scale = 2.5 * speed_of(0.0) / R
+    cue = -env.actions.shot([0, side, top, 0], env.positions, env.on_table, 2)[3]  # how far the cue is turned against the squirt
+    assert cue == pytest.approx(math.atan(2.5 * b * math.sqrt(1 - b * b) / (1 + 30 + 2.5 * (1 - b * b))), abs=1e-4)
+    assert w[2] / scale == pytest.approx(b, abs=1e-4)
+    assert w[1] / scale == pytest.approx(t, abs=1e-4)  # rolling along +x is a positive turn about +y
+    assert np.hypot(*w[1:]) / scale <= 0.5 * (1 + 1e-12)
+
+
+@pytest.mark.parametrize(("a", "degrees"), [(-1.0, 0.0), (0.0, 15.0), (1.0, 30.0)])
+def test_elevation_lengthens_the_action_and_takes_speed(a, degrees):
+    env = SnookerEnv(elevation=True, render_mode="ansi")
+    assert env.action_space.shape == (5,) and SnookerEnv().action_space.shape == (4,)
+    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    v, w = after_strike(env, [0.0, 1.0, 0.0, 0.0, a])
+    angle = math.radians(degrees)
+    assert math.radians(30) == MAX_ELEVATION
+    assert np.hypot(*v) == pytest.approx(speed_of(0.0) * math.cos(angle), rel=1e-12)
+    assert w[2] == pytest.approx(2.5 * speed_of(0.0) / R * 0.5 * math.cos(angle), rel=1e-12)
+    assert w[0] == pytest.approx(2.5 * speed_of(0.0) / R * 0.5 * math.sin(angle), rel=1e-3, abs=1e-9)  # the masse part
+
+
+def test_elevation_of_nothing_is_the_short_action():
+    long, short = SnookerEnv(elevation=True, layout="random:4"), SnookerEnv(layout="random:4")
+    for seed in range(5):
+        long.reset(seed=seed), short.reset(seed=seed)
+        a = np.random.default_rng(seed).uniform(-1, 1, 4)
+        assert np.array_equal(long.step([*a, -1.0])[0], short.step(a)[0])
+
+
+@pytest.mark.parametrize("elevation", [False, True])
+@pytest.mark.parametrize(("a", "b"), [(0.0, -1.0), (0.0, 1.0), (-0.5, 0.0), (0.25, 0.5), (-0.8, -1.0)])
+def test_placement_puts_the_ball_in_hand_where_it_says(a, b, elevation):
+    env = SnookerEnv(layout="break_off", placement=True, elevation=elevation, render_mode="ansi")
+    assert env.action_space.shape == (6 + elevation,)
+    obs, _ = env.reset(seed=1)
+    assert obs[-2] == 1.0  # in hand
+    before = env.positions[CUE].copy()
+    env.step(np.array([-1.0, 0, 0, 0.5, *[-1.0] * elevation, a, b]))
+    placed = env.last_shot.at(0.0)[0][CUE]
+    depth = D_RADIUS * math.sqrt(1 - a * a) * (b + 1) / 2
+    want = (D_RADIUS * a, BAULK_Y - depth)
+    if np.hypot(*(SPOTS[16:19] - want).T).min() > 2 * R + 1e-5:
+        assert placed == pytest.approx(want, abs=1e-12)
+    else:  # the brown's spot is taken: the nearest place where it is clear of it
+        assert 2 * R < np.hypot(*(placed - SPOTS[18])) < 2 * R + 1e-5
+    assert np.hypot(placed[0], placed[1] - BAULK_Y) <= D_RADIUS + 1e-12 and placed[1] <= BAULK_Y
+    assert not np.array_equal(placed, before)
+
+
+def test_placement_is_for_a_ball_in_hand_only():
+    env = SnookerEnv(layout="random:4", placement=True, render_mode="ansi")
+    ends = set()
+    for place in ((0.0, 0.0), (0.7, -0.3), (-1.0, 1.0)):
+        env.reset(seed=3)
+        here = env.positions[CUE].copy()
+        ends.add(env.step([0, 0, 0, 0.2, *place])[0].tobytes())
+        assert np.array_equal(env.last_shot.at(0.0)[0][CUE], here)
+    assert len(ends) == 1
+    plain = SnookerEnv(layout="break_off", render_mode="ansi")  # without placement the ball lies where the layout put it
+    plain.reset(seed=3)
+    here = plain.positions[CUE].copy()
+    plain.step([0, 0, 0, 0.5])
+    assert np.array_equal(plain.last_shot.at(0.0)[0][CUE], here)
+
+
+@pytest.mark.parametrize("a", [1.0, -1.0, 0.99, -0.99])
+@pytest.mark.parametrize("b", [-1.0, 0.0, 1.0])
+def test_no_placement_overlaps_a_ball(a, b):
+    """The yellow and the green stand on the D's corners."""
+    env = SnookerEnv(layout="break_off", placement=True, render_mode="ansi")
+    env.reset(seed=1)
+    env.step([-1.0, 0, 0, 0.5, a, b])
+    start = env.last_shot.at(0.0)[0]
+    assert np.hypot(*(start[1:] - start[CUE]).T).min() >= 2 * R - 1e-6
+
+
+def straight(rng):
+    """A straight pot: object ball, cue ball, direction, all clear of the cushions."""
+    while True:
+        pocket = POCKETS[rng.integers(6)]
+        turn = rng.uniform(-0.35, 0.35)
+        c, s = math.cos(turn), math.sin(turn)
+        d = np.array([pocket[2] * c - pocket[3] * s, pocket[2] * s + pocket[3] * c])
+        ball = pocket[:2] - rng.uniform(0.25, 0.6) * d
+        cue = ball - rng.uniform(0.2, 0.5) * d
+        if (np.abs([ball, cue]) < (0.8, 1.65)).all():
+            return ball, cue, math.atan2(d[1], d[0])
+
+
+def test_target_aim_of_nothing_pots_a_straight_ball():
+    """a = 0 is the line of the best pot: any straight pot goes in, 3 degrees off it does not."""
+    env = SnookerEnv(aim="target", render_mode="ansi")
+    rng = np.random.default_rng(3)
+    tried = astray = 0
+    for _ in range(40):
+        ball, cue, direction = straight(rng)
+        black = (0.0, 0.3) if ball[1] * cue[1] > 0.05 else (-0.6, 1.4)
+        if np.hypot(*(np.array([cue, ball]) - black).T).min() < 0.3:
+            continue
+        table_state(env, {CUE: cue, 1: ball, BLACK: black}, BallOn.RED)
+        before = env.get_state()
+        info = env.step([-0.4, 0.0, -0.3, 0.0])[4]
+        v = env.last_shot.at(0.0)[1][CUE]
+        assert math.remainder(math.atan2(v[1], v[0]) - direction, 2 * math.pi) == pytest.approx(0.0, abs=1e-6)
+        assert info["pots"] == 1 and info["first_ball"] == 1
+        assert env.last_shot.potted[1] >= 0
+        for a in (-1.0, 1.0):
+            env.set_state(before)
+            tried, astray = tried + 1, astray + (env.step([-0.4, 0.0, -0.3, a])[4]["pots"] == 0)
+            v = env.last_shot.at(0.0)[1][CUE]
+            assert math.remainder(math.atan2(v[1], v[0]) - direction - a * TARGET_SPAN, 2 * math.pi) == pytest.approx(0.0, abs=1e-6)
+    assert tried > 50 and astray > 0.8 * tried
+
+
+def test_target_aim_without_a_pot_is_at_the_nearest_ball_on():
+    env = SnookerEnv(aim="target")
+    table_state(env, {CUE: (0.0, 1.0), 1: (0.0, 1.7), 2: (0.1, 1.74)}, BallOn.RED)  # towards the top cushion: no pot there
+    assert len(pots(env.positions, env.on_table, env.on)) == 0
+    assert env.actions.shot([0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3] == pytest.approx(math.pi / 2, abs=1e-12)
+    assert env.actions.shot([0, 0, 0, -0.5], env.positions, env.on_table, env.on)[3] == pytest.approx(math.pi / 2 - TARGET_SPAN / 2)

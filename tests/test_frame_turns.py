@@ -1,0 +1,127 @@
+"""Whose stroke is it in ``task="frame"``, what may he decide, and what is it worth? Turns, decisions after a foul, rewards."""
+
+import json
+
+import gymnasium
+import numpy as np
+import pytest
+
+from benchmarks import frames
+from snooker_env.envs.frame_table import FrameTable
+from snooker_env.envs.shooting import shooter_of
+from snooker_env.game.balls import BLACK, BLUE, CUE, D_RADIUS, PINK, SPOTS, BallOn
+from snooker_env.game.ruling import Foul
+from tests.tables import PLACES, frame_env, frame_state
+
+TO_BLUE = 0.0
+"""Absolute aim along +x."""
+
+
+def test_a_step_ends_when_the_agent_is_to_play_or_the_frame_is_over():
+    env = frame_env(opponent="random", layout="random:3")
+    for seed in range(10):
+        env.reset(seed=seed)
+        while not env.over:
+            assert env.frames.table.frame.striker == 0
+            _, _, terminated, truncated, info = env.step(env.action_space.sample())
+            assert terminated == env.over and truncated is False
+            assert (info["winner"] >= 0) == terminated
+        with pytest.raises(gymnasium.error.ResetNeeded):
+            env.step(np.zeros(7))
+
+
+def test_the_agent_stays_while_it_scores_and_the_opponent_comes_after_a_miss():
+    env = frame_state(frame_env(opponent="ghost_ball"), PLACES, {})
+    _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
+    assert (reward, info["points"], info["opponent_strokes"], env.ball_on) == (1.0, 1.0, 0, BallOn.ANY_COLOUR)
+    _, _, _, _, info = env.step([-0.9, 0, 0, 1.0, 0, 0, 0])
+    assert info["points"] == 0.0 and info["opponent_strokes"] > 0
+
+
+def test_alone_a_miss_and_a_foul_hand_the_table_back():
+    places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
+    env = frame_state(frame_env(aim="absolute"), places, {})
+    before = env.positions[BLUE].copy()
+    _, reward, terminated, _, info = env.step([-0.9, 0, 0, TO_BLUE, 0, 0, 0])
+    assert (reward, info["fouls"], info["opponent_score"], info["opponent_strokes"]) == (-5.0, Foul.WRONG_FIRST, 5.0, 0)
+    assert not terminated and not env.frames.table.frame.free_ball and env.frames.table.frame.phase == "stroke"
+    assert not np.array_equal(env.positions[BLUE], before)  # from where the balls lie
+
+
+def test_a_cue_ball_in_hand_stands_in_the_d_and_is_played_from_where_it_is_placed():
+    places = {1: (0.6, 1.4), BLACK: SPOTS[BLACK], CUE: (D_RADIUS / 2, -1.0475)}
+    env = frame_state(frame_env(opponent="ghost_ball"), places, {"in_hand": True})
+    assert env.in_hand and env.on_table[CUE]
+    env.render_mode = "ansi"
+    env.step([-0.9, 0, 0, 0, -1.0, -1.0, 0])
+    twin = frame_state(frame_env(), places, {"in_hand": True})
+    twin.render_mode = "ansi"
+    twin.step([-0.9, 0, 0, 0, -1.0, -1.0, 0])
+    assert np.allclose(twin.last_shot.at(0.0)[0][CUE], (-D_RADIUS, -1.0475))
+
+
+# Decisions
+
+
+FOULED = {"phase": "choice", "striker": 0, "scores": (0, 4)}
+
+
+@pytest.mark.parametrize(("decision", "own"), [(0.0, True), (-0.33, True), (1.0, True), (-0.34, False), (-1.0, False)])
+def test_after_a_foul_the_action_decides(decision, own):
+    """Without a miss called, "replace" is no option and means to play."""
+    env = frame_state(frame_env(opponent="ghost_ball"), PLACES, FOULED)
+    assert env.frames.observe()[-3] == 1.0  # a decision is open
+    _, _, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, decision])
+    assert (info["events"] > 0) == own
+    assert own or info["opponent_strokes"] > 0
+
+
+def test_without_the_option_the_agent_always_plays():
+    env = frame_state(frame_env(opponent="ghost_ball", decision=False), PLACES, FOULED)
+    assert env.step([-0.5, 0, 0, 0, -1.0, -1.0])[4]["events"] > 0
+
+
+def test_replacing_after_a_miss_brings_the_balls_back():
+    shooter = shooter_of("absolute", False, True, True, "none", "paper", "match", "standard")
+    table, rng = FrameTable(shooter, miss="clear_path"), np.random.default_rng(0)
+    table.start(*frames.break_off(rng), breaker=0, in_hand=True)
+    table.place(*SPOTS[CUE])
+    before = table.positions.tobytes()
+    table.play((1.0, 0.0, 0.0, -np.pi / 2, 0.0), rng)  # at the bottom cushion, hitting nothing
+    assert table.frame.choices == ("play", "play_again", "replace") and table.positions.tobytes() != before
+    after = json.loads(json.dumps(table.get_state()))
+    table.set_state(after)
+    assert table.act([0, 0, 0, 0, 0, 0, 1.0], rng) is None
+    assert table.positions.tobytes() == before and table.frame.striker == 0 and table.frame.in_hand
+
+
+def test_a_free_ball_is_seen_and_scores():
+    places = {CUE: (0.3, 1.1), BLUE: (0.6, 1.4), 1: (-0.5, -1.2), PINK: SPOTS[PINK], BLACK: (0.0, 0.0)}
+    env = frame_state(frame_env(opponent="ghost_ball"), places, FOULED | {"free_ball": True})
+    assert env.on >> BLUE & 1 and env.on >> 1 & 1 and env.frames.observe()[-4] == 1.0
+    _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
+    assert (reward, info["points"], env.ball_on) == (1.0, 1.0, BallOn.ANY_COLOUR)
+    assert np.array_equal(env.positions[BLUE], SPOTS[BLACK])  # it came back; its own spot is taken
+    plain = frame_state(frame_env(opponent="ghost_ball"), places, FOULED)
+    assert not plain.on >> BLUE & 1
+
+
+# Rewards
+
+
+@pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
+def test_points_add_up_to_the_difference_and_win_says_who_won(opponent):
+    for seed in range(4):
+        totals = {}
+        for reward in ("points", "win"):
+            env = frame_env(opponent=opponent, reward=reward, layout="random:2", noise="club")
+            env.reset(seed=seed)
+            start = env.frames.table.frame.scores
+            rng, total, steps = np.random.default_rng(seed), 0.0, 0
+            while not env.over:
+                _, r, _, _, info = env.step(rng.uniform(-1, 1, 7))
+                total, steps = total + r, steps + 1
+                assert reward == "points" or (r == 0.0) != env.over
+            totals[reward] = total
+        assert totals["points"] == info["score"] - info["opponent_score"] - (start[0] - start[1])
+        assert totals["win"] == (1.0 if info["winner"] == 0 else -1.0)

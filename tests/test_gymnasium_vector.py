@@ -1,0 +1,66 @@
+"""Do Gymnasium's own vector environments play, bit for bit, what single ones play? (The native one: ``test_vector``.)"""
+
+import gymnasium
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from tests.tables import INFO
+
+
+def make_noisy():
+    return gymnasium.make("Snooker-v0", noise="club", layout="random:4", aim="target")
+
+
+@pytest.mark.parametrize("kind", ["sync", "async"])
+def test_vector_environments_play_as_single_ones(kind):
+    if kind == "sync":
+        vector = gymnasium.vector.SyncVectorEnv([make_noisy] * 2)
+    else:
+        sn.warmup()
+        vector = gymnasium.vector.AsyncVectorEnv([make_noisy] * 2, context="fork")
+    singles = [make_noisy() for _ in range(2)]
+    try:
+        got, infos = vector.reset(seed=10)
+        want = [env.reset(seed=10 + k)[0] for k, env in enumerate(singles)]
+        assert np.array_equal(got, want)
+        over = [False, False]
+        ends = 0
+        for _ in range(12):
+            got, rewards, terminated, truncated, infos = vector.step(np.zeros((2, 4), np.float32))
+            for k, env in enumerate(singles):
+                if over[k]:  # NEXT_STEP: the step after the end is the reset
+                    obs, info = env.reset()
+                    reward, over[k] = 0.0, False
+                else:
+                    obs, reward, over[k], _, info = env.step(np.zeros(4, np.float32))
+                ends += over[k]
+                assert np.array_equal(got[k], obs) and rewards[k] == reward and terminated[k] == over[k] and not truncated[k]
+                assert all(infos[name][k] == info[name] for name in INFO)
+        assert ends > 1
+        assert infos["seconds"].dtype == infos["break"].dtype == np.float64 and infos["foul"].dtype == bool
+    finally:
+        vector.close()
+
+
+def test_the_observation_at_the_end_is_given_with_the_reset():
+    """SAME_STEP: the returned observation is the new table's, ``final_obs`` the old one's."""
+    mode = gymnasium.vector.AutoresetMode.SAME_STEP
+    vector = gymnasium.vector.SyncVectorEnv([make_noisy] * 2, autoreset_mode=mode)
+    singles = [make_noisy() for _ in range(2)]
+    vector.reset(seed=20)
+    for k, env in enumerate(singles):
+        env.reset(seed=20 + k)
+    ended = 0
+    for _ in range(10):
+        got, _, terminated, _, infos = vector.step(np.zeros((2, 4), np.float32))
+        for k, env in enumerate(singles):
+            obs, _, over, _, info = env.step(np.zeros(4, np.float32))
+            if over:
+                ended += 1
+                assert np.array_equal(infos["final_obs"][k], obs) and infos["final_info"]["seconds"][k] == info["seconds"]
+                obs, _ = env.reset()
+                assert not np.array_equal(infos["final_obs"][k], obs)
+            assert np.array_equal(got[k], obs) and terminated[k] == over
+    assert ended > 1
+    vector.close()

@@ -1,0 +1,86 @@
+"""Is the noise as wide as its level says, does it reach the table, and does it leave every shot playable?"""
+
+import math
+
+import numpy as np
+import pytest
+
+from snooker_env.envs.noise import LEVELS, Noise
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.game.balls import BALL_RADIUS as R
+from snooker_env.game.balls import CUE, BallOn
+from tests.tables import after_strike, speed_of, table_state
+
+
+def test_noise_has_the_deviations_that_it_says():
+    """20 000 draws: a standard deviation is known to 0.5 %, a mean to 0.7 % of one."""
+    noise = Noise(aim_deg=0.2, speed_rel=0.03, speed_abs=0.04, offset_mm=0.4, elevation_deg=0.5)
+    rng = np.random.default_rng(7)
+    shot = (2.0, 0.1, -0.2, 0.7, 0.3)
+    draws = np.array([noise.draw(rng, *shot, R) for _ in range(20_000)])
+    sigma = [math.hypot(0.03 * 2.0, 0.04), 0.4e-3 / R, 0.4e-3 / R, math.radians(0.2), math.radians(0.5)]
+    assert draws.std(axis=0) == pytest.approx(sigma, rel=0.025)
+    assert np.abs((draws.mean(axis=0) - shot) / sigma).max() < 0.035
+    assert np.abs(np.corrcoef(draws.T) - np.eye(5)).max() < 0.035
+    normal = (draws - shot) / sigma
+    assert (np.abs(normal) > 1).mean(axis=0) == pytest.approx([0.3173] * 5, abs=0.015)
+    assert (np.abs(normal) > 3).mean(axis=0) == pytest.approx([0.0027] * 5, abs=0.002)
+
+
+@pytest.mark.parametrize("name", LEVELS)
+def test_each_level_is_as_wide_as_written(name):
+    wide = {"none": 0, "professional": 0.025, "amateur": 0.05, "club": 0.1, "olympiad": 0.125}[name]
+    rng = np.random.default_rng(1)
+    draws = np.array([LEVELS[name].draw(rng, 3.0, 0, 0, 1.0, 0.2, R) for _ in range(4000)])
+    assert np.degrees(draws[:, 3].std()) == pytest.approx(wide, rel=0.05, abs=1e-12)
+    fast = {"none": 0, "professional": 0.0525, "amateur": 0.075, "club": 0.12, "olympiad": 0.075}[name]
+    assert draws[:, 0].std() == pytest.approx(fast, rel=0.05)
+
+
+def test_speed_and_elevation_are_never_negative():
+    rng = np.random.default_rng(1)
+    draws = np.array([Noise(speed_abs=1.0, elevation_deg=5.0).draw(rng, 0.2, 0, 0, 0, 0.0, R) for _ in range(500)])
+    assert draws[:, 0].min() == 0.0 < draws[:, 0].max() and draws[:, 4].min() == 0.0 < draws[:, 4].max()
+
+
+def test_noise_reaches_the_table():
+    """Executed aim and speed, read from the shots themselves, spread as the level says."""
+    env = SnookerEnv(noise={"aim_deg": 0.5, "speed_rel": 0.05}, render_mode="ansi")
+    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    state = env.get_state()
+    velocities = []
+    for k in range(400):
+        env.set_state(state | {"stream": [k, 0]})
+        velocities.append(after_strike(env, [-0.9, 0, 0, 0.25])[0])
+    v = np.array(velocities)
+    assert np.degrees(np.arctan2(v[:, 1], v[:, 0])).std() == pytest.approx(0.5, rel=0.12)
+    assert np.hypot(*v.T).std() / speed_of(-0.9) == pytest.approx(0.05, rel=0.12)
+
+
+def test_no_noise_draws_nothing():
+    env = SnookerEnv(layout="random:3")
+    env.reset(seed=1)
+    before = env.get_state()
+    env.step(np.zeros(4))
+    assert env.get_state()["stream"] == before["stream"] and env.get_state()["rng"] == before["rng"]
+    noisy = SnookerEnv(layout="random:3", noise={"offset_mm": 1e-9})
+    noisy.reset(seed=1)
+    noisy.step(np.zeros(4))
+    assert noisy.get_state()["stream"] == [before["stream"][0], before["stream"][1] + 3]
+    assert Noise().silent and not any(Noise(**{f: 1e-9}).silent for f in Noise.__dataclass_fields__)
+
+
+def test_a_noisy_tip_is_drawn_back_too():
+    """However wide the noise, no shot is a miscue that raises."""
+    env = SnookerEnv(layout="random:2", noise={"offset_mm": 30.0}, render_mode="ansi")
+    for seed in range(20):
+        env.reset(seed=seed)
+        v, w = after_strike(env, [0, 1, 0, 0.3])
+        assert np.hypot(w[2], np.hypot(*w[:2])) <= 2.5 * np.hypot(*v) / R * 0.5 * (1 + 1e-9)
+
+
+def test_a_noisy_elevation_stays_playable():
+    env = SnookerEnv(layout="random:2", noise={"elevation_deg": 90.0})
+    for seed in range(30):
+        env.reset(seed=seed)
+        env.step(np.zeros(4))

@@ -1,0 +1,79 @@
+"""Do observations and infos say what lies on the table, and are they the caller's own?"""
+
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import data_equivalence
+
+from snooker_env.envs import observations
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.game.balls import N_BALLS, BallOn
+from tests.tables import INFO, LAYOUTS
+
+
+@pytest.mark.parametrize("observation", observations.OBSERVATIONS)
+def test_what_is_returned_is_the_callers_own(observation):
+    """Spoiling every array and info that was returned changes nothing that comes later."""
+    clean, spoiled = (SnookerEnv(observation=observation, noise="club", layout="random:3") for _ in range(2))
+    want, got = clean.reset(seed=2), spoiled.reset(seed=2)
+    rng = np.random.default_rng(0)
+    for _ in range(8):
+        assert data_equivalence(want, got, exact=True)
+        for array in got[0].values() if isinstance(got[0], dict) else [got[0]]:
+            array[:] = 0.123
+        got[-1].clear()
+        state = spoiled.get_state()
+        state["positions"][0][0] = 0.5
+        state["on_table"][1] = False
+        state["stream"][1] = 7
+        state["rng"]["state"]["state"] = 0
+        if clean.over:
+            want, got = clean.reset(), spoiled.reset()
+        else:
+            action = rng.uniform(-1, 1, 4)
+            want, got = clean.step(action), spoiled.step(action)
+
+
+def describe(env):
+    """What the observation must say, from the state itself."""
+    rows = []
+    values = [0] + [1] * 15 + [2, 3, 4, 5, 6, 7]
+    for ball in range(N_BALLS):
+        x, y = env.positions[ball] if env.on_table[ball] else (0.0, 0.0)
+        sequence = env.ball_on > 1 and ball == env.ball_on + 14
+        may = {BallOn.RED: 1 <= ball < 16, BallOn.ANY_COLOUR: ball >= 16}.get(env.ball_on, sequence)
+        rows.append([x / 0.889, y / 1.7845, env.on_table[ball], values[ball] / 7, may and env.on_table[ball]])
+    state = [env.on_table[1:16].sum() / 15, *(env.ball_on == k for k in range(8)), env.in_hand, env.points / 155]
+    return np.array(rows, np.float32), np.array(state, np.float32)
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_observations_say_where_the_balls_lie_and_what_is_on(layout):
+    flat, rows = SnookerEnv(layout=layout, aim="target"), SnookerEnv(layout=layout, aim="target", observation="balls")
+    assert set(rows.observation_space.spaces) == {"balls", "state"}
+    for seed in range(6):
+        a, b = flat.reset(seed=seed)[0], rows.reset(seed=seed)[0]
+        while True:
+            balls, state = describe(flat)
+            assert np.array_equal(a, np.concatenate([b["balls"].ravel(), b["state"]]))
+            assert np.abs(b["balls"] - balls).max() < 1e-6 and np.abs(b["state"] - state).max() < 1e-6
+            assert flat.observation_space.contains(a) and rows.observation_space.contains(b)
+            assert a.dtype == b["balls"].dtype == b["state"].dtype == np.float32
+            if flat.over:
+                break
+            a, b = flat.step(np.zeros(4))[0], rows.step(np.zeros(4))[0]
+
+
+def test_infos_have_the_same_keys_and_types_at_all_times():
+    env = SnookerEnv(aim="target", layout="random:6", noise="club")
+    seen = {}
+    for seed in range(25):
+        infos = [env.reset(seed=seed)[1]]
+        while not env.over:
+            _, reward, terminated, truncated, info = env.step(np.array([0.3, 0, 0, 0]))
+            assert type(reward) is float and type(terminated) is bool and truncated is False
+            infos.append(info)
+        for info in infos:
+            assert {k: type(v) for k, v in info.items()} == INFO
+            for k, v in info.items():
+                seen.setdefault(k, set()).add(v)
+    assert all(len(values) > 1 for values in seen.values()), seen  # none of them is a constant

@@ -1,0 +1,104 @@
+"""Do a saved state and a copy of the environment play on bit for bit, and is a reset asked for when one is needed?"""
+
+import copy
+import json
+import pickle
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import data_equivalence
+
+from snooker_env.envs import observations
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.game.balls import BallOn
+from tests.tables import jsonable
+
+
+def shots(env, n=5):
+    """The next n shots, whatever happens: a new visit after an end."""
+    out = []
+    rng = np.random.default_rng(8)
+    for _ in range(n):
+        out.append(env.reset() if env.over else env.step(rng.uniform(-0.3, 0.3, env.action_space.shape)))
+    return pickle.dumps(jsonable(out)), env.points, env.positions.tobytes(), json.dumps(env.get_state())
+
+
+def midway(seed=0, **arguments):
+    """An environment in mid-visit: after a pot, with a colour on."""
+    env = SnookerEnv(**{"aim": "target", "noise": "club", "layout": "random:6"} | arguments)
+    for k in range(seed, seed + 200):
+        env.reset(seed=k)
+        env.step(np.array([0.0, 0, 0, 0, *[0.0] * (env.action_space.shape[0] - 4)]))
+        if not env.over:
+            return env
+    raise AssertionError("no pot in 200 shots")
+
+
+@pytest.mark.parametrize("arguments", [{}, {"observation": "balls"}, {"placement": True, "elevation": True}])
+def test_a_saved_state_plays_on_bit_for_bit(arguments):
+    env = midway(**arguments)
+    text = json.dumps(env.get_state())
+    assert env.ball_on == BallOn.ANY_COLOUR and env.points > 0
+    last = observations.observe(env.observation, env.positions, env.on_table, env.ball_on, env.on, env.in_hand, env.points)
+    want = shots(env)
+    for how in ("set_state", "reset", "elsewhere", "seeded"):
+        other = env if how in ("set_state", "reset") else SnookerEnv(aim="target", noise="club", layout="random:6", **arguments)
+        if how == "set_state":
+            other.set_state(json.loads(text))
+        else:
+            obs, info = other.reset(options={"state": json.loads(text)}, seed=77 if how == "seeded" else None)
+            assert data_equivalence(obs, last, exact=True)
+            assert info["break"] == other.points and info["ball_on"] == BallOn.ANY_COLOUR and info["points"] == 0.0
+        assert json.dumps(other.get_state()) == text
+        assert shots(other) == want
+
+
+def test_a_finished_visit_can_be_saved_too():
+    env = midway()
+    while not env.over:
+        env.step(np.array([-1, 0, 0, 1.0]))
+    state = json.loads(json.dumps(env.get_state()))
+    other = SnookerEnv(aim="target", noise="club", layout="random:6")
+    with pytest.raises(ValueError, match=r"state\.over = True"):  # there is no shot to play from it
+        other.reset(options={"state": state})
+    other.set_state(state)
+    assert other.over
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        other.step(np.zeros(4))
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))], ids=["deepcopy", "pickle"])
+@pytest.mark.parametrize("render_mode", [None, "rgb_array", "human"])
+def test_copies_play_on_alike_and_apart(copied, render_mode, screen):
+    env = midway(render_mode=render_mode)
+    twin = copied(env)
+    assert twin.table is env.table  # no copy of what never changes
+    assert shots(twin) == (want := shots(copied(env)))
+    assert json.dumps(env.get_state()) == json.dumps(copied(env).get_state())  # the twins' shots left it alone
+    assert shots(env) == want
+    for one in (env, twin):
+        one.close()
+
+
+def test_a_wrapped_environment_is_copied_with_its_state():
+    env = gymnasium.make("Snooker-v0", noise="club", layout="random:6")
+    env.reset(seed=1)
+    for twin in (copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
+        assert json.dumps(twin.unwrapped.get_state()) == json.dumps(env.unwrapped.get_state())
+        assert shots(twin.unwrapped) == shots(copy.deepcopy(env).unwrapped)
+
+
+def test_a_reset_is_needed_first_and_after_the_end():
+    env = SnookerEnv(layout="random:3")
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(np.zeros(4))
+    env.reset(seed=1)
+    while not env.over:
+        env.step(np.array([-1, 0, 0, 0.9]))
+    before = json.dumps(env.get_state())
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(np.zeros(4))
+    assert json.dumps(env.get_state()) == before
+    env.reset()
+    env.step(np.zeros(4))
