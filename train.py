@@ -44,6 +44,7 @@ try:
     from agents.recipes import Recipe, algorithm, names
     from agents.tables import training_tables
     from agents.visits import play, summary
+    from agents.world import world
 except ImportError as error:
     raise SystemExit(f'train.py: {error.name} is missing; train.py needs:  pip install "snooker-env[train]"') from None
 
@@ -68,6 +69,7 @@ class Settings:
     layout: str = option("", "where training visits start [the recipe's]")
     noise: str = option("", "execution noise: none, professional, amateur, club or olympiad [the recipe's]")
     fidelity: str = option("standard", "of the simulation: fast, standard, reference or euler:N")
+    physics: str = option("", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]")
     imitate: int = option(-1, "positions on which it is first taught by the search; -1: as many as the recipe says")
     start: str = option("", "a model of the same agent to start from, its .zip or run folder")
     set: tuple = option((), "other hyper-parameters, as gamma=0", nargs="+")
@@ -106,6 +108,8 @@ def recipe_of(settings):
     recipe = Recipe.of(settings.agent, settings.set)
     changes = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
     recipe.env_kwargs |= {key: value for key, value in changes.items() if value}
+    if settings.physics:
+        recipe.env_kwargs["physics"] = world(settings.physics)
     recipe.n_timesteps, recipe.n_envs = settings.steps or recipe.n_timesteps, settings.envs or recipe.n_envs
     if settings.imitate >= 0:
         recipe.imitation = settings.imitate
@@ -254,7 +258,7 @@ def evaluate(settings, recipe, model):
     """Figures of held-out visits, the same tables for each: the trained agent, the plain geometric player, random play."""
     options = player_options(recipe.env_kwargs)
     players = {"trained": Model(model, options, recipe.view), "ghost_ball": GhostBall(), "random": Random(options, settings.seed)}
-    told = {key: value for key, value in recipe.env_kwargs.items() if key in ("noise", "fidelity")}
+    told = {key: value for key, value in recipe.env_kwargs.items() if key in ("noise", "fidelity", "physics")}
     return {name: summary(play(player, settings.eval_visits, **told)) for name, player in players.items()}
 
 

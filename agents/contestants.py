@@ -11,6 +11,7 @@ from snooker_env._check import refuse
 
 from .models import PRETRAINED, pretrained
 from .players import NAMES, player_of
+from .world import text_of
 
 
 @dataclass(frozen=True)
@@ -70,5 +71,6 @@ def _training(run):
         seconds = 3600.0 * json.loads(card.read_text())["hours"]
     return {
         "recipe": model.recipe, "shots": model.num_timesteps, "seconds": seconds, "seed": model.seed, "gamma": model.gamma,
-        **{key: model.env_options.get(key, usual) for key, usual in (("noise", "none"), ("fidelity", "standard"), ("physics", "paper"))},
+        **{key: model.env_options.get(key, usual) for key, usual in (("noise", "none"), ("fidelity", "standard"))},
+        "physics": text_of(model.env_options.get("physics", "paper")),
     }  # fmt: skip

@@ -36,7 +36,6 @@ from snooker_env.game.balls import BallOn
 from snooker_env.game.layouts import POT_WINDOWS, deal_tables, plan_of
 from snooker_env.game.stream import stream_of
 from snooker_env.physics.contact import parse_fidelity
-from snooker_env.physics.parameters import Physics
 
 from .commit import commit
 from .contestants import Agent, player_for
@@ -44,6 +43,7 @@ from .players import NAMES
 from .report import AXES, main_condition, markdown, show
 from .statistics import RESAMPLES, Resamples, interval, iqm
 from .visits import CENTURY, HELD_OUT_SEED, MAXIMUM, Strokes, play
+from .world import world
 
 PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
 """Visits on each layout."""
@@ -74,21 +74,6 @@ def tables_of(layout, visits):
             if len(seeds) == visits:
                 return seeds
     raise refuse("visits", visits, f"must be at most {len(seeds)} on layout {layout!r}: it has no more tables")
-
-
-def world(text):
-    """The physics of a name, or of PRESET,FIELD=VALUE,...: what the environment takes. Raises ValueError."""
-    preset, *changes = text.split(",")
-    fields = {}
-    for change in changes:
-        name, equals, value = change.partition("=")
-        if not equals:
-            raise refuse("physics", text, "must be PRESET or PRESET,FIELD=VALUE,...")
-        try:
-            fields[name] = float(value)
-        except ValueError:
-            fields[name] = value
-    return Physics.of({"preset": preset, **fields})
 
 
 # figures -------------------------------------------------------------------------------------------------------------------------

@@ -6,23 +6,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
+from scipy.special import logsumexp
+from scipy.stats import norm
+from stable_baselines3 import PPO
 
-torch = pytest.importorskip("torch")
-pytest.importorskip("stable_baselines3")
-
-from scipy.special import logsumexp  # noqa: E402
-from scipy.stats import norm  # noqa: E402
-from stable_baselines3 import PPO  # noqa: E402
-
-from agents import absolute, recipes, view  # noqa: E402
-from agents.absolute import LINE, OFFERED, THROW_UNIT, TOLERANCE, AbsolutePolicy, nearest_image  # noqa: E402
-from agents.tables import training_tables  # noqa: E402
-from snooker_env.envs.actions import line  # noqa: E402
-from snooker_env.envs.choices import POTS  # noqa: E402
-from snooker_env.envs.observations import SIZE, observe  # noqa: E402
-from snooker_env.envs.snooker import SnookerEnv  # noqa: E402
-from snooker_env.game.balls import N_BALLS, mask_of  # noqa: E402
-from snooker_env.game.pots import POCKETS, pots  # noqa: E402
+from agents import absolute, recipes, view
+from agents.absolute import LINE, OFFERED, THROW_UNIT, TOLERANCE, AbsolutePolicy, nearest_image
+from agents.tables import training_tables
+from snooker_env.envs.actions import line
+from snooker_env.envs.choices import POTS
+from snooker_env.envs.observations import SIZE, observe
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.game.balls import N_BALLS, mask_of
+from snooker_env.game.pots import POCKETS, pots
 
 R = 0.02625
 

@@ -2,26 +2,21 @@
 
 import json
 import re
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy import stats
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-pytest.importorskip("stable_baselines3")
-pytest.importorskip("rich")
-pytest.importorskip("matplotlib")
-
-from agents import evaluate, report, visits  # noqa: E402
-from agents.players import GhostBall, Random  # noqa: E402
-from agents.recipes import Recipe  # noqa: E402
-from agents.statistics import Resamples, interval, iqm  # noqa: E402
-from agents.tables import training_tables  # noqa: E402
-from snooker_env.envs.vector import SnookerVectorEnv  # noqa: E402
-from snooker_env.game.balls import BallOn  # noqa: E402
+from agents import evaluate, report, visits
+from agents.players import GhostBall, Random
+from agents.recipes import Recipe
+from agents.statistics import Resamples, interval, iqm
+from agents.tables import training_tables
+from agents.world import text_of, world
+from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.game.balls import BallOn
+from snooker_env.physics.parameters import Physics
 
 # statistics ----------------------------------------------------------------------------------------------------------------------
 
@@ -290,3 +285,13 @@ def test_bad_input_ends_with_one_clear_line(options, says, capsys):
         evaluate.main(options)
     assert stop.value.code == 2
     assert re.search(says, capsys.readouterr().err.strip().splitlines()[-1])
+
+
+def test_a_world_is_named_as_it_was_called():
+    for text in ("paper", "match", "paper,mu_bb=marlow", "match,mu_bb=0.06"):
+        assert text_of(world(text)) == text
+        assert Physics.of(world(text)) == Physics.of(world(text_of(world(text))))
+    assert text_of("match") == "match" and Physics.of(world("match,mu_bb=0.06")).mu_bb == 0.06
+    for wrong in ("nothing", "paper,mu_bb", "paper,colour=1"):
+        with pytest.raises(ValueError):
+            world(wrong)

@@ -12,19 +12,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import train
+from agents import models, view, visits
+from agents.players import GhostBall
+from snooker_env.envs.actions import line
+from snooker_env.envs.observations import observe
+from snooker_env.envs.snooker import SnookerEnv
+
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-pytest.importorskip("stable_baselines3")
-pytest.importorskip("rich")
-pytest.importorskip("tensorboard")
-
-import train  # noqa: E402
-from agents import models, view, visits  # noqa: E402
-from agents.players import GhostBall  # noqa: E402
-from snooker_env.envs.actions import line  # noqa: E402
-from snooker_env.envs.observations import observe  # noqa: E402
-from snooker_env.envs.snooker import SnookerEnv  # noqa: E402
-
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
 TINY = [
     "--agent",

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# How were the figures of agents/results*.md made? Trains every agent and compares them: hours. What is there already is kept.
+#
+#     bash agents/experiments.sh [FOLDER [JOBS]]     runs/experiments, 2 runs side by side, each on one core
+#
+# Only some of them: ONLY='fore-|gamma0-' bash agents/experiments.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+folder=${1:-runs/experiments} jobs=${2:-2}
+export folder
+mkdir -p "$folder"
+
+runs() { # name, then the options of train.py
+    for k in 0 1 2 3 4; do echo "fore-$k --seed $k"; done
+    for k in 0 1 2 3 4; do echo "mask-$k --agent ppo_mask --steps 1000000 --seed $k"; done
+    echo "gamma0-0 --set gamma=0"
+    for fidelity in fast reference; do echo "$fidelity-0 --fidelity $fidelity"; done
+    for physics in match marlow; do echo "$physics-0 --physics ${physics/marlow/paper,mu_bb=marlow}"; done
+    for noise in none amateur club; do echo "$noise-0 --noise $noise"; done
+    for k in 0 1 2 3 4; do echo "absolute-$k --agent ppo_absolute --steps 500000 --seed $k"; done
+    for k in 0 1 2 3 4; do echo "target-$k --agent ppo_target --steps 1000000 --seed $k"; done
+    echo "tqc-0 --agent tqc_target"
+}
+
+train() {
+    local name=$1
+    shift
+    [[ -f $folder/$name/results.json ]] && return
+    rm -rf "${folder:?}/$name"
+    python train.py "$@" --parallel one --no-progress --out "$folder/$name" > "$folder/$name.txt" 2>&1
+    echo "$(date +%H:%M) $name"
+}
+export -f train
+runs | grep -E "^(${ONLY:-.*})" | xargs -d '\n' -P "$jobs" -I{} bash -c 'train {}'
+[[ -n ${ONLY:-} ]] && exit
+
+evaluate() { # name of the output, then the options of agents.evaluate
+    local name=$1
+    shift
+    python -m agents.evaluate "$@" --json "agents/$name.json" --markdown "agents/$name.md"
+}
+evaluate results --against ghost_ball ppo_foresight_gamma0 --picture agents/pictures/destinations.png --agent \
+    "ppo_foresight=$folder/fore-*" "ppo_foresight_gamma0=$folder/gamma0-*" ghost_ball "ppo_mask=$folder/mask-*" lookahead geometric random
+evaluate results_aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
+    "ppo_absolute=$folder/absolute-*" "ppo_target=$folder/target-*" "tqc_target=$folder/tqc-*" ghost_ball random_absolute
+evaluate results_fidelity --layouts held_out --noise professional --fidelity fast standard reference --agent \
+    "fast=$folder/fast-*" "standard=$folder/fore-0" "reference=$folder/reference-*"
+evaluate results_physics --layouts held_out --noise professional --physics paper match paper,mu_bb=marlow --agent \
+    "paper=$folder/fore-0" "match=$folder/match-*" "marlow=$folder/marlow-*"
+evaluate results_noise --layouts held_out --agent \
+    "none=$folder/none-*" "professional=$folder/fore-0" "amateur=$folder/amateur-*" "club=$folder/club-*"
+evaluate results_search --agent search --layouts held_out=100 --noise professional
+evaluate results_147 --agent search --layouts break_off=50 --noise none

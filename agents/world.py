@@ -1,0 +1,26 @@
+"""Which physics does a text on the command line mean? PRESET or PRESET,FIELD=VALUE,... as ``paper,mu_bb=marlow``."""
+
+from snooker_env._check import refuse
+from snooker_env.physics.parameters import Physics
+
+
+def world(text):
+    """The environment's option ``physics`` for this text, a dict. Raises ValueError."""
+    preset, *changes = text.split(",")
+    fields = {"preset": preset}
+    for change in changes:
+        name, equals, value = change.partition("=")
+        if not equals:
+            raise refuse("physics", text, "must be PRESET or PRESET,FIELD=VALUE,...")
+        try:
+            fields[name] = float(value)
+        except ValueError:
+            fields[name] = value
+    Physics.of(fields)
+    return fields
+
+
+def text_of(physics):
+    """The text that means this option of the environment: a preset's name or a dict as ``world`` makes it."""
+    fields = dict(physics) if isinstance(physics, dict) else {"preset": physics}
+    return ",".join([fields.pop("preset"), *(f"{name}={value}" for name, value in fields.items())])
