@@ -16,16 +16,15 @@ import torch
 
 from .lookahead import Copies, Position, spread_of
 
-TRIES = 64
-"""Choices tried in each position: half of them the pupil's best, half at random."""
+TRIES = 48
+"""Choices tried in each position: half of them the pupil's best, half at random. Where there are no more than half of them, each is tried
+twice."""
 TEMPERATURE = 1.0
 """Points that make a choice e times as likely."""
 KEPT = 50_000
 """Positions that are learned from again and again."""
 BATCH, PER_UPDATE = 512, 8
 """Positions in the batch of a gradient step, and new positions for each step."""
-EXPLORE = 0.1
-"""Share of random strokes in the visits."""
 RATE = 3e-3
 
 
@@ -53,7 +52,7 @@ class Teacher:
 def to_try(scores, masks, rng):
     """``TRIES`` choices of each row of masks (n, SIZE), half with the highest scores, half at random; and which of them are there.
 
-    A choice can be in both halves.
+    A choice can be in both halves; where there are fewer choices than a half holds, all of them are in both.
     """
     half = TRIES // 2
     best = np.argpartition(np.where(masks, -scores, np.inf), half, axis=1)[:, :half]
@@ -80,9 +79,7 @@ def teach(model, venv, states, seed, threads, say=lambda done, loss: None):
         del kept[: -max(1, KEPT // n)]
         for _ in range(max(1, n // PER_UPDATE)):
             losses.append(_fit(policy, optimizer, [kept[i] for i in rng.integers(len(kept), size=max(1, BATCH // n))]))
-        own = np.where(masks, scores, -np.inf).argmax(1)
-        strange = (rng.random(n) < EXPLORE) & there[:, -1]
-        seen, _, _, _ = venv.step(np.where(strange, picks[:, -1], own))
+        seen, _, _, _ = venv.step(np.where(masks, scores, -np.inf).argmax(1))
         done += n
         if done * 20 // states > len(curve):
             seconds, loss = time.perf_counter() - began, float(np.mean(losses[-200:]))

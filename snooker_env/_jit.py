@@ -3,13 +3,15 @@
 * Strict IEEE everywhere: ``fastmath`` would let a freshly compiled and a cached kernel give different trajectories.
 * No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch instead.
 * numba notices a change only in the file that *defines* a cached function; a changed callee or constant in another file would
-  silently run old machine code. So the cache folder's name is a hash of the whole package source: other source, other folder.
+  silently run old machine code. So the cache folder's name is a hash of the whole package source: other source, other folder. Kernels of
+  a folder outside the package (agents, benchmarks) have a folder in it, named by a hash of that folder's source.
 """
 
 import hashlib
 import os
 import tempfile
 import warnings
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -86,11 +88,18 @@ def inlined(function):
     return _inner(function, _INLINED)
 
 
+@cache
+def _cache_of(folder, home):
+    """Where below ``home`` the kernels are kept that are defined in files of this folder."""
+    return home if folder.is_relative_to(_PACKAGE) else home / source_hash(folder)
+
+
 def entry(function):
-    """Compile a kernel that Python calls: cached on disk under the package's source hash."""
+    """Compile a kernel that Python calls: cached on disk under the hash of the source that it may have been made from."""
     if CACHE_FOLDER is None:
         return numba.njit(**_OPTIONS)(function)
-    before, config.CACHE_DIR = config.CACHE_DIR, str(CACHE_FOLDER)  # pyright: ignore[reportAttributeAccessIssue]
+    folder = _cache_of(Path(function.__code__.co_filename).resolve().parent, CACHE_FOLDER)
+    before, config.CACHE_DIR = config.CACHE_DIR, str(folder)  # pyright: ignore[reportAttributeAccessIssue]
     try:  # numba reads CACHE_DIR while it decorates, so the setting can be ours for just that moment
         return numba.njit(**_OPTIONS, cache=True)(function)
     finally:

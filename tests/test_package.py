@@ -358,3 +358,17 @@ def test_a_pickled_shot_and_world_stay_what_they_are():
     assert again.physics == shot.physics == sn.Physics.preset("match") != sn.Physics()
     assert np.array_equal(again.positions, shot.positions) and all(map(np.array_equal, again.at(0.3), shot.at(0.3)))
     assert pickle.loads(pickle.dumps(sn.Table.preset("tight"))) is sn.Table.preset("tight")
+
+
+def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_folder(tmp_path):
+    """A column number baked into a kernel of agents/ comes from another file of agents/."""
+    code = "from agents import aimer\nfrom snooker_env import _jit\nprint(_jit.CACHE_FOLDER, aimer._solved._cache.cache_path)"
+    copy_of_package(tmp_path)
+    shutil.copytree(ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip"))
+    seen = []
+    for change in ("", "\n# other columns"):
+        with (tmp_path / "agents/indirect.py").open("a") as file:
+            file.write(change)
+        seen.append(python(code, at=tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "cache"))[0].split())
+    assert seen[0][0] == seen[1][0] and seen[0][1] != seen[1][1]
+    assert all(path.startswith(folder) for folder, path in seen)
