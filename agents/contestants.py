@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from snooker_env._check import refuse
+from snooker_env._check import number, refuse
+from snooker_env.envs.snooker import LAYOUTS
 
 from .models import PRETRAINED, pretrained
 from .players import NAMES, player_of
@@ -40,6 +41,8 @@ class Agent:
             runs += found
         if equals and not label:
             raise refuse("agent", text, "must have a label before the =")
+        if any(run in NAMES for run in runs) and not all(run in NAMES for run in runs):
+            raise refuse("agent", text, "must be players or trained models, not both under one label")
         path = Path(runs[0])
         return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs))
 
@@ -50,9 +53,28 @@ class Agent:
 
 @cache
 def _model(path):
-    if Path(path).is_file() and not zipfile.is_zipfile(path):
+    if not zipfile.is_zipfile(Path(path, "model.zip") if Path(path).is_dir() else path):
         raise refuse("agent", path, "must be a model's .zip or a folder that holds model.zip")
-    return player_of(path)
+    try:
+        return player_of(path)
+    except ImportError:
+        raise
+    except Exception as error:  # a broken file makes its readers raise anything
+        why = str(error).partition("\n")[0]
+        raise refuse("agent", path, f"must be a model that train.py saved ({type(error).__name__}: {why})") from error
+
+
+def _told(file, *names):
+    """The number that a JSON file holds under these names, one within the other; None if it holds none. Raises ValueError."""
+    try:
+        told = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    except ValueError as error:
+        raise refuse("agent", str(file), f"must be JSON ({error})") from None
+    for name in names:
+        if not isinstance(told, dict):
+            raise refuse("agent", str(file), f"must hold {name} in an object")
+        told = told.get(name, {})
+    return None if told in ({}, None) else number(f"{file}: {'.'.join(names)}", told, 0)
 
 
 def player_for(run, budget, seed):
@@ -63,14 +85,16 @@ def player_for(run, budget, seed):
 def _training(run):
     if run in NAMES:
         return {}
-    model = _model(run).model
-    folder = Path(run) if Path(run).is_dir() else Path(run).parent
-    results, card = folder / "results.json", Path(run).with_suffix(".json")
-    seconds = json.loads(results.read_text()).get("seconds") if results.is_file() else None
-    if Path(run).is_file() and card.is_file():
-        seconds = 3600.0 * json.loads(card.read_text())["hours"]
+    model, path = _model(run).model, Path(run)
+    card, results = path.with_suffix(".json"), (path if path.is_dir() else path.parent) / "results.json"
+    if path.is_file() and card.is_file():
+        seconds, imitated = _told(card, "hours"), _told(card, "imitated")
+        seconds = None if seconds is None else 3600.0 * seconds
+    else:
+        seconds, imitated = _told(results, "seconds"), _told(results, "settings", "imitate")
+    usual = {"layout": LAYOUTS["visit"], "noise": "none", "fidelity": "standard"}
     return {
-        "recipe": model.recipe, "shots": model.num_timesteps, "seconds": seconds, "seed": model.seed, "gamma": model.gamma,
-        **{key: model.env_options.get(key, usual) for key, usual in (("noise", "none"), ("fidelity", "standard"))},
+        "recipe": model.recipe, "shots": model.num_timesteps, "imitated": imitated, "seconds": seconds, "seed": model.seed,
+        "gamma": model.gamma, **{key: model.env_options.get(key, value) for key, value in usual.items()},
         "physics": text_of(model.env_options.get("physics", "paper")),
     }  # fmt: skip

@@ -8,6 +8,7 @@ if not. Only first strokes, since these are played from the same positions by ev
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.backend_bases import FigureCanvasBase
 from matplotlib.patches import Circle, Polygon, Rectangle
 from matplotlib.patheffects import withStroke
 
@@ -34,6 +35,11 @@ FIGURES = (
     ("high_colour_after_a_red", "pink or black after a red", 100, "{:.0f} %"),
     ("points_a_visit", "points a visit", 1, "{:.1f}"),
 )
+
+
+def formats():
+    """Suffixes of the files that matplotlib can write."""
+    return [f".{name}" for name in FigureCanvasBase.get_supported_filetypes()]
 
 
 def first_reds(strokes):
@@ -70,7 +76,6 @@ def draw(report, strokes, file):
     edge = 1 - 3.6 / width
     figure.text(edge, 0.908, "All strokes of these visits", fontsize=10)
     figure.text(edge, 0.873, "easy: its line may err by 4 mrad; lines: 95 % intervals", fontsize=8, va="center", color="#555555")
-    file.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(file, dpi=110)
     plt.close(figure)
 

@@ -22,6 +22,7 @@ import os
 import platform
 import shlex
 import sys
+import tempfile
 import zlib
 from dataclasses import dataclass
 from itertools import product
@@ -30,7 +31,7 @@ from pathlib import Path
 import numpy as np
 
 import snooker_env
-from snooker_env._check import integer, refuse
+from snooker_env._check import choice, integer, refuse
 from snooker_env.envs.noise import Noise
 from snooker_env.game.balls import BallOn
 from snooker_env.game.layouts import POT_WINDOWS, deal_tables, plan_of
@@ -106,7 +107,7 @@ def counts(s: Strokes):
         "points": s.points, "pots": s.made, "strokes": np.ones(len(s.points)), "fouls": s.foul, "goes_on": s.goes_on,
         "followed": s.goes_on & (next_points > 0), "easy": s.goes_on & (s.tolerance >= EASY), "colours": colour,
         "colour_points": colour * s.points, "high": colour & (s.points >= HIGH), "reds": red, "high_after_red": red & (next_points >= HIGH),
-        "clearances": s.made & s.cleared,
+        "clearances": s.clears,
     }  # fmt: skip
     sums = {name: s.a_visit(values) for name, values in entries.items()}
     breaks = {"centuries": sums["points"] >= CENTURY, "maximums": sums["points"] >= MAXIMUM}
@@ -249,13 +250,27 @@ def checked(args):
         parse_fidelity(fidelity)
     for physics in args.physics:
         world(physics)
-    integer("budget", args.budget, 1, 2**31)
+    integer("budget", args.budget, 2, 2**31)
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
     for agent in agents:
         agent.trained()  # reads its models
+    for name in ("json", "markdown", "picture"):
+        writable(name, getattr(args, name))
     return agents, list(dict.fromkeys(args.against)), {name: tables_of(name, visits) for name, visits in sizes.items()}
+
+
+def writable(name, file):
+    """Make the folders of an output, and raise ValueError if it could not be written there. Asked by trying: access bits lie for root."""
+    if file is None:
+        return
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with file.open("a") if file.exists() else tempfile.TemporaryFile(dir=file.parent):
+            pass
+    except OSError as error:
+        raise refuse(name, str(file), f"must be a file that can be written ({error.strerror})") from None
 
 
 def evaluate(report, agents, seeds, tick):
@@ -282,19 +297,21 @@ def main(argv=None):
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_args(argv)
     try:
-        agents, references, seeds = checked(args)
-    except ValueError as error:
-        p.error(str(error))
-    try:
         from rich.console import Console
         from rich.progress import Progress
 
         if args.picture:
-            from .destinations import draw  # now: not to miss matplotlib only after all was played
+            from .destinations import draw, formats  # now: not to miss matplotlib only after all was played
     except ImportError as error:
         raise SystemExit(
             f'agents.evaluate: {error.name} is missing: pip install "snooker-env[train]" and, for --picture, "[test]"'
         ) from None
+    try:
+        if args.picture:
+            choice("picture", args.picture.suffix, formats())
+        agents, references, seeds = checked(args)
+    except ValueError as error:
+        p.error(str(error))
     snooker_env.warmup()
     for agent in agents:  # compiled before the clock runs
         play(player_for(agent.runs[0], args.budget, 0), 2)
@@ -314,20 +331,19 @@ def main(argv=None):
         rounds = len(seeds) * len(agents) * int(np.prod([len(report["protocol"][axis]) for axis in AXES]))
         task = bar.add_task("visits", total=rounds)
         shown = evaluate(report, agents, seeds, lambda: bar.advance(task))
-    show(report)
-    if args.picture:
-        draw(report, shown, args.picture)
-    if args.json:
+    if args.json:  # first: what comes after cannot lose the figures
         write(args.json, json.dumps(report, indent=1))
+    show(report)
     if args.markdown:
         picture = args.picture and Path(os.path.relpath(args.picture, args.markdown.parent)).as_posix()
         write(args.markdown, markdown(report, picture))
+    if args.picture:
+        draw(report, shown, args.picture)
     return 0
 
 
 def write(file, text):
-    """Write a text file, its folders too."""
-    file.parent.mkdir(parents=True, exist_ok=True)
+    """Write a text file."""
     file.write_text(text + "\n", encoding="utf-8")
 
 

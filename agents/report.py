@@ -63,41 +63,52 @@ def main_condition(report):
 
 def agents_table(report):
     """Who plays, and how each was trained."""
+    header = ["agent", "recipe", "trained: noise", "fidelity", "physics", "seeds", "gamma", "taught", "shots", "seconds", "shots/s"]
     rows = []
     for agent in report["agents"]:
         runs = agent["runs"]
         if "recipe" not in runs[0]:
-            rows.append([agent["label"], "not trained", "", "", "", str(len(runs)), "", "", ""])
+            rows.append([agent["label"], "not trained", "", "", "", str(len(runs)), *[""] * (len(header) - 6)])
             continue
         words = [", ".join(sorted({str(run[key]) for run in runs})) for key in ("recipe", "noise", "fidelity", "physics")]
         rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]
-        numbers = [_between([run["shots"] for run in runs]), _between([run["seconds"] for run in runs]), _between(rates)]
-        rows.append([agent["label"], *words, str(len(runs)), ", ".join(sorted({f"{run['gamma']:g}" for run in runs})), *numbers])
-    header = ["agent", "recipe", "trained: noise", "fidelity", "physics", "seeds", "gamma", "shots", "seconds"]
-    if any(len(row) > len(header) for row in rows):
-        header.append("shots/s")
-        rows = [row + [""] * (len(header) - len(row)) for row in rows]
+        numbers = [_between([run[key] for run in runs]) for key in ("imitated", "shots", "seconds")]
+        gammas = ", ".join(sorted({f"{run['gamma']:g}" for run in runs}))
+        rows.append([agent["label"], *words, str(_seeds(runs)), gammas, *numbers, _between(rates)])
     return Table("The agents", header, rows, left=5)
 
 
+def _seeds(runs):
+    """Training seeds of these runs: a model given twice is one."""
+    return len({run["seed"] for run in runs})
+
+
+GIVEN = (("imitated", "positions taught", 0.0), ("shots", "shots", 0.0), ("seconds", "seconds of training", SAME))
+"""What agents are given: how it is kept, how it is called, and by what share it may differ to be called equal."""
+
+
 def fairness(report):
-    """Sentences: were the trained agents given the same?"""
+    """Sentences: were the trained agents given the same, and are the tables new to them?"""
     trained = [agent for agent in report["agents"] if "recipe" in agent["runs"][0]]
     said = []
     for agent in trained:
-        n = len({run["from"] for run in agent["runs"]})
+        n = _seeds(agent["runs"])
         if n < SEEDS:
             few = "1 training seed: its intervals say nothing about other seeds" if n == 1 else f"{n} training seeds, fewer than {SEEDS}"
             said.append(f"{agent['label']} has {few}.")
+        known = {run["layout"] for run in agent["runs"]} & {*report["protocol"]["layouts"], USUAL["layout"]}
+        said += [f"{agent['label']} was trained on layout {layout}: its tables are not new to it." for layout in sorted(known)]
     if len(trained) > 1:
-        shots = {run["shots"] for agent in trained for run in agent["runs"]}
-        seconds = [run["seconds"] for agent in trained for run in agent["runs"]]
-        same_time = all(seconds) and max(seconds) < (1 + SAME) * min(seconds)
-        equal = [what for what, holds in ((f"shots ({shots.copy().pop():,})", len(shots) == 1), ("wall time", same_time)) if holds]
-        said.append(
-            f"The trained agents had equal {' and '.join(equal)}." if equal
-            else "The trained agents had neither equal shots nor equal wall time."
-        )  # fmt: skip
+        for key, name, share in GIVEN:
+            given = {agent["label"]: [run[key] for run in agent["runs"]] for agent in trained}
+            unknown = [label for label, values in given.items() if None in values]
+            values = [value for some in given.values() for value in some]
+            if unknown:
+                said.append(f"Whether the trained agents had equal {name} cannot be said: not known of {', '.join(unknown)}.")
+            elif max(values) <= (1 + share) * min(values):
+                said.append(f"The trained agents had equal {name} ({_between(values)}).")
+            else:
+                said.append(f"The trained agents had unequal {name} ({_between(values)}).")
     return said
 
 

@@ -99,9 +99,7 @@ class _Mind:
         scores, records = sums, None
         for r in range(rounds):
             n = len(candidates)
-            each = max(1, (shallow - spent) // (rounds - r) // n)
-            if n * each > shallow - spent:
-                break
+            each = max(1, (shallow - spent) // (rounds - r) // n)  # one each is never too many: all rounds hold less than twice the first
             keys = rng.integers(0, 2**64 - 1, each, dtype=np.uint64)
             points, goes_on, left, seen = self.noisy.play(
                 at, np.zeros(n * each, np.int64), np.repeat(candidates, each, 0), np.tile(keys, n)

@@ -55,6 +55,11 @@ class Strokes:
         return self.made & ~self.cleared
 
     @property
+    def clears(self):
+        """Whether it scored and left nothing: a foul that pots the last ball clears no table."""
+        return self.made & self.cleared
+
+    @property
     def colour(self):
         """Whether any colour was on."""
         return self.ball_on == BallOn.ANY_COLOUR
@@ -96,7 +101,7 @@ def play(
         observations, _, ended, _, info = tables.step(actions)
         here = np.flatnonzero(going)
         positions, on_table = tables.visits.positions[here, 0], tables.visits.on_table[here]
-        cue = np.where((on_table[:, 0] & (info["foul"][here] == 0))[:, None], positions, np.nan)
+        cue = np.where(on_table[:, :1], positions, np.nan)
         log.append(
             (here, np.full(len(here), number), info["points"][here], info["foul"][here] != 0, ball_on, ~on_table[:, 1:].any(1), cue,
              _tolerance(observations, here))
@@ -127,6 +132,6 @@ def summary(strokes):
         "points_a_visit": float(points.mean()), "points_a_visit_se": error(points), "pot_rate": share(strokes.points > 0),
         "next_pot_after_a_pot": share(strokes.followed), "fouls_a_visit": float(fouls.mean()), "fouls_a_visit_se": error(fouls),
         "foul_rate": share(strokes.foul), "colour_value": share(colours), "high_colours": share(colours >= 6),
-        "centuries": float(np.mean(points >= CENTURY)), "clearances": share(strokes.a_visit(strokes.cleared) > 0),
+        "centuries": float(np.mean(points >= CENTURY)), "clearances": share(strokes.a_visit(strokes.clears) > 0),
         "longest_break": int(points.max()),
     }  # fmt: skip

@@ -1,6 +1,7 @@
 """Which physics does a text on the command line mean? PRESET or PRESET,FIELD=VALUE,... as ``paper,mu_bb=marlow``."""
 
 from snooker_env._check import refuse
+from snooker_env.game.balls import BALL_RADIUS
 from snooker_env.physics.parameters import Physics
 
 
@@ -16,7 +17,10 @@ def world(text):
             fields[name] = float(value)
         except ValueError:
             fields[name] = value
-    Physics.of(fields)
+    made = Physics.of(fields)
+    made.check_stopping()
+    if made.R != BALL_RADIUS:
+        raise refuse("physics", text, f"must leave R at {BALL_RADIUS}: the tables are made for it")
     return fields
 
 

@@ -2,6 +2,8 @@
 
 import json
 import re
+import shutil
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -109,6 +111,18 @@ def test_paired_ratio():
 # strokes and counts --------------------------------------------------------------------------------------------------------------
 
 
+class Watched:
+    """A player that keeps how the tables stood before its first stroke."""
+
+    def __init__(self, player):
+        self.player, self.options, self.start = player, player.options, None
+
+    def act(self, tables, observations, going):
+        if self.start is None:
+            self.start = tables.visits.positions.copy(), tables.visits.on_table.copy()
+        return self.player.act(tables, observations, going)
+
+
 def test_counts_of_a_visit_by_hand():
     """Two visits: red, black, red with nothing after; then a miss."""
     s = visits.Strokes(
@@ -127,28 +141,70 @@ def test_counts_of_a_visit_by_hand():
     assert (f["points_a_visit"], f["pots_a_visit"], f["next_pot_after_a_pot"], f["high_colours"]) == (4.5, 1.5, pytest.approx(2 / 3), 1.0)
 
 
+def a_clearance_a_foul_and_a_miss():
+    """Three visits: the last ball goes in for a century (points as no shot brings them); it goes in by a foul; it stays."""
+    return visits.Strokes(
+        visits=3, visit=np.array([0, 1, 2, 0]), number=np.array([0, 0, 0, 1]), points=np.array([95.0, 0, 0, 7]),
+        foul=np.array([False, True, False, False]), ball_on=np.array([BallOn.ANY_COLOUR, BallOn.BLACK, BallOn.BLACK, BallOn.BLACK]),
+        cleared=np.array([False, True, False, True]), cue=np.zeros((4, 2)), tolerance=np.zeros(4), thinking=0.0,
+    )  # fmt: skip
+
+
+def test_a_foul_clears_no_table():
+    c, f = evaluate.counts(a_clearance_a_foul_and_a_miss()), visits.summary(a_clearance_a_foul_and_a_miss())
+    assert c["clearances"].tolist() == c["centuries"].tolist() == [1, 0, 0]
+    assert f["clearances"] == f["centuries"] == pytest.approx(1 / 3)
+
+
 def test_counts_agree_with_the_summary():
     s = visits.play(GhostBall(), 60, noise="professional")
+    for strokes in (s, a_clearance_a_foul_and_a_miss()):
+        c, f = evaluate.counts(strokes), visits.summary(strokes)
+        for name in ("points_a_visit", "pots_a_visit", "fouls_a_visit", "pot_rate", "next_pot_after_a_pot", "colour_value", "high_colours",
+                     "centuries", "clearances"):  # fmt: skip
+            above, below = evaluate.FIGURES[name]
+            assert c[above].sum() / c[below].sum() == pytest.approx(f[name])
     c, f = evaluate.counts(s), visits.summary(s)
-    for name in ("points_a_visit", "pots_a_visit", "fouls_a_visit", "pot_rate", "next_pot_after_a_pot", "colour_value", "high_colours"):
-        above, below = evaluate.FIGURES[name]
-        assert c[above].sum() / c[below].sum() == pytest.approx(f[name])
     assert f["next_pot_after_a_pot"] > 0.4 and np.all(c["strokes"] - c["pots"] == 1 - c["clearances"])  # a visit ends with its first miss
 
 
+def test_the_cue_balls_place_is_kept_unless_it_was_potted(monkeypatch):
+    after = []
+
+    class Kept(SnookerVectorEnv):
+        def step(self, actions):
+            found = super().step(actions)
+            after.append((self.visits.positions[:, 0].copy(), self.visits.on_table[:, 0].copy()))
+            return found
+
+    monkeypatch.setattr(visits, "SnookerVectorEnv", Kept)
+    s = visits.play(Random(seed=1), 200, noise="club")
+    places, there = (np.stack(column)[s.number, s.visit] for column in zip(*after, strict=True))
+    assert 0 < (~there).sum() < s.foul.sum()
+    assert np.isnan(s.cue[~there]).all() and np.array_equal(s.cue[there], places[there])
+
+
+# conditions ----------------------------------------------------------------------------------------------------------------------
+
+USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
+
+
+@pytest.mark.parametrize("change", [{}, {"layout": "colours"}, {"noise": "club"}, {"fidelity": "fast"}, {"physics": "match"}, {"seeds": 7}])
+def test_an_agent_is_played_under_its_condition(change):
+    """Stroke by stroke as ``visits.play`` plays it there; and what is changed changes the play."""
+    condition, seeds = USUAL | change, list(range(change.get("seeds", 3), 33))[:20]
+    condition.pop("seeds", None)
+    found = evaluate.play_agent(evaluate.Agent("a", ("ghost_ball",)), condition, seeds, 100, 100)
+    wanted = visits.play(GhostBall(), 20, first_seed=seeds, **condition)
+    usual = visits.play(GhostBall(), 20, first_seed=list(range(3, 23)), **USUAL)
+    (strokes,) = found.strokes
+    for name in ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance"):
+        assert np.array_equal(getattr(strokes, name), getattr(wanted, name), equal_nan=name == "cue"), name
+    assert found.counted["points"].tolist() == [wanted.a_visit(wanted.points).tolist()]
+    assert np.array_equal(strokes.cue, usual.cue, equal_nan=True) == (not change)
+
+
 # tables --------------------------------------------------------------------------------------------------------------------------
-
-
-class Watched:
-    """A player that keeps how the tables stood before its first stroke."""
-
-    def __init__(self, player):
-        self.player, self.options, self.start = player, player.options, None
-
-    def act(self, tables, observations, going):
-        if self.start is None:
-            self.start = tables.visits.positions.copy(), tables.visits.on_table.copy()
-        return self.player.act(tables, observations, going)
 
 
 @pytest.mark.parametrize("layout", ["held_out", "line_up", "colours"])
@@ -191,7 +247,7 @@ def models(tmp_path_factory):
     for seed in (0, 1):
         (folder / f"m-{seed}").mkdir()
         Recipe.of("ppo_mask").new_model(tables, seed).save(folder / f"m-{seed}" / "model.zip")
-    (folder / "m-0" / "results.json").write_text('{"seconds": 2.0}')
+    (folder / "m-0" / "results.json").write_text('{"seconds": 2.0, "settings": {"imitate": 300}}')
     tables.close()
     return folder
 
@@ -206,7 +262,8 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     assert found["protocol"]["layouts"] == {"held_out": 12, "colours": 12}
     assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
     first, second = found["agents"][0]["runs"]
-    assert first["seconds"] == 2.0 and second["seconds"] is None and first["recipe"] == "ppo_mask" and first["gamma"] == 0.95
+    assert (first["seconds"], first["imitated"], second["seconds"], second["imitated"]) == (2.0, 300, None, None)
+    assert first["layout"] == "opened" and first["recipe"] == "ppo_mask" and first["gamma"] == 0.95
     assert len(found["results"]) == 3 * 2 * 2
     for row in found["results"]:
         assert set(row) == {
@@ -247,19 +304,6 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
     assert rows[0] == rows[1] and len(rows[0]) == 2
 
 
-def test_what_is_said_of_fair_comparison():
-    def agent(label, shots, seconds, seeds=5):
-        return {"label": label, "runs": [{"from": f"{label}{k}", "recipe": "r", "shots": shots, "seconds": seconds} for k in range(seeds)]}
-
-    def said(*agents):
-        return " ".join(report.fairness({"agents": list(agents)}))
-
-    assert "equal shots (1,000)." in said(agent("a", 1000, 10), agent("b", 1000, 20))
-    assert "equal wall time." in said(agent("a", 1000, 10), agent("b", 2000, 10.5))
-    assert "neither" in said(agent("a", 1000, 10), agent("b", 2000, 20))
-    assert said(agent("a", 1000, 10)) == "" and "1 training seed:" in said(agent("a", 1000, 10, 1))
-
-
 @pytest.mark.parametrize(
     ("options", "says"),
     [
@@ -276,6 +320,15 @@ def test_what_is_said_of_fair_comparison():
         (["--agent", "random", "--physics", "mars"], "physics = 'mars': must be one of"),
         (["--agent", "random", "--physics", "paper,mu_bb"], "physics = 'paper,mu_bb': must be PRESET"),
         (["--agent", "random", "--physics", "paper,mu_bb=-1"], "mu_bb"),
+        (["--agent", "random", "--physics", "paper,R=0.03"], "physics = 'paper,R=0.03': must leave R"),
+        (["--agent", "random", "--physics", "paper,mu_s=0"], "physics.mu_s = 0.0: must be > 0"),
+        (["--agent", "random", "--physics", "paper,mu_r=0"], "physics.mu_r = 0.0: must be > 0"),
+        (["--agent", "random", "--budget", "1"], "budget = 1: must be an integer in \\[2"),
+        (["--agent", "random", "--json", "tests"], "json = 'tests': must be a file"),
+        (["--agent", "random", "--json", "pyproject.toml/r.json"], "json = 'pyproject.toml/r.json': must be a file"),
+        (["--agent", "random", "--markdown", "/proc/none/r.md"], "markdown = '/proc/none/r.md': must be a file"),
+        (["--agent", "random", "--picture", "tests"], "picture = '': must be one of .*'.png'"),
+        (["--agent", "random", "--picture", "p.md"], "picture = '.md': must be one of .*'.png'"),
         (["--agent", "random", "--resamples", "5"], "resamples = 5: must be an integer in"),
         (["--agent", "random", "--layouts", "colours", "--picture", "p.png"], "layouts = 'colours': must hold held_out"),
     ],
@@ -285,6 +338,48 @@ def test_bad_input_ends_with_one_clear_line(options, says, capsys):
         evaluate.main(options)
     assert stop.value.code == 2
     assert re.search(says, capsys.readouterr().err.strip().splitlines()[-1])
+
+
+@pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}"])
+def test_players_and_models_under_one_label_are_refused(which, models):
+    with pytest.raises(ValueError, match=r"agent = 'x=.*: must be players or trained models, not both"):
+        evaluate.Agent.of(which.format(models / "m-0"))
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "says"),
+    [
+        ("model.zip", "junk", "agent = '.*': must be a model's .zip"),
+        ("model.zip", {"data": "junk"}, "agent = '.*': must be a model that train.py saved"),
+        ("model.zip", {}, "agent = '.*': must be a model that train.py saved"),
+        ("results.json", '{"seconds": 2.0', "agent = '.*results.json': must be JSON"),
+        ("results.json", "[2.0]", "agent = '.*results.json': must hold seconds"),
+        ("results.json", '{"seconds": "2 h"}', "results.json: seconds = '2 h': must be a finite number"),
+        ("results.json", '{"settings": {"imitate": [1]}}', "results.json: settings.imitate = \\[1\\]: must be a finite number"),
+        ("model.json", "{", "agent = '.*model.json': must be JSON"),
+    ],
+)
+def test_a_broken_file_is_named(file, text, says, models, tmp_path):
+    shutil.copy(models / "m-0" / "model.zip", tmp_path)
+    if isinstance(text, dict):
+        with zipfile.ZipFile(tmp_path / file, "w") as made:
+            for name, content in text.items():
+                made.writestr(name, content)
+    else:
+        (tmp_path / file).write_text(text)
+    with pytest.raises(ValueError, match=says):
+        evaluate.Agent.of(str(tmp_path / "model.zip" if file == "model.json" else tmp_path)).trained()
+
+
+def test_a_picture_that_fails_loses_no_figures(tmp_path, monkeypatch):
+    def draw(report, strokes, file):
+        raise RuntimeError("no ink")
+
+    monkeypatch.setattr("agents.destinations.draw", draw)
+    outputs = ["--json", str(tmp_path / "r.json"), "--markdown", str(tmp_path / "r.md"), "--picture", str(tmp_path / "p.png")]
+    with pytest.raises(RuntimeError, match="no ink"):
+        evaluate.main(["--agent", "random", *QUICK, *outputs])
+    assert json.loads((tmp_path / "r.json").read_text())["results"] and (tmp_path / "r.md").read_text()
 
 
 def test_a_world_is_named_as_it_was_called():

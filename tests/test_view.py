@@ -1,0 +1,53 @@
+"""Does an agent see each pot as the docstring of ``with_pots`` says? Recomputed in plain Python from ``game.pots``."""
+
+from math import hypot, log10
+
+import numpy as np
+import pytest
+from positions import position, tables
+
+from agents import view
+from snooker_env.envs.choices import POTS
+from snooker_env.envs.observations import SIZE
+from snooker_env.envs.visit import BALL_ON
+from snooker_env.game.balls import BALL_RADIUS, BLACK, CUE, HALF_LENGTH, HALF_WIDTH, BallOn, mask_of
+from snooker_env.game.pots import POCKETS, pots
+
+VALUES = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
+
+
+def pot_entries(positions, pot):
+    """What is to be seen of one pot."""
+    ball, pocket, _, _, _, tolerance = pot
+    cue, at, into = positions[CUE], positions[int(ball)], POCKETS[int(pocket), :2]
+    run = (into - at) / hypot(*(into - at))
+    way = at - 2 * BALL_RADIUS * run - cue
+    path = hypot(*way)
+    way = way / path
+    sine, cosine = way[0] * run[1] - way[1] * run[0], way @ run
+    size = np.array((HALF_WIDTH, HALF_LENGTH))
+    distances = path / HALF_LENGTH - 1, hypot(*(into - at)) / HALF_LENGTH - 1
+    return np.clip([1, *way, sine, cosine, *distances, 1 + log10(tolerance) / 2, VALUES[int(ball)] / 7, *at / size, *into / size], -1, 1)
+
+
+@pytest.mark.parametrize("ball_on", [BallOn.RED, BallOn.ANY_COLOUR])
+def test_every_pot_is_shown_entry_by_entry(ball_on):
+    env = tables(30, layout="random:5", seed=1)
+    states = [state | {"ball_on": int(ball_on)} for state in env.get_state()]
+    observations, _ = env.reset(options={"states": states})
+    at, pockets = position(env), set()
+    assert (at.game[:, BALL_ON] == int(ball_on)).all()
+    shown, balls = view.with_pots(observations), range(1, 16) if ball_on == BallOn.RED else range(16, BLACK + 1)
+    assert np.array_equal(shown[:, :SIZE], observations) and shown.shape == (30, view.SHOWN)
+    for k in range(30):
+        found = pots(at.positions[k], at.on_table[k], mask_of(i for i in balls if at.on_table[k, i]), most=POTS)
+        wanted = np.zeros((POTS, view.POT_ENTRIES))
+        for j, pot in enumerate(found):
+            wanted[j] = pot_entries(at.positions[k], pot)
+            pockets.add(int(pot[1]))
+        assert shown[k, SIZE:].reshape(POTS, -1) == pytest.approx(wanted, abs=2e-5)
+    assert pockets == set(range(6))
+
+
+def test_the_tolerance_is_read_back():
+    assert view.tolerance_of(1 + log10(4e-3) / 2) == pytest.approx(4e-3)
