@@ -20,13 +20,16 @@ import pickle
 import platform
 import signal
 import sys
+import tempfile
 import time
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 import snooker_env
+from snooker_env._check import refuse
 from snooker_env.envs.vector import processors
 
 try:
@@ -41,7 +44,7 @@ try:
     from agents.commit import commit
     from agents.models import Model, load_weights, player_options, write_atomic, write_model, zipped
     from agents.players import GhostBall, Random
-    from agents.recipes import Recipe, algorithm, names
+    from agents.recipes import WORLD, Recipe, algorithm, names
     from agents.tables import training_tables
     from agents.visits import play, summary
     from agents.world import world
@@ -68,7 +71,7 @@ class Settings:
     seed: int = option(0, "of tables, weights and exploration")
     layout: str = option("", "where training visits start [the recipe's]")
     noise: str = option("", "execution noise: none, professional, amateur, club or olympiad [the recipe's]")
-    fidelity: str = option("standard", "of the simulation: fast, standard, reference or euler:N")
+    fidelity: str = option("", "of the simulation: fast, standard, reference or euler:N [the recipe's]")
     physics: str = option("", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]")
     imitate: int = option(-1, "positions on which it is first taught by the search; -1: as many as the recipe says")
     start: str = option("", "a model of the same agent to start from, its .zip or run folder")
@@ -77,6 +80,10 @@ class Settings:
     checkpoint_every: int = option(100_000, "shots from one checkpoint to the next")
 
 
+BOUNDS = {
+    "steps": (0, 10**12), "envs": (0, 2**24), "seed": (0, 2**32 - 1), "imitate": (-1, 10**9), "eval_visits": (2, 2**20),
+    "checkpoint_every": (1, 10**12),
+}  # fmt: skip
 FREE_ON_RESUME = ("steps", "parallel", "eval_visits", "checkpoint_every")  # how long and where, not what; lr falls over the new steps
 
 
@@ -94,9 +101,9 @@ def parse(argv):
     parser.add_argument("--no-progress", action="store_true", help="no progress bar")
     given = vars(parser.parse_args(argv))
     rest = {name: given.pop(name) for name in ("out", "resume", "no_progress")}
-    for name, low in (("steps", 0), ("envs", 0), ("seed", 0), ("eval_visits", 2), ("checkpoint_every", 1), ("imitate", -1)):
-        if given.get(name, low) < low:
-            parser.error(f"--{name.replace('_', '-')} is {given[name]}, must be at least {low}")
+    for name, (low, high) in BOUNDS.items():
+        if not low <= given.get(name, low) <= high:
+            parser.error(f"--{name.replace('_', '-')} is {given[name]}, must be an integer in [{low}, {high}]")
     if "set" in given:
         given["set"] = tuple(given["set"])
     rest["out"] = rest["out"] or Path("runs", f"{given.get('agent', Settings.agent)}-{given.get('seed', Settings.seed)}")
@@ -105,16 +112,19 @@ def parse(argv):
 
 def recipe_of(settings):
     """The agent's recipe with what the settings change. Raises ValueError."""
-    recipe = Recipe.of(settings.agent, settings.set)
-    changes = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
-    recipe.env_kwargs |= {key: value for key, value in changes.items() if value}
-    if settings.physics:
-        recipe.env_kwargs["physics"] = world(settings.physics)
-    recipe.n_timesteps, recipe.n_envs = settings.steps or recipe.n_timesteps, settings.envs or recipe.n_envs
-    if settings.imitate >= 0:
-        recipe.imitation = settings.imitate
+    told = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
+    told["physics"] = world(settings.physics) if settings.physics else ""
+    numbers = {"n_timesteps": settings.steps, "n_envs": settings.envs}
+    given = {key: value for key, value in numbers.items() if value}
+    if settings.start:
+        if settings.imitate > 0:
+            raise refuse("imitate", settings.imitate, "must be 0 or left out with --start, which brings what was learned before")
+        given["imitation"] = 0
+    elif settings.imitate >= 0:
+        given["imitation"] = settings.imitate
+    recipe = Recipe.of(settings.agent, settings.set, {key: value for key, value in told.items() if value}, **given)
     if recipe.imitation and recipe.algo != "ppo_mask":
-        raise ValueError(f"imitate = {recipe.imitation}: must be 0 for {recipe.name}; only agents with masks can be taught by the search")
+        raise refuse("imitate", recipe.imitation, f"must be 0 for {recipe.name}: only agents with masks can be taught by the search")
     return recipe
 
 
@@ -126,20 +136,28 @@ def imitate(model, tables, states, settings, progress):
     bar = rich.progress.Progress(disable=not progress)
     task = bar.add_task(f"{settings.agent} learns from the search", total=states)
     with bar:
-        return teach(model, tables, states, settings.seed, threads, lambda done, loss: bar.update(task, completed=done))
+        curve = teach(model, tables, states, settings.seed, threads, lambda done, loss: bar.update(task, completed=done))
+    model.imitated = curve[-1]["states"]
+    return curve
 
 
 # checkpoints ---------------------------------------------------------------------------------------------------------------------
 
 
 def save_checkpoint(path, settings, model, seconds, curve, imitation):
-    """All that training depends on, tables and random generators included: a resumed run equals an uninterrupted one."""
+    """All that training and its curve depend on, tables and random generators included: a resumed run equals an uninterrupted one."""
     state = {
         "settings": asdict(settings), "seconds": seconds, "curve": curve, "imitation": imitation, "model": zipped(model),
         "replay": getattr(model, "replay_buffer", None), "tables": model.get_env().env_method("get_state"),
+        "running": model.get_env().running,
         "random": (np.random.get_state(), torch.get_rng_state(), model.action_space),  # noqa: NPY002 - SB3 draws from the global one
     }  # fmt: skip
     write_atomic(path, pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL))
+
+
+def stale(path):
+    """The complaint about a checkpoint that cannot be used."""
+    return refuse("resume", str(path), "must be a whole checkpoint of today's train.py: this one is broken or older, start the run anew")
 
 
 def load_model(state, algo, envs):
@@ -157,9 +175,9 @@ def load_model(state, algo, envs):
 class Keeper(BaseCallback):
     """Keeps the run: progress bar, learning curve, checkpoints, and an orderly stop after SIGINT or SIGTERM."""
 
-    def __init__(self, path, settings, seconds, curve, imitation, progress):
+    def __init__(self, path, settings, seconds, curve, imitation, running, progress):
         super().__init__()
-        self.imitation = imitation
+        self.imitation, self.running = imitation, running
         self.path, self.settings, self.seconds_before, self.curve = path, settings, seconds, curve
         self.bar = rich.progress.Progress(
             "[progress.description]{task.description}", rich.progress.BarColumn(), rich.progress.MofNCompleteColumn(),
@@ -180,13 +198,17 @@ class Keeper(BaseCallback):
 
     def _on_training_start(self):
         self.started = time.perf_counter()
+        if self.running is not None:  # the reset with which learn() began took them for new visits
+            tables: Any = self.training_env
+            tables.running = self.running
         self.bar.start()
         self.task = self.bar.add_task(self.settings.agent, total=self.settings.steps, completed=self.num_timesteps)
 
     def _on_rollout_start(self):
         # here, and only here, everything played so far has been learned from: a checkpoint loses nothing
         recent = [visit["r"] for visit in self.model.ep_info_buffer or ()]
-        if recent and self.num_timesteps >= len(self.curve) * self.settings.steps // 20:
+        due = self.num_timesteps >= len(self.curve) * self.settings.steps // 20
+        if recent and due and self.num_timesteps > (self.curve[-1]["steps"] if self.curve else -1):  # a resume comes here a second time
             self.curve.append({"steps": self.num_timesteps, "points": round(float(np.mean(recent)), 3)})
         if recent:
             self.bar.update(self.task, description=f"{self.settings.agent} {np.mean(recent):.2f} points a visit")
@@ -238,13 +260,20 @@ def open_run(parser, given, out, resume):
     checkpoint = out / "checkpoint.pkl"
     if not resume:
         kept = [p.name for p in out.iterdir() if p.name not in ("tb", "checkpoint.pkl.tmp")] if out.is_dir() else []
-        if kept or out.is_file():
+        if out.exists() and not out.is_dir():
+            raise refuse("out", str(out), "must be a folder, new or empty")
+        if kept:
             parser.error(f"{out} is not empty (it holds {', '.join(sorted(kept)[:3])}): --resume goes on with it, --out names another")
         return Settings(**given), None
     if not checkpoint.is_file():
         parser.error(f"{out} holds no checkpoint: start the run without --resume")
-    state = pickle.loads(checkpoint.read_bytes())
-    was = state["settings"]
+    try:
+        state = pickle.loads(checkpoint.read_bytes())
+        was = asdict(Settings(**state["settings"]))
+        if not state.keys() >= {"model", "tables", "random", "replay", "running", "imitation", "curve", "seconds"}:
+            raise KeyError
+    except Exception:  # whatever pickle makes of a file that is something else
+        raise stale(checkpoint) from None
     for name, value in given.items():
         if value != was[name] and name not in FREE_ON_RESUME:
             parser.error(f"--{name.replace('_', '-')} is {value!r} but the run in {out} has {was[name]!r}: give the same or leave it out")
@@ -255,15 +284,22 @@ def open_run(parser, given, out, resume):
 
 
 def evaluate(settings, recipe, model):
-    """Figures of held-out visits, the same tables for each: the trained agent, the plain geometric player, random play."""
+    """Figures of held-out visits in the world trained in, the same tables for each: the agent, the plain geometric player, random play.
+
+    Of 500 such tables 47 are equal to others or mirrored: as tables they are not as many as their standard errors take them for.
+    ``agents.evaluate`` leaves those out.
+    """
     options = player_options(recipe.env_kwargs)
     players = {"trained": Model(model, options, recipe.view), "ghost_ball": GhostBall(), "random": Random(options, settings.seed)}
-    told = {key: value for key, value in recipe.env_kwargs.items() if key in ("noise", "fidelity", "physics")}
+    told: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in WORLD}
     return {name: summary(play(player, settings.eval_visits, **told)) for name, player in players.items()}
 
 
-def lesson(agent, steps, taught, figures):
-    """What was learned, in one sentence that follows from the figures: a difference counts from two standard errors on."""
+def lesson(agent, steps, taught, figures, start=None):
+    """What was learned, in one sentence that follows from the figures: a difference counts from two standard errors on.
+
+    ``taught``: positions imitated first; ``start``: what the agent began from, as ``models.load_weights`` tells it, or None.
+    """
     trained, ghost, random = (figures[name] for name in ("trained", "ghost_ball", "random"))
 
     def better(a, b):
@@ -272,16 +308,22 @@ def lesson(agent, steps, taught, figures):
     def made(player):
         return f"{player['pots_a_visit']:.2f} pots and {player['points_a_visit']:.2f} points a visit"
 
-    start = f"In {steps:,} shots{' after imitating the search' if taught else ''} {agent} learned"
+    begun = f" after imitating the search in {taught:,} positions" if taught else ""
+    if start:
+        begun = f", on top of what {start['model']} had learned in {start['shots']:,},"
+    said, widest = f"In {steps:,} shots{begun} {agent} learned", "the widest pot played softly every time"
     if not better(trained, random):
-        return f"{start} nothing that {trained['visits']} visits can show: {made(trained)} against {made(random)} of random play."
-    if better(trained, ghost):
-        again = [f"{100 * (player['next_pot_after_a_pot'] or 0.0):.0f} %" for player in (trained, ghost)]
+        less = ": it plays worse than at random" if better(random, trained) else f" that {trained['visits']} visits can show"
+        return f"{said} nothing{less}: {made(trained)} against {made(random)} of random play."
+    if better(ghost, trained):
+        return f"{said} to pot, but less than {widest}: {made(trained)} against {made(ghost)}."
+    if not better(trained, ghost):
         return (
-            f"{start} more than the widest pot played softly every time: {made(trained)} against {made(ghost)}; "
-            f"after a pot the next one follows in {again[0]}, not {again[1]}."
+            f"{said} to pot, but not measurably better than {widest} in {trained['visits']} visits: {made(trained)} against {made(ghost)}."
         )
-    return f"{start} to pot, but no better than the widest pot played softly every time: {made(trained)} against {made(ghost)}."
+    shares = [player["next_pot_after_a_pot"] for player in (trained, ghost)]
+    again = "" if None in shares else "; after a pot the next one follows in {:.1f} % against {:.1f} %".format(*(100 * x for x in shares))
+    return f"{said} more than {widest}: {made(trained)} against {made(ghost)}{again}."
 
 
 def show(figures):
@@ -302,35 +344,49 @@ def show(figures):
 # the whole -----------------------------------------------------------------------------------------------------------------------
 
 
+def prepared(parser, given, out, resume):
+    """(settings, recipe, checkpoint or None, tables, model): whatever can be wrong is found here, before anything is compiled or played."""
+    try:
+        settings, state = open_run(parser, given, out, resume)
+        recipe = recipe_of(settings)
+        settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs, imitate=recipe.imitation)
+        tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, view=recipe.view, **recipe.env_kwargs)
+        if state:
+            try:
+                model = load_model(state, recipe.algo, tables)
+            except Exception:  # of an older network, or with a part missing
+                raise stale(out / "checkpoint.pkl") from None
+        else:
+            model = recipe.new_model(tables, settings.seed)
+            if settings.start:
+                load_weights(model, Path(settings.start))
+        out.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=out).close()
+    except ValueError as error:
+        parser.error(str(error))
+    except OSError as error:
+        parser.error(f"out = {str(out)!r}: must be a folder that can be written ({error.strerror})")
+    return settings, recipe, state, tables, model
+
+
 def main(argv=None):
     """Train, evaluate, save. Exit code 0, or 128 + the signal that stopped it."""
     parser, given, rest = parse(argv)
     out = rest.out
-    settings, state = open_run(parser, given, out, rest.resume)
-    try:
-        recipe = recipe_of(settings)
-        settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs, imitate=recipe.imitation)
-        print("Compiling ...", flush=True)
-        snooker_env.warmup()
-        tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, view=recipe.view, **recipe.env_kwargs)
-    except ValueError as error:  # a bad option ends here, with the environment's own words
-        parser.error(str(error))
     torch.set_num_threads(1)  # a network this small gains nothing from more, and the tables need the processors
     torch.distributions.Distribution.set_default_validate_args(False)  # checks of every number, a twentieth of the time
+    settings, recipe, state, tables, model = prepared(parser, given, out, rest.resume)
     try:
-        out.mkdir(parents=True, exist_ok=True)
-        model = load_model(state, recipe.algo, tables) if state else recipe.new_model(tables, settings.seed, str(out / "tb"))
+        print("Compiling ...", flush=True)
+        snooker_env.warmup()
         began, imitation = time.perf_counter(), state["imitation"] if state else []
-        if settings.start and not state:
-            try:
-                load_weights(model, Path(settings.start))
-            except ValueError as error:
-                parser.error(str(error))
-        elif recipe.imitation and not state:
+        if recipe.imitation and not state:
             imitation = imitate(model, tables, recipe.imitation, settings, not rest.no_progress)
         model.tensorboard_log = str(out / "tb")
-        kept = state or {"seconds": time.perf_counter() - began, "curve": []}
-        keeper = Keeper(out / "checkpoint.pkl", settings, kept["seconds"], kept["curve"], imitation, not rest.no_progress)
+        kept = state or {"seconds": time.perf_counter() - began, "curve": [], "running": None}
+        keeper = Keeper(
+            out / "checkpoint.pkl", settings, kept["seconds"], kept["curve"], imitation, kept["running"], not rest.no_progress
+        )  # fmt: skip
         before = {number: signal.signal(number, keeper.on_signal) for number in (signal.SIGINT, signal.SIGTERM)}
         print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {settings.steps:,} shots played", flush=True)
         if model.num_timesteps < settings.steps:
@@ -350,11 +406,11 @@ def main(argv=None):
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
     write_model(model, out / "model.zip")
     figures = evaluate(settings, recipe, model)
-    learned = lesson(settings.agent, steps, len(imitation) > 0, figures)
+    learned = lesson(settings.agent, steps, model.imitated, figures, model.start)
     results = {
         "command": command_of(settings), "settings": asdict(settings), "steps": steps, "seconds": seconds,
-        "steps_per_second": steps / seconds,
-        "learned": learned, "evaluation": figures, "curve": keeper.curve, "imitation": imitation, **provenance(),
+        "steps_per_second": steps / seconds, "start": model.start, "learned": learned,
+        "evaluation": figures, "curve": keeper.curve, "imitation": imitation, **provenance(),
     }  # fmt: skip
     write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
     show(figures)

@@ -6,15 +6,44 @@ To the Zoo's keys come ``algo`` (a file's name says which agent it is, not which
 """
 
 import ast
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
 
-from snooker_env._check import choice, refuse
+from snooker_env._check import choice, integer, number, refuse
 
 FOLDER = Path(__file__).parent / "hyperparams"
 ENV_ID = "Snooker-v0"
+READ = {"action": "box", "aim": "absolute", "elevation": False, "placement": False}
+"""Options of the environment that say how actions are read, with its defaults: they belong to the agent."""
+WORLD = ("noise", "physics", "table", "fidelity")
+"""Those that say how a shot goes: the same in training and at the end."""
+TRAINING = ("layout", "reward")
+"""Those of training alone."""
+BY_OPTION = ("n_timesteps", "n_envs", "imitation")
+"""Keys with an option of train.py of their own: --steps, --envs, --imitate."""
+
+
+def rate(field, value, low, high):
+    """A learning rate: a number, or lin_X."""
+    try:
+        number(field, _value(value[4:]) if isinstance(value, str) and value.startswith("lin_") else value, low, high)
+    except ValueError:
+        raise refuse(field, value, f"must be a number in [{low}, {high}], or lin_X with such a number X") from None
+    return value
+
+
+MOST = 10**9
+KINDS = {
+    "n_timesteps": (integer, 1, 10**12), "n_envs": (integer, 1, 2**24), "imitation": (integer, 0, MOST), "n_steps": (integer, 2, MOST),
+    "batch_size": (integer, 2, MOST), "n_epochs": (integer, 1, MOST), "buffer_size": (integer, 1, MOST),
+    "learning_starts": (integer, 0, MOST), "train_freq": (integer, 1, MOST), "gradient_steps": (integer, 1, MOST),
+    "gamma": (number, 0, 1), "gae_lambda": (number, 0, 1), "ent_coef": (number, 0, 1), "vf_coef": (number, 0, 10),
+    "learning_rate": (rate, 0, 1), "first_aim_std": (number, 1e-6, 10),
+}  # fmt: skip
+"""What the hyper-parameters may be: kind, least, most. Advantages are normalised, so a batch has two shots at least."""
 
 
 def names():
@@ -38,20 +67,24 @@ class Recipe:
     settings: dict
 
     @classmethod
-    def of(cls, name, changes=()):
-        """The recipe of that name with some "key=value" changed. Raises ValueError."""
-        found = yaml.safe_load((FOLDER / f"{choice('agent', name, names())}.yml").read_text())[ENV_ID]
-        for change in changes:
-            key, equals, value = change.partition("=")
-            if not equals or key not in found:
-                raise refuse("set", change, f"must be KEY=VALUE with a key of {', '.join(found)}")
-            found[key] = _value(value)
-        own = {key: found.pop(key, None) for key in ("algo", "policy", "n_timesteps", "n_envs", "env_kwargs", "first_aim_std")}
-        own |= {"view": found.pop("view", "pots"), "imitation": int(found.pop("imitation", 0))}
-        own["n_timesteps"] = int(float(own["n_timesteps"]))
-        return cls(name, settings=found, **own)
+    def of(cls, name, changes=(), env_kwargs=None, **given):
+        """The recipe of that name with some "key=value" changed, then options of the environment and other keys. Raises ValueError.
 
-    def new_model(self, tables, seed, tensorboard_log=None):
+        Algorithm, policy, its network, view and action fit each other: to change them is to write another recipe.
+        """
+        found = yaml.safe_load((FOLDER / f"{choice('agent', name, names())}.yml").read_text())[ENV_ID]
+        found = {"view": "pots", "imitation": 0, "first_aim_std": None} | found
+        changed = _changes(changes, [key for key, value in found.items() if key == "env_kwargs" or (key in KINDS and value is not None)])
+        usual = found["env_kwargs"]
+        found |= changed | given
+        for key, (check, low, high) in KINDS.items():
+            if found.get(key) is not None:
+                found[key] = check(key, found[key], low, high)
+        found["env_kwargs"] = _options(found["env_kwargs"], env_kwargs or {}, usual, found["policy"])
+        own = ("algo", "policy", "n_timesteps", "n_envs", "env_kwargs", "first_aim_std", "view", "imitation")
+        return cls(name, **{key: found.pop(key) for key in own}, settings=found)
+
+    def new_model(self, tables, seed):
         """The untrained agent on these tables."""
         from stable_baselines3.common.utils import LinearSchedule
 
@@ -61,23 +94,51 @@ class Recipe:
             settings["learning_rate"] = LinearSchedule(float(rate[4:]), 1e-5, 1.0)
         if "n_steps" in settings:  # few tables make small rollouts
             settings["batch_size"] = min(settings["batch_size"], settings["n_steps"] * tables.num_envs)
-        model = algorithm(self.algo)(
-            policy(self.policy), tables, seed=seed, tensorboard_log=tensorboard_log, device="cpu", stats_window_size=1000, **settings
-        )
+        model = algorithm(self.algo)(policy(self.policy), tables, seed=seed, device="cpu", stats_window_size=1000, **settings)
         if self.first_aim_std is not None:
-            import math
-
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
         # SB3 saves and restores what it does not know, too
         model.recipe, model.env_options, model.view = self.name, dict(self.env_kwargs), self.view
+        model.start, model.imitated = None, 0  # where its weights came from: see ``models.load_weights``; positions it was taught on
         return model
 
 
 def _value(text):
     try:
         return ast.literal_eval(text)
-    except (ValueError, SyntaxError):
+    except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
         return text
+
+
+def _changes(changes, keys):
+    """What the "key=value" of ``changes`` say, each key at most once."""
+    free, found = [key for key in keys if key not in BY_OPTION], {}
+    for change in changes:
+        key, equals, value = change.partition("=")
+        if not equals or key not in free:
+            own = f" ({', '.join(BY_OPTION)} have options of their own)"
+            raise refuse("set", change, f"must be KEY=VALUE with KEY one of {', '.join(free)}{own}")
+        if key in found:
+            raise refuse("set", change, f"must give {key} only once")
+        found[key] = _value(value)
+    return found
+
+
+def _options(options, more, usual, policy):
+    """The environment's options and ``more`` of them; where ``policy`` needs it, actions must be read as ``usual``. Their values are
+    checked by the environment itself."""
+    known = (*READ, *WORLD, *TRAINING)
+    if not isinstance(options, dict):
+        raise refuse("env_kwargs", options, f"must be a dict with keys of {', '.join(known)}")
+    for key in options:
+        choice("key of env_kwargs", key, known)
+    options = options | more
+    for key in ("action",) if policy == "MlpPolicy" else READ:
+        if options.get(key, READ[key]) != usual.get(key, READ[key]):
+            raise refuse(key, options.get(key, READ[key]), f"must be {usual.get(key, READ[key])!r} for this agent")
+    if options.get("layout") == "held_out":
+        raise refuse("layout", "held_out", "must be another for training: the held-out tables are kept for judging")
+    return options
 
 
 def algorithm(name):

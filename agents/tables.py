@@ -37,6 +37,15 @@ def training_tables(n, threads=None, view="pots", **options):
                     info["terminal_observation"] = row
             return look(base.tables, observations), rewards, done, infos
 
+        @property
+        def running(self):
+            """Rewards and strokes so far of the visits going on, for ``episode`` in their last info: no state of a table holds them."""
+            return base._returns.copy(), base._lengths.copy()
+
+        @running.setter
+        def running(self, sums):
+            base._returns[:], base._lengths[:] = sums
+
         def env_method(self, method_name, *arguments, indices=None, **more):
             if method_name == "action_masks":
                 return list(look.masks(base.tables)[np.array(self._get_indices(indices))])

@@ -77,7 +77,7 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
     assert list((out / "tb").rglob("events.out.tfevents.*"))
     found = results(out)
     assert set(found) == {
-        "command", "settings", "steps", "seconds", "steps_per_second", "learned", "evaluation", "curve", "imitation", "versions",
+        "command", "settings", "steps", "seconds", "steps_per_second", "start", "learned", "evaluation", "curve", "imitation", "versions",
         "git_commit", "processors",
     }  # fmt: skip
     assert found["settings"]["agent"] == agent and found["steps"] == 512
@@ -126,7 +126,8 @@ def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, 
     assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
     assert np.array_equal(weights(tmp_path / "run"), weights(finished / agent))
     before, after = results(finished / agent), results(tmp_path / "run")
-    assert after["evaluation"] == before["evaluation"] and after["settings"] == before["settings"] and after["steps"] == 512
+    for name in ("evaluation", "settings", "steps", "curve", "learned"):
+        assert after[name] == before[name]
 
 
 def launch(out, *options):
@@ -160,6 +161,7 @@ def test_kill_9_leaves_a_run_that_resume_finishes(finished, tmp_path):
     assert run(out, "--resume") == 0  # in one thread now: it plays the same shots
     assert results(out)["steps"] == 512
     assert np.array_equal(weights(out), weights(finished / "ppo_mask"))
+    assert results(out)["curve"] == results(finished / "ppo_mask")["curve"]
 
 
 def test_ctrl_c_ends_it_in_order(tmp_path):
@@ -187,13 +189,66 @@ def test_existing_run_is_not_overwritten(finished, tmp_path, capsys):
 
 @pytest.mark.parametrize(
     ("option", "value"),
-    [("layout", "moon"), ("noise", "drunk"), ("fidelity", "rough"), ("agent", "dqn"), ("set", "gamma"), ("set", "charm=2"), ("envs", "-1"),
-     ("steps", "-1"), ("eval-visits", "1"), ("seed", "-1"), ("seed", "x")],
+    [("layout", "moon"), ("layout", "held_out"), ("noise", "drunk"), ("fidelity", "rough"), ("agent", "dqn"), ("set", "gamma"),
+     ("set", "charm=2"), ("envs", "-1"), ("steps", "-1"), ("eval-visits", "1"), ("eval-visits", "9999999"), ("seed", "-1"), ("seed", "x"),
+     ("seed", "4294967296"), ("start", "nowhere"), ("start", __file__)],
 )  # fmt: skip
-def test_bad_option_gives_one_clear_error(tmp_path, capsys, option, value):
+def test_bad_option_gives_one_clear_error(tmp_path, capsys, monkeypatch, option, value):
+    monkeypatch.setattr(train.snooker_env, "warmup", None)  # nothing is compiled before
     error = refused(capsys, "--out", str(tmp_path / "run"), f"--{option}", value)
     assert option in error and value in error
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ("gamma=abc", "gamma = 'abc': must be a finite number in [0, 1]"),
+        ("gamma=2", "gamma = 2: must be a finite number in [0, 1]"),
+        ("gamma=-1", "gamma = -1"),
+        ("gae_lambda=5", "gae_lambda = 5"),
+        ("gamma=0 gamma=0.5", "must give gamma only once"),
+        ("n_epochs=abc", "n_epochs = 'abc': must be an integer"),
+        ("n_epochs=0", "n_epochs = 0"),
+        ("ent_coef=x", "ent_coef = 'x'"),
+        ("batch_size=0", "batch_size = 0"),
+        ("n_steps=0", "n_steps = 0"),
+        ("learning_rate=abc", "learning_rate = 'abc'"),
+        ("learning_rate=lin_abc", "learning_rate = 'lin_abc': must be a number in [0, 1], or lin_X"),
+        ("algo=foo", "'algo=foo': must be KEY=VALUE with KEY one of env_kwargs, n_steps"),
+        ("policy=Foo", "'policy=Foo'"),
+        ("n_envs=0", "(n_timesteps, n_envs, imitation have options of their own)"),
+        ("env_kwargs=3", "env_kwargs = 3: must be a dict"),
+        ("env_kwargs={'fun':1}", "env_kwargs = 'fun': must be one of 'action'"),
+        ("env_kwargs={'aim':'target'}", "action = 'box': must be 'discrete'"),
+        ("env_kwargs={'action':'discrete','layout':'held_out'}", "layout = 'held_out'"),
+        ("env_kwargs={'action':'discrete','fidelity':[]}", "fidelity = []"),
+    ],
+)
+def test_bad_hyperparameter_gives_one_clear_error(tmp_path, capsys, monkeypatch, changes, said):
+    monkeypatch.setattr(train.snooker_env, "warmup", None)
+    assert said in refused(capsys, "--out", str(tmp_path / "run"), "--set", *changes.split())
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_folder_that_cannot_be_written_is_refused(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(train.snooker_env, "warmup", None)
+    file = tmp_path / "file"
+    file.write_text("mine")
+    assert "must be a folder, new or empty" in refused(capsys, "--out", str(file))
+    assert "must be a folder that can be written" in refused(capsys, "--out", str(file / "run"))
+    assert file.read_text() == "mine"
+
+
+def test_resume_refuses_a_broken_checkpoint(finished, tmp_path, capsys):
+    state = pickle.loads((finished / "ppo_mask" / "checkpoint.pkl").read_bytes())
+    whole = pickle.dumps(state)
+    older = pickle.dumps({key: value for key, value in state.items() if key != "running"})
+    strange = pickle.dumps(state | {"settings": {"wheels": 4}})
+    for content in (b"junk", b"", whole[: len(whole) // 2], older, strange, pickle.dumps(3), pickle.dumps(state | {"model": b"x"})):
+        (tmp_path / "checkpoint.pkl").write_bytes(content)
+        error = refused(capsys, "--resume", "--out", str(tmp_path))
+        assert f"resume = '{tmp_path / 'checkpoint.pkl'}': must be a whole checkpoint" in error
 
 
 @pytest.mark.parametrize("broken", ["fsync", "replace"])
@@ -226,35 +281,100 @@ def test_every_player_meets_the_same_tables():
     assert all(np.array_equal(a, b) for a, b in zip(seen[: len(seen) // 2], seen[len(seen) // 2 :], strict=True))
 
 
+def player(points, se, share: float | None = 0.9):
+    """Figures of a player."""
+    return {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se, "visits": 100, "next_pot_after_a_pot": share}
+
+
+def said(trained, ghost, random, **more):
+    """The lesson of these figures."""
+    return train.lesson("ppo_mask", 1000, 0, {"trained": trained, "ghost_ball": ghost, "random": random}, **more)
+
+
 def test_lesson_claims_only_what_the_figures_show():
-    def player(points, se):
-        return {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se, "visits": 100, "next_pot_after_a_pot": 0.9}
+    poor = player(0.5, 0.1)
+    assert "learned nothing that 100 visits can show" in said(player(1.0, 0.3), player(0.9, 0.3), player(0.5, 0.3))
+    assert "learned nothing: it plays worse than at random" in said(player(0.1, 0.1), player(0.9, 0.3), player(2.0, 0.1))
+    assert "not measurably better than the widest pot" in said(player(3.0, 0.3), player(2.9, 0.3), poor)
+    assert "not measurably better than the widest pot" in said(player(2.8, 0.3), player(2.9, 0.3), poor)
+    assert "to pot, but less than the widest pot" in said(player(2.0, 0.1), player(9.0, 0.3), poor)
+    assert "more than the widest pot" in said(player(9.0, 0.3), player(2.9, 0.3), poor)
 
-    def said(trained, ghost, random):
-        return train.lesson("ppo_mask", 1000, False, {"trained": trained, "ghost_ball": ghost, "random": random})
 
-    assert "learned nothing" in said(player(1.0, 0.3), player(0.9, 0.3), player(0.5, 0.3))
-    assert "learned nothing" in said(player(0.1, 0.1), player(0.9, 0.3), player(2.0, 0.1))
-    assert "no better than the widest pot" in said(player(3.0, 0.3), player(2.9, 0.3), player(0.5, 0.1))
-    assert "more than the widest pot" in said(player(9.0, 0.3), player(2.9, 0.3), player(0.5, 0.1))
+def test_lesson_gives_each_player_its_own_share_of_next_pots():
+    """Whichever is greater; and none where there is none."""
+    poor = player(0.5, 0.1)
+    assert "follows in 60.0 % against 66.1 %." in said(player(9.0, 0.3, 0.6), player(2.9, 0.3, 0.661), poor)
+    assert "follows in 89.8 % against 66.1 %." in said(player(9.0, 0.3, 0.898), player(2.9, 0.3, 0.661), poor)
+    for shares in ((None, 0.6), (0.6, None)):
+        sentence = said(player(9.0, 0.3, shares[0]), player(2.9, 0.3, shares[1]), poor)
+        assert "more than the widest pot" in sentence and "%" not in sentence
+
+
+def test_evaluation_plays_in_the_world_trained_in(finished, monkeypatch):
+    """All options but layout and reward, the environment's own noise where none is given; the action is each player's own."""
+    played, original = [], visits.play
+
+    def watched(player, n, **options):
+        played.append((player.options, options))
+        return original(player, n, **options)
+
+    monkeypatch.setattr(train, "play", watched)
+    settings = train.Settings(agent="ppo_mask", eval_visits=2)
+    model = models.load_player(finished / "ppo_mask").model
+    train.evaluate(settings, train.recipe_of(settings), model)
+    world = {"noise": "club", "table": "tight", "physics": {"preset": "paper", "mu_bb": "marlow"}, "fidelity": "fast"}
+    given = str({"action": "discrete", "layout": "line_up", "reward": "pots", **world})
+    train.evaluate(settings, train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model)
+    bare = train.recipe_of(train.Settings(agent="ppo_mask", set=("env_kwargs={'action': 'discrete'}",)))
+    train.evaluate(settings, bare, model)
+    assert [options for _, options in played] == [{"noise": "professional"}] * 3 + [world] * 3 + [{"noise": "none"}] * 3
+    assert all(own == {"action": "discrete"} for own, _ in played)
+
+
+def test_agents_with_longer_actions_are_judged(tmp_path):
+    out, given = tmp_path / "run", "env_kwargs={'aim': 'target', 'elevation': True, 'placement': True}"
+    assert run(out, "--agent", "ppo_target", "--steps", "128", "--set", given) == 0
+    assert models.load_player(out).options == {"aim": "target", "elevation": True, "placement": True}
+    again = visits.summary(visits.play(models.load_player(out), 4, noise="none"))
+    assert again == results(out)["evaluation"]["trained"]
 
 
 def test_imitation_comes_first_and_is_kept(tmp_path):
     assert train.main([*TINY[:-1], "256", "--agent", "ppo_foresight", "--out", str(tmp_path / "run")]) == 0
     found = results(tmp_path / "run")
     assert found["settings"]["imitate"] == 256 and found["imitation"][-1]["states"] == 256
-    assert "after imitating the search" in found["learned"]
+    assert "after imitating the search in 256 positions" in found["learned"]
     assert train.main(["--resume", "--no-progress", "--steps", "1024", "--out", str(tmp_path / "run")]) == 0
     assert results(tmp_path / "run")["imitation"] == found["imitation"]
+    assert "after imitating the search in 256 positions" in results(tmp_path / "run")["learned"]
 
 
 def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, capsys):
     start = str(finished / "ppo_mask")
     assert run(tmp_path / "run", "--start", start, "--set", "learning_rate=0.0") == 0
     assert np.array_equal(weights(tmp_path / "run"), weights(finished / "ppo_mask"))
+    found = results(tmp_path / "run")
+    assert found["start"] == {"model": start, "shots": 512, "imitated": 0, "start": None}
+    assert found["learned"].startswith(f"In 512 shots, on top of what {start} had learned in 512, ppo_mask learned")
     with pytest.raises(SystemExit) as stop:
         run(tmp_path / "other", "--agent", "ppo_foresight", "--start", start)
     assert stop.value.code == 2 and "must be a model of ppo_foresight" in capsys.readouterr().err
+
+
+def test_what_starts_from_a_model_is_not_taught_again(tmp_path, capsys):
+    assert train.recipe_of(train.Settings(start="x")).imitation == 0 < train.recipe_of(train.Settings()).imitation
+    error = refused(capsys, "--start", "x", "--imitate", "5", "--out", str(tmp_path / "run"))
+    assert "imitate = 5: must be 0 or left out with --start" in error
+
+
+def test_start_refuses_a_model_with_other_actions(tmp_path, capsys):
+    assert run(tmp_path / "run", "--agent", "ppo_target", "--steps", "128") == 0
+    error = refused(
+        capsys, "--agent", "ppo_target", "--start", str(tmp_path / "run"), "--out", str(tmp_path / "new"),
+        "--set", "env_kwargs={'aim':'target','elevation':True}",
+    )  # fmt: skip
+    assert "start = " in error and "must be a model with actions" in error
 
 
 def test_only_agents_with_masks_can_be_taught(tmp_path, capsys):

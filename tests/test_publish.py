@@ -1,0 +1,160 @@
+"""Are published models those that play today, and are only sound runs published?"""
+
+import json
+
+import numpy as np
+import pytest
+
+from agents import models, publish
+from agents.models import load_player, pretrained
+from agents.recipes import Recipe
+from agents.tables import training_tables
+from snooker_env.envs.vector import SnookerVectorEnv
+
+FIGURES = {
+    "learned": "In 4 shots nothing.",
+    "versions": {},
+    "evaluation": {},
+    "seconds": 36.0,
+    "steps": 4,
+    "git_commit": "abc",
+    "imitation": [],
+}
+SETTINGS = {
+    "agent": "ppo_mask",
+    "seed": 3,
+    "layout": "",
+    "noise": "",
+    "fidelity": "",
+    "physics": "",
+    "start": "",
+    "set": [],
+    "imitate": 100,
+}
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory):
+    """An untrained model's file."""
+    file = tmp_path_factory.mktemp("model") / "model.zip"
+    tables = training_tables(2, action="discrete")
+    Recipe.of("ppo_mask").new_model(tables, 0).save(file)
+    tables.close()
+    return file
+
+
+@pytest.fixture
+def run(model, tmp_path, monkeypatch):
+    """A finished run's folder, and a place of its own for what is published."""
+    folder = tmp_path / "run"
+    folder.mkdir()
+    (folder / "model.zip").write_bytes(model.read_bytes())
+    write(folder)
+    monkeypatch.setattr(publish, "PRETRAINED", tmp_path / "pretrained")
+    return folder
+
+
+def write(folder, settings=None, **figures):
+    found = {"command": "python train.py", **FIGURES, "settings": SETTINGS | (settings or {}), **figures}
+    (folder / "results.json").write_text(json.dumps(found))
+
+
+def refused(capsys, *arguments):
+    with pytest.raises(SystemExit) as stop:
+        publish.main([*map(str, arguments)])
+    assert stop.value.code == 2
+    return capsys.readouterr().err.strip().splitlines()[-1]
+
+
+def published(folder):
+    return sorted(p.name for p in (folder.parent / "pretrained").glob("*"))
+
+
+@pytest.mark.parametrize("name", pretrained())
+def test_pretrained_models_play_today(name):
+    player = load_player(models.PRETRAINED / f"{name}.zip")
+    tables = SnookerVectorEnv(3, noise="professional", layout="held_out", threads=1, **player.options)
+    observations, _ = tables.reset(seed=0)
+    going = np.array([True, False, True])
+    picked = player.act(tables, observations, going)
+    assert tables.action_masks()[going, picked[going]].all() if player.options.get("action") == "discrete" else np.isfinite(picked).all()
+    tables.step(picked)
+    tables.close()
+
+
+def test_a_run_is_published_with_its_card(run, capsys):
+    publish.main([str(run), "--limits", "no safety"])
+    assert published(run) == ["ppo_mask.json", "ppo_mask.zip"] and "ppo_mask.zip and its card" in capsys.readouterr().out
+    folder = run.parent / "pretrained"
+    assert (folder / "ppo_mask.zip").read_bytes() == (run / "model.zip").read_bytes()
+    card = json.loads((folder / "ppo_mask.json").read_text())
+    assert (card["limits"], card["hours"], card["imitated"], card["start"]) == ("no safety", 0.01, 0, None)
+
+
+def test_the_card_counts_what_was_imitated_and_names_the_start(run):
+    write(run, {"start": "runs/a"}, imitation=[{"states": 64}, {"states": 128}])
+    publish.main([str(run), "--limits", "none", "--name", "second"])
+    card = json.loads((run.parent / "pretrained" / "second.json").read_text())
+    assert card["imitated"] == 128 and card["start"] == "runs/a"
+
+
+def test_a_published_model_is_replaced_only_when_asked(run, capsys):
+    publish.main([str(run), "--limits", "first"])
+    before = (run.parent / "pretrained" / "ppo_mask.json").read_bytes()
+    assert "name = 'ppo_mask': must be new" in refused(capsys, run, "--limits", "second")
+    assert (run.parent / "pretrained" / "ppo_mask.json").read_bytes() == before
+    publish.main([str(run), "--limits", "second", "--replace"])
+    assert b"second" in (run.parent / "pretrained" / "ppo_mask.json").read_bytes()
+
+
+@pytest.mark.parametrize("settings", [{"set": ["gamma=0"]}, {"noise": "club"}, {"start": "runs/a"}, {"fidelity": "fast"}])
+def test_another_way_to_train_needs_another_name(run, capsys, settings):
+    write(run, settings)
+    assert "name = None: must be given" in refused(capsys, run, "--limits", "none")
+    assert published(run) == []
+    publish.main([str(run), "--limits", "none", "--name", "other"])
+    assert published(run) == ["other.json", "other.zip"]
+
+
+@pytest.mark.parametrize("name", ["a/b", "../a", "", ".a", "a b", "search", "ghost_ball"])
+def test_bad_names_are_refused(run, capsys, name):
+    assert f"name = {name!r}: must" in refused(capsys, run, "--limits", "none", "--name", name)
+    assert published(run) == []
+
+
+def test_limits_must_say_something(run, capsys):
+    assert "limits = ' ': must say" in refused(capsys, run, "--limits", " ")
+
+
+@pytest.mark.parametrize("content", ["", "{", "[]", "3", "{}", json.dumps({"settings": SETTINGS}), json.dumps({"settings": 3, **FIGURES})])
+def test_broken_results_are_refused(run, capsys, content):
+    (run / "results.json").write_text(content)
+    assert f"run = {str(run)!r}: must be the folder of a finished run" in refused(capsys, run, "--limits", "none")
+    assert published(run) == []
+
+
+def test_a_file_that_is_no_model_is_refused(run, capsys):
+    whole = (run / "model.zip").read_bytes()
+    for content in (b"junk", b"", whole[: len(whole) // 2]):
+        (run / "model.zip").write_bytes(content)
+        assert f"run = {str(run / 'model.zip')!r}: must be a model that train.py saved" in refused(capsys, run, "--limits", "none")
+    (run / "model.zip").unlink()
+    assert "must be a model's .zip or a folder that holds model.zip" in refused(capsys, run, "--limits", "none")
+    assert published(run) == []
+
+
+def test_a_model_of_an_older_network_is_refused(run, monkeypatch):
+    """Other weights, another view, a recipe that is gone: one sentence that names the file and the recipe."""
+    said = r"{} = '.*model.zip': must be a model of today's ppo_mask: this one is older, train it again"
+    for at in ("agents.networks.POT", "agents.networks.CONTEXT"):
+        with monkeypatch.context() as patch:
+            patch.setattr(at, 64)
+            with pytest.raises(ValueError, match=said.format("agent")):
+                load_player(run)
+    with monkeypatch.context() as patch:
+        patch.setattr(models.Model, "space", None)
+        with pytest.raises(ValueError, match=said.format("start")):
+            load_player(run / "model.zip", "start")
+    monkeypatch.setattr(models.Recipe, "of", lambda name: {}[name])
+    with pytest.raises(ValueError, match=said.format("agent")):
+        load_player(run)
