@@ -40,7 +40,8 @@ evaluate() { # name of the output, then the options of agents.evaluate
     python -m agents.evaluate "$@" --json "agents/$name.json" --markdown "agents/$name.md"
 }
 evaluate results --against ghost_ball ppo_foresight_gamma0 --picture agents/pictures/destinations.png --agent \
-    "ppo_foresight=$folder/fore-*" "ppo_foresight_gamma0=$folder/gamma0-*" ghost_ball "ppo_mask=$folder/mask-*" lookahead geometric random
+    "ppo_foresight=$folder/fore-*" "ppo_foresight_gamma0=$folder/gamma0-*" ghost_ball lookahead ppo_mask "ppo_mask_1M=$folder/mask-*" \
+    geometric random
 evaluate results_aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
     "ppo_absolute=$folder/absolute-*" "ppo_target=$folder/target-*" "tqc_target=$folder/tqc-*" ghost_ball random_absolute
 evaluate results_fidelity --layouts held_out --noise professional --fidelity fast standard reference --agent \
