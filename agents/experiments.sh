@@ -40,15 +40,15 @@ evaluate() { # name of the output, then the options of agents.evaluate
     python -m agents.evaluate "$@" --json "agents/$name.json" --markdown "agents/$name.md"
 }
 evaluate results --against ghost_ball ppo_foresight_gamma0 --picture agents/pictures/destinations.png --agent \
-    "ppo_foresight=$folder/fore-*" "ppo_foresight_gamma0=$folder/gamma0-*" ghost_ball lookahead ppo_mask "ppo_mask_1M=$folder/mask-*" \
+    "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" ghost_ball lookahead ppo_mask "ppo_mask_1M=$folder/mask-?" \
     geometric random
 evaluate results_aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
-    "ppo_absolute=$folder/absolute-*" "ppo_target=$folder/target-*" "tqc_target=$folder/tqc-*" ghost_ball random_absolute
+    "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?" ghost_ball random_absolute
 evaluate results_fidelity --layouts held_out --noise professional --fidelity fast standard reference --agent \
-    "fast=$folder/fast-*" "standard=$folder/fore-0" "reference=$folder/reference-*"
+    "fast=$folder/fast-?" "standard=$folder/fore-0" "reference=$folder/reference-?"
 evaluate results_physics --layouts held_out --noise professional --physics paper match paper,mu_bb=marlow --agent \
-    "paper=$folder/fore-0" "match=$folder/match-*" "marlow=$folder/marlow-*"
+    "paper=$folder/fore-0" "match=$folder/match-?" "marlow=$folder/marlow-?"
 evaluate results_noise --layouts held_out --agent \
-    "none=$folder/none-*" "professional=$folder/fore-0" "amateur=$folder/amateur-*" "club=$folder/club-*"
+    "none=$folder/none-?" "professional=$folder/fore-0" "amateur=$folder/amateur-?" "club=$folder/club-?"
 evaluate results_search --agent search --layouts held_out=100 --noise professional
 evaluate results_147 --agent search --layouts break_off=50 --noise none
