@@ -313,7 +313,7 @@ def lesson(agent, steps, taught, figures, start=None):
         begun = f", on top of what {start['model']} had learned in {start['shots']:,},"
     said, widest = f"In {steps:,} shots{begun} {agent} learned", "the widest pot played softly every time"
     if not better(trained, random):
-        less = ": it plays worse than at random" if better(random, trained) else f" that {trained['visits']} visits can show"
+        less = ", it plays worse than at random" if better(random, trained) else f" that {trained['visits']} visits can show"
         return f"{said} nothing{less}: {made(trained)} against {made(random)} of random play."
     if better(ghost, trained):
         return f"{said} to pot, but less than {widest}: {made(trained)} against {made(ghost)}."

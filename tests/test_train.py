@@ -109,7 +109,7 @@ def test_pot_view_shows_the_line_that_the_aim_is_read_against():
         assert np.all(np.diff(shown[:, 7]) <= 0) and not rows[len(shown) :].any()  # widest first, then nothing
 
 
-@pytest.mark.parametrize(("agent", "at", "number"), [("ppo_mask", 300, signal.SIGTERM), ("tqc_target", 100, signal.SIGINT)])
+@pytest.mark.parametrize(("agent", "at", "number"), [("ppo_mask", 100, signal.SIGTERM), ("tqc_target", 100, signal.SIGINT)])
 def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, tmp_path, capsys, monkeypatch, agent, at, number):
     original = train.Keeper._on_step  # at 100 shots tqc only gathers yet
 
@@ -123,7 +123,16 @@ def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, 
         assert run(tmp_path / "run", "--agent", agent) == 128 + number
     assert f"--resume --out {tmp_path / 'run'}" in capsys.readouterr().out
     assert not (tmp_path / "run" / "results.json").exists()
-    assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
+    kept, begun, start = pickle.loads((tmp_path / "run" / "checkpoint.pkl").read_bytes())["running"], [], train.Keeper._on_training_start
+
+    def watched(keeper):
+        start(keeper)
+        begun.append(keeper.training_env.running)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(train.Keeper, "_on_training_start", watched)
+        assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
+    assert np.array_equal(begun, [kept]) and (agent == "tqc_target" or kept[1].any())  # visits go on where they were, with their sums
     assert np.array_equal(weights(tmp_path / "run"), weights(finished / agent))
     before, after = results(finished / agent), results(tmp_path / "run")
     for name in ("evaluation", "settings", "steps", "curve", "learned"):
@@ -294,7 +303,7 @@ def said(trained, ghost, random, **more):
 def test_lesson_claims_only_what_the_figures_show():
     poor = player(0.5, 0.1)
     assert "learned nothing that 100 visits can show" in said(player(1.0, 0.3), player(0.9, 0.3), player(0.5, 0.3))
-    assert "learned nothing: it plays worse than at random" in said(player(0.1, 0.1), player(0.9, 0.3), player(2.0, 0.1))
+    assert "learned nothing, it plays worse than at random" in said(player(0.1, 0.1), player(0.9, 0.3), player(2.0, 0.1))
     assert "not measurably better than the widest pot" in said(player(3.0, 0.3), player(2.9, 0.3), poor)
     assert "not measurably better than the widest pot" in said(player(2.8, 0.3), player(2.9, 0.3), poor)
     assert "to pot, but less than the widest pot" in said(player(2.0, 0.1), player(9.0, 0.3), poor)
