@@ -1,14 +1,14 @@
 """How does an agent learn to play Snooker-v0? Train one, check it against random play on tables it never saw, and say what it learned.
 
-    python train.py                                    up to half an hour on two cores: PPO that looks one shot ahead
-    python train.py --steps 50000 --imitate 10000      a few minutes of the same
+    python train.py                                    some ten minutes on two cores: PPO that looks one shot ahead
+    python train.py --steps 1 --imitate 2000           a few minutes of the same
     python train.py --agent ppo_mask --seed 1 --out runs/mine
     python train.py --resume --out runs/mine           go on after Ctrl-C, a kill or a power cut, exactly where the last checkpoint was
 
 A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; like every pickle, load only your own), ``model.zip`` (for
 ``stable_baselines3`` and ``python -m agents.evaluate``), ``results.json`` (every figure) and ``tb/`` (``tensorboard --logdir runs``). What
-an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how its visits are judged in ``agents/visits.py``; here
-follow, top to bottom: settings, checkpoints, what was learned, the run.
+an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how its visits are judged in ``agents/visits.py``, what is
+said of them in ``agents/lesson.py``; here follow, top to bottom: settings, checkpoints, the run.
 """
 
 import argparse
@@ -33,20 +33,16 @@ from snooker_env._check import refuse
 from snooker_env.envs.vector import processors
 
 try:
-    import rich.box
-    import rich.console
     import rich.progress
-    import rich.table
     import tensorboard  # noqa: F401 - stable_baselines3 would miss it only after the tables are set up
     import torch
     from stable_baselines3.common.callbacks import BaseCallback
 
     from agents.commit import commit
-    from agents.models import Model, load_weights, player_options, write_atomic, write_model, zipped
-    from agents.players import GhostBall, Random
-    from agents.recipes import WORLD, Recipe, algorithm, names
+    from agents.lesson import evaluate, lesson, show
+    from agents.models import load_weights, write_atomic, write_model, zipped
+    from agents.recipes import Recipe, algorithm, names
     from agents.tables import training_tables
-    from agents.visits import play, summary
     from agents.world import world
 except ImportError as error:
     raise SystemExit(f'train.py: {error.name} is missing; train.py needs:  pip install "snooker-env[train]"') from None
@@ -280,67 +276,6 @@ def open_run(parser, given, out, resume):
     return Settings(**{**was, **given}), state
 
 
-# what was learned ----------------------------------------------------------------------------------------------------------------
-
-
-def evaluate(settings, recipe, model):
-    """Figures of held-out visits in the world trained in, the same tables for each: the agent, the plain geometric player, random play.
-
-    Of 500 such tables 47 are equal to others or mirrored: as tables they are not as many as their standard errors take them for.
-    ``agents.evaluate`` leaves those out.
-    """
-    options = player_options(recipe.env_kwargs)
-    players = {"trained": Model(model, options, recipe.view), "ghost_ball": GhostBall(), "random": Random(options, settings.seed)}
-    told: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in WORLD}
-    return {name: summary(play(player, settings.eval_visits, **told)) for name, player in players.items()}
-
-
-def lesson(agent, steps, taught, figures, start=None):
-    """What was learned, in one sentence that follows from the figures: a difference counts from two standard errors on.
-
-    ``taught``: positions imitated first; ``start``: what the agent began from, as ``models.load_weights`` tells it, or None.
-    """
-    trained, ghost, random = (figures[name] for name in ("trained", "ghost_ball", "random"))
-
-    def better(a, b):
-        return a["points_a_visit"] - b["points_a_visit"] > 2.0 * np.hypot(a["points_a_visit_se"], b["points_a_visit_se"])
-
-    def made(player):
-        return f"{player['pots_a_visit']:.2f} pots and {player['points_a_visit']:.2f} points a visit"
-
-    begun = f" after imitating the search in {taught:,} positions" if taught else ""
-    if start:
-        begun = f", on top of what {start['model']} had learned in {start['shots']:,},"
-    said, widest = f"In {steps:,} shots{begun} {agent} learned", "the widest pot played softly every time"
-    if not better(trained, random):
-        less = ", it plays worse than at random" if better(random, trained) else f" that {trained['visits']} visits can show"
-        return f"{said} nothing{less}: {made(trained)} against {made(random)} of random play."
-    if better(ghost, trained):
-        return f"{said} to pot, but less than {widest}: {made(trained)} against {made(ghost)}."
-    if not better(trained, ghost):
-        return (
-            f"{said} to pot, but not measurably better than {widest} in {trained['visits']} visits: {made(trained)} against {made(ghost)}."
-        )
-    shares = [player["next_pot_after_a_pot"] for player in (trained, ghost)]
-    again = "" if None in shares else "; after a pot the next one follows in {:.1f} % against {:.1f} %".format(*(100 * x for x in shares))
-    return f"{said} more than {widest}: {made(trained)} against {made(ghost)}{again}."
-
-
-def show(figures):
-    """Print them."""
-    title = f"A visit, over {figures['random']['visits']} held-out ones, the same for all (± standard error)"
-    table = rich.table.Table(title=title, box=rich.box.SIMPLE, pad_edge=False, collapse_padding=True)
-    table.add_column("agent", no_wrap=True)
-    for name in ("pots", "points", "fouls", "pot rate", "next pot", "best"):
-        table.add_column(name, justify="right", no_wrap=True)
-    for name, f in figures.items():
-        cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")]
-        cells += ["-" if f[key] is None else f"{100 * f[key]:.1f} %" for key in ("pot_rate", "next_pot_after_a_pot")]
-        cells.append(str(f["longest_break"]))
-        table.add_row(name.replace("_", " "), *cells)
-    rich.console.Console().print(table)
-
-
 # the whole -----------------------------------------------------------------------------------------------------------------------
 
 
@@ -405,7 +340,7 @@ def main(argv=None):
     steps, seconds = model.num_timesteps, keeper.seconds_before
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
     write_model(model, out / "model.zip")
-    figures = evaluate(settings, recipe, model)
+    figures = evaluate(recipe, model, settings.eval_visits, settings.seed)
     learned = lesson(settings.agent, steps, model.imitated, figures, model.start)
     results = {
         "command": command_of(settings), "settings": asdict(settings), "steps": steps, "seconds": seconds,

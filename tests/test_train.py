@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import train
-from agents import models, view, visits
+from agents import lesson, models, view, visits
 from agents.players import GhostBall
 from snooker_env.envs.actions import line
 from snooker_env.envs.observations import observe
@@ -297,7 +297,7 @@ def player(points, se, share: float | None = 0.9):
 
 def said(trained, ghost, random, **more):
     """The lesson of these figures."""
-    return train.lesson("ppo_mask", 1000, 0, {"trained": trained, "ghost_ball": ghost, "random": random}, **more)
+    return lesson.lesson("ppo_mask", 1000, 0, {"trained": trained, "ghost_ball": ghost, "random": random}, **more)
 
 
 def test_lesson_claims_only_what_the_figures_show():
@@ -328,15 +328,15 @@ def test_evaluation_plays_in_the_world_trained_in(finished, monkeypatch):
         played.append((player.options, options))
         return original(player, n, **options)
 
-    monkeypatch.setattr(train, "play", watched)
-    settings = train.Settings(agent="ppo_mask", eval_visits=2)
+    monkeypatch.setattr(lesson, "play", watched)
+    settings = train.Settings(agent="ppo_mask")
     model = models.load_player(finished / "ppo_mask").model
-    train.evaluate(settings, train.recipe_of(settings), model)
+    lesson.evaluate(train.recipe_of(settings), model, 2, 0)
     world = {"noise": "club", "table": "tight", "physics": {"preset": "paper", "mu_bb": "marlow"}, "fidelity": "fast"}
     given = str({"action": "discrete", "layout": "line_up", "reward": "pots", **world})
-    train.evaluate(settings, train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model)
+    lesson.evaluate(train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model, 2, 0)
     bare = train.recipe_of(train.Settings(agent="ppo_mask", set=("env_kwargs={'action': 'discrete'}",)))
-    train.evaluate(settings, bare, model)
+    lesson.evaluate(bare, model, 2, 0)
     assert [options for _, options in played] == [{"noise": "professional"}] * 3 + [world] * 3 + [{"noise": "none"}] * 3
     assert all(own == {"action": "discrete"} for own, _ in played)
 

@@ -1,0 +1,71 @@
+"""What did a training run learn? Held-out visits of its agent and of two simple players, a table of them, and one sentence that follows."""
+
+from typing import Any
+
+import numpy as np
+import rich.box
+import rich.console
+import rich.table
+
+from .models import Model, player_options
+from .players import GhostBall, Random
+from .recipes import WORLD
+from .visits import play, summary
+
+
+def evaluate(recipe, model, visits, seed):
+    """Figures of held-out visits in the world trained in, the same tables for each: the agent, the plain geometric player, random play.
+
+    Of 500 such tables 47 are equal to others or mirrored: as tables they are not as many as their standard errors take them for.
+    ``agents.evaluate`` leaves those out.
+    """
+    options = player_options(recipe.env_kwargs)
+    players = {"trained": Model(model, options, recipe.view), "ghost_ball": GhostBall(), "random": Random(options, seed)}
+    told: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in WORLD}
+    return {name: summary(play(player, visits, **told)) for name, player in players.items()}
+
+
+def lesson(agent, steps, taught, figures, start=None):
+    """What was learned, in one sentence that follows from the figures: a difference counts from two standard errors on.
+
+    ``taught``: positions imitated first; ``start``: what the agent began from, as ``models.load_weights`` tells it, or None.
+    """
+    trained, ghost, random = (figures[name] for name in ("trained", "ghost_ball", "random"))
+
+    def better(a, b):
+        return a["points_a_visit"] - b["points_a_visit"] > 2.0 * np.hypot(a["points_a_visit_se"], b["points_a_visit_se"])
+
+    def made(player):
+        return f"{player['pots_a_visit']:.2f} pots and {player['points_a_visit']:.2f} points a visit"
+
+    begun = f" after imitating the search in {taught:,} positions" if taught else ""
+    if start:
+        begun = f", on top of what {start['model']} had learned in {start['shots']:,},"
+    said, widest = f"In {steps:,} shots{begun} {agent} learned", "the widest pot played softly every time"
+    if not better(trained, random):
+        less = ", it plays worse than at random" if better(random, trained) else f" that {trained['visits']} visits can show"
+        return f"{said} nothing{less}: {made(trained)} against {made(random)} of random play."
+    if better(ghost, trained):
+        return f"{said} to pot, but less than {widest}: {made(trained)} against {made(ghost)}."
+    if not better(trained, ghost):
+        return (
+            f"{said} to pot, but not measurably better than {widest} in {trained['visits']} visits: {made(trained)} against {made(ghost)}."
+        )
+    shares = [player["next_pot_after_a_pot"] for player in (trained, ghost)]
+    again = "" if None in shares else "; after a pot the next one follows in {:.1f} % against {:.1f} %".format(*(100 * x for x in shares))
+    return f"{said} more than {widest}: {made(trained)} against {made(ghost)}{again}."
+
+
+def show(figures):
+    """Print them."""
+    title = f"A visit, over {figures['random']['visits']} held-out ones, the same for all (± standard error)"
+    table = rich.table.Table(title=title, box=rich.box.SIMPLE, pad_edge=False, collapse_padding=True)
+    table.add_column("agent", no_wrap=True)
+    for name in ("pots", "points", "fouls", "pot rate", "next pot", "best"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for name, f in figures.items():
+        cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")]
+        cells += ["-" if f[key] is None else f"{100 * f[key]:.1f} %" for key in ("pot_rate", "next_pot_after_a_pot")]
+        cells.append(str(f["longest_break"]))
+        table.add_row(name.replace("_", " "), *cells)
+    rich.console.Console().print(table)
