@@ -7,8 +7,8 @@
 
 A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; like every pickle, load only your own), ``model.zip`` (for
 ``stable_baselines3`` and ``python -m agents.evaluate``), ``results.json`` (every figure) and ``tb/`` (``tensorboard --logdir runs``). What
-an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how its visits are judged in ``agents/visits.py``, what is
-said of them in ``agents/lesson.py``; here follow, top to bottom: settings, checkpoints, the run.
+an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how its visits are judged in ``agents/visits.py``, what
+is said of them in ``agents/lesson.py``; here follow, top to bottom: settings, checkpoints, the run.
 """
 
 import argparse
