@@ -53,13 +53,14 @@ def draw(report, strokes, file):
     labels = [agent["label"] for agent in report["agents"]][:MOST]
     at = main_condition(report)
     rows = {r["agent"]: r for r in report["results"] if all(r[key] == value for key, value in at.items())}
-    width = 2.75 * len(labels) + 3.6  # inches
+    names = 0.2 + 0.08 * max(map(len, labels))  # inches, as wide as the longest name beside its bar
+    width = 2.75 * len(labels) + names + 2.5
     figure = plt.figure(figsize=(width, 6.6), facecolor="white")
     grid = figure.add_gridspec(
-        len(FIGURES), len(labels) + 2, width_ratios=[1.0] * len(labels) + [0.3, 1.1], left=0.015, right=0.985, top=0.79, bottom=0.03,
+        len(FIGURES), len(labels) + 2, width_ratios=[2.6] * len(labels) + [names, 2.4], left=0.015, right=0.985, top=0.79, bottom=0.03,
         wspace=0.05, hspace=0.7,
     )  # fmt: skip
-    dots = [[np.concatenate(column) for column in zip(*map(first_reds, strokes[label]), strict=True)] for label in labels]
+    dots = [first_reds(strokes[label][0]) for label in labels]  # of one run each: as many dots as there were chances
     size = float(np.clip(INK / max(1, *(len(places) for places, _ in dots)), LEAST, LARGEST))
     for k, (label, (places, went_in)) in enumerate(zip(labels, dots, strict=True)):
         table(figure.add_subplot(grid[:, k]), label, places, went_in, size)
@@ -73,7 +74,7 @@ def draw(report, strokes, file):
     for x, colour, text in ((0.2 / width, WENT_IN, "the colour after it went in"), (2.5 / width, MISSED, "it did not")):
         figure.text(x, 0.873, "●", color=colour, fontsize=11, va="center", path_effects=[withStroke(linewidth=1.0, foreground="#555555")])
         figure.text(x + 0.22 / width, 0.873, text, fontsize=10, va="center")
-    edge = 1 - 3.6 / width
+    edge = 1 - (names + 2.4) / width
     figure.text(edge, 0.908, "All strokes of these visits", fontsize=10)
     figure.text(edge, 0.873, "easy: its line may err by 4 mrad; lines: 95 % intervals", fontsize=8, va="center", color="#555555")
     figure.savefig(file, dpi=110)
@@ -81,7 +82,7 @@ def draw(report, strokes, file):
 
 
 def table(axes, label, places, went_in, size):
-    """One agent's table, its black end up, with the dots of all its runs."""
+    """One agent's table, its black end up, with its dots."""
     parts = outline(Table.preset("match"))
     for margin, colour in ((RAIL, WOOD), (CUSHION, CLOTH)):
         hx, hy = HALF_WIDTH + margin, HALF_LENGTH + margin
