@@ -1,6 +1,6 @@
 """How does an agent learn to play Snooker-v0? Train one, check it against random play on tables it never saw, and say what it learned.
 
-    python train.py                                    some ten minutes on two cores: PPO that looks one shot ahead
+    python train.py                                    four to ten minutes on two cores: PPO that looks one shot ahead
     python train.py --steps 1 --imitate 2000           a few minutes of the same
     python train.py --agent ppo_mask --seed 1 --out runs/mine
     python train.py --resume --out runs/mine           go on after Ctrl-C, a kill or a power cut, exactly where the last checkpoint was
