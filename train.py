@@ -18,6 +18,7 @@ import json
 import os
 import pickle
 import platform
+import shlex
 import signal
 import sys
 import tempfile
@@ -62,8 +63,7 @@ class Settings:
     agent: str = option("ppo_foresight", "what learns, and how: a file of agents/hyperparams", choices=tuple(names()))
     steps: int = option(0, "shots in all; 0: as many as the recipe says")
     envs: int = option(0, "tables played side by side; 0: as many as the recipe says")
-    parallel: str = option("auto", "threads for the tables: auto (once called processes) is one a processor; the same shots come out",
-                           choices=("auto", "processes", "one"))  # fmt: skip
+    parallel: str = option("auto", "threads for the tables: auto is one a processor; the same shots come out", choices=("auto", "one"))
     seed: int = option(0, "of tables, weights and exploration")
     layout: str = option("", "where training visits start [the recipe's]")
     noise: str = option("", "execution noise: none, professional, amateur, club or olympiad [the recipe's]")
@@ -247,8 +247,8 @@ def command_of(settings):
     for f in fields(Settings):
         value = getattr(settings, f.name)
         if f.name == "agent" or (value != f.default and f.name not in ("parallel", "eval_visits", "checkpoint_every")):
-            words += ["--" + f.name, *map(str, value if f.name == "set" else [value])]
-    return " ".join(words)
+            words += [f"--{f.name}", *map(str, value if f.name == "set" else [value])]
+    return shlex.join(words)
 
 
 def open_run(parser, given, out, resume):

@@ -3,12 +3,11 @@
 #
 #     bash agents/experiments.sh [FOLDER [JOBS]]     runs/experiments, 2 runs side by side, each on one core
 #
-# Only some of them: ONLY='fore-|gamma0-' bash agents/experiments.sh
+# Only some of the runs, and no comparison: ONLY='fore-|gamma0-' bash agents/experiments.sh. Say what would be run: ... LIST=1 ...
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=${1:-runs/experiments} jobs=${2:-2}
 export folder
-mkdir -p "$folder"
 
 runs() { # name, then the options of train.py
     for k in 0 1 2 3 4; do echo "fore-$k --seed $k"; done
@@ -27,17 +26,24 @@ train() {
     shift
     [[ -f $folder/$name/results.json ]] && return
     rm -rf "${folder:?}/$name"
-    python train.py "$@" --parallel one --no-progress --out "$folder/$name" > "$folder/$name.txt" 2>&1
+    python train.py "$@" --parallel one --no-progress --out "$folder/$name" > "$folder/$name.txt" 2>&1 ||
+        { echo "$name failed: see $folder/$name.txt" >&2; return 1; }
     echo "$(date +%H:%M) $name"
 }
 export -f train
-runs | grep -E "^(${ONLY:-.*})" | xargs -d '\n' -P "$jobs" -I{} bash -c 'train {}'
+if [[ -z ${LIST:-} ]]; then
+    mkdir -p "$folder"
+    runs | grep -E "^(${ONLY:-.*})" | xargs -d '\n' -P "$jobs" -I{} bash -c 'train {}'
+else
+    runs | sed 's/^[^ ]* /python train.py /'
+fi
 [[ -n ${ONLY:-} ]] && exit
 
 evaluate() { # name of the output, then the options of agents.evaluate
     local name=$1
     shift
-    python -m agents.evaluate "$@" --json "agents/$name.json" --markdown "agents/$name.md"
+    ${LIST:+printf '%q '} python -m agents.evaluate "$@" --json "agents/$name.json" --markdown "agents/$name.md"
+    ${LIST:+echo}
 }
 evaluate results --against ghost_ball ppo_foresight_gamma0 --picture agents/pictures/destinations.png --agent \
     "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" ghost_ball lookahead ppo_mask "ppo_mask_1M=$folder/mask-?" \

@@ -4,8 +4,7 @@ Behind ``view.with_pots`` come ``STROKES_SEEN`` rows, one for each stroke at eac
 errors of ``looks.LOOKS``, scaled by the execution noise of the tables (one look if there is none). The agent may play these strokes and no
 others. Looking costs 120 simulated shots a decision: the agent is slower than one that only sees the table, far quicker than ``search``.
 
-Fewer pots and strokes with more looks each make more than the other way round: the widest two pots of the four are played nearly always,
-and what an error does to the next pot is hard to tell from one outcome.
+Two pots and a few strokes, with several looks at each: what an error does to the next pot cannot be told from one outcome.
 """
 
 import numpy as np

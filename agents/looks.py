@@ -4,9 +4,7 @@ Where a shot under execution noise leads is a mean over five numbers (errors of 
 is poor when they happen to lie on one side. ``LOOKS`` are keys of streams (``game.stream``) whose errors have been chosen: of each kind
 they are nearly the five values that are equally likely (-1.28, -0.52, 0, 0.52, 1.28 standard deviations), and one kind says little of
 another. They are the same for all positions and strokes, so strokes differ by their merits.
-
-Judged by hand (``python -m agents.evaluate --agent lookahead``) such looks make more pots than others of variance 1: those lie further out
-and see more misses than there are.
+Errors of variance 1 would lie further out and, five being few, see more misses than there are.
 """
 
 from statistics import NormalDist

@@ -290,36 +290,6 @@ def test_every_player_meets_the_same_tables():
     assert all(np.array_equal(a, b) for a, b in zip(seen[: len(seen) // 2], seen[len(seen) // 2 :], strict=True))
 
 
-def player(points, se, share: float | None = 0.9):
-    """Figures of a player."""
-    return {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se, "visits": 100, "next_pot_after_a_pot": share}
-
-
-def said(trained, ghost, random, **more):
-    """The lesson of these figures."""
-    return lesson.lesson("ppo_mask", 1000, 0, {"trained": trained, "ghost_ball": ghost, "random": random}, **more)
-
-
-def test_lesson_claims_only_what_the_figures_show():
-    poor = player(0.5, 0.1)
-    assert "learned nothing that 100 visits can show" in said(player(1.0, 0.3), player(0.9, 0.3), player(0.5, 0.3))
-    assert "learned nothing, it plays worse than at random" in said(player(0.1, 0.1), player(0.9, 0.3), player(2.0, 0.1))
-    assert "not measurably better than the widest pot" in said(player(3.0, 0.3), player(2.9, 0.3), poor)
-    assert "not measurably better than the widest pot" in said(player(2.8, 0.3), player(2.9, 0.3), poor)
-    assert "to pot, but less than the widest pot" in said(player(2.0, 0.1), player(9.0, 0.3), poor)
-    assert "more than the widest pot" in said(player(9.0, 0.3), player(2.9, 0.3), poor)
-
-
-def test_lesson_gives_each_player_its_own_share_of_next_pots():
-    """Whichever is greater; and none where there is none."""
-    poor = player(0.5, 0.1)
-    assert "follows in 60.0 % against 66.1 %." in said(player(9.0, 0.3, 0.6), player(2.9, 0.3, 0.661), poor)
-    assert "follows in 89.8 % against 66.1 %." in said(player(9.0, 0.3, 0.898), player(2.9, 0.3, 0.661), poor)
-    for shares in ((None, 0.6), (0.6, None)):
-        sentence = said(player(9.0, 0.3, shares[0]), player(2.9, 0.3, shares[1]), poor)
-        assert "more than the widest pot" in sentence and "%" not in sentence
-
-
 def test_evaluation_plays_in_the_world_trained_in(finished, monkeypatch):
     """All options but layout and reward, the environment's own noise where none is given; the action is each player's own."""
     played, original = [], visits.play

@@ -1,0 +1,42 @@
+"""Can the commands behind agents/results*.md be run as agents/experiments.sh writes them? Each is read as its program would read it."""
+
+import os
+import shlex
+import subprocess
+from pathlib import Path
+
+import train
+from agents.evaluate import parser
+from agents.players import NAMES
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def test_every_command_is_one_that_its_program_takes(tmp_path):
+    command = ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path)]
+    done = subprocess.run(command, env=os.environ | {"LIST": "1"}, capture_output=True, text=True, check=True, timeout=60)
+    lines = [shlex.split(line) for line in done.stdout.splitlines()]
+    runs, comparisons = [line[2:] for line in lines if line[1] == "train.py"], [line[3:] for line in lines if line[1] == "-m"]
+    assert len(runs) > 25 and len(comparisons) == 7 and len(runs) + len(comparisons) == len(lines)
+    recipes = [train.recipe_of(train.Settings(**train.parse(run)[1])) for run in runs]
+    assert {recipe.name for recipe in recipes} == {"ppo_foresight", "ppo_mask", "ppo_absolute", "ppo_target", "tqc_target"}
+    for comparison in comparisons:
+        told = parser().parse_args(comparison)
+        assert told.json.suffix == ".json" and told.markdown.with_suffix(".json") == told.json
+        for agent in told.agent:
+            label, equals, folder = agent.partition("=")
+            assert folder.startswith(f"{tmp_path}/") if equals else label in (*NAMES, "ppo_mask")
+
+
+def test_a_run_that_fails_stops_the_whole(tmp_path):
+    """And its log says why."""
+    (tmp_path / "bin").mkdir()
+    fake = tmp_path / "bin" / "python"
+    fake.write_text("#!/bin/sh\necho no memory\nexit 3\n")
+    fake.chmod(0o755)
+    env = os.environ | {"PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}", "ONLY": "tqc-"}
+    done = subprocess.run(
+        ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path / "runs")], env=env, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode != 0 and "tqc-0 failed" in done.stderr
+    assert (tmp_path / "runs/tqc-0.txt").read_text() == "no memory\n"
