@@ -12,7 +12,7 @@ export folder
 runs() { # name, then the options of train.py
     for k in 0 1 2 3 4; do echo "fore-$k --seed $k"; done
     for k in 0 1 2 3 4; do echo "mask-$k --agent ppo_mask --steps 1000000 --seed $k"; done
-    echo "gamma0-0 --set gamma=0"
+    for k in 0 1 2 3 4; do echo "gamma0-$k --set gamma=0 --seed $k"; done
     for fidelity in fast reference; do echo "$fidelity-0 --fidelity $fidelity"; done
     for physics in match marlow; do echo "$physics-0 --physics ${physics/marlow/paper,mu_bb=marlow}"; done
     for noise in none amateur club; do echo "$noise-0 --noise $noise"; done
