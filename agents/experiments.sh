@@ -45,6 +45,12 @@ evaluate() { # name of the output, then the options of agents.evaluate
     ${LIST:+printf '%q '} python -m agents.evaluate "$@" --json "agents/$name.json" --markdown "agents/$name.md"
     ${LIST:+echo}
 }
+curves() {
+    ${LIST:+printf '%q '} python -m agents.curves "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" \
+        "ppo_mask=$folder/mask-?" "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?"
+    ${LIST:+echo}
+}
+curves
 evaluate results --against ghost_ball ppo_foresight_gamma0 --picture agents/pictures/destinations.png --agent \
     "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" ghost_ball lookahead ppo_mask "ppo_mask_1M=$folder/mask-?" \
     geometric random

@@ -156,6 +156,14 @@ def test_a_foul_clears_no_table():
     assert f["clearances"] == f["centuries"] == pytest.approx(1 / 3)
 
 
+@pytest.mark.parametrize(("points", "century", "maximum"), [(99, 0, 0), (100, 1, 0), (146, 1, 0), (147, 1, 1)])
+def test_centuries_and_maximums(points, century, maximum):
+    s = a_clearance_a_foul_and_a_miss()
+    s.points[0] = points - s.points[-1]
+    c = evaluate.counts(s)
+    assert c["centuries"].tolist() == [century, 0, 0] and c["maximums"].tolist() == [maximum, 0, 0]
+
+
 def test_counts_agree_with_the_summary():
     s = visits.play(GhostBall(), 60, noise="professional")
     for strokes in (s, a_clearance_a_foul_and_a_miss()):

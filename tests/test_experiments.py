@@ -16,8 +16,10 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
     command = ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path)]
     done = subprocess.run(command, env=os.environ | {"LIST": "1"}, capture_output=True, text=True, check=True, timeout=60)
     lines = [shlex.split(line) for line in done.stdout.splitlines()]
-    runs, comparisons = [line[2:] for line in lines if line[1] == "train.py"], [line[3:] for line in lines if line[1] == "-m"]
-    assert len(runs) > 25 and len(comparisons) == 7 and len(runs) + len(comparisons) == len(lines)
+    runs = [line[2:] for line in lines if line[1] == "train.py"]
+    comparisons, curves = ([line[3:] for line in lines if line[2] == f"agents.{name}"] for name in ("evaluate", "curves"))
+    assert len(runs) > 25 and len(comparisons) == 7 and len(curves) == 1 and len(runs) + 8 == len(lines)
+    assert all(agent.partition("=")[2].startswith(f"{tmp_path}/") for agent in curves[0])
     recipes = [train.recipe_of(train.Settings(**train.parse(run)[1])) for run in runs]
     assert {recipe.name for recipe in recipes} == {"ppo_foresight", "ppo_mask", "ppo_absolute", "ppo_target", "tqc_target"}
     for comparison in comparisons:

@@ -52,6 +52,22 @@ def test_reds_have_no_order(net, seen):
     assert not torch.allclose(values, net(other)[1], atol=1e-3)
 
 
+def test_balls_on_are_summed_apart(net, seen):
+    """Read of that sum alone, a table changes with each ball that is on and with no other."""
+    reader = net(seen)[2]
+    with torch.no_grad():
+        reader.context[0].weight[:, BALL:] = 0.0
+    before, met = net(seen)[1], 0
+    for ball in range(1, 22):
+        on = (seen[:, 5 * ball + 2] > 0) & (seen[:, 5 * ball + 4] > 0)
+        other = seen.clone()
+        other[:, 5 * ball + 1] += 0.3
+        changed = (net(other)[1] != before)[:, 0]
+        assert torch.equal(changed, on), ball
+        met += bool(on.any())
+    assert met > 19
+
+
 def test_pots_have_no_order_but_their_own_scores(net, seen):
     order = [2, 0, 3, 1]
     other = seen.clone()

@@ -1,0 +1,101 @@
+"""How fast do agents learn? A picture of the visits they play in training, over the time they have trained and over their shots.
+
+    python -m agents.curves "ppo_mask=runs/mask-?" "pots only=runs/gamma0-?" [--out agents/pictures/curves.png]
+
+Read from the ``results.json`` of finished runs (train.py). Thin lines: one training seed each, points a visit of the last 100 visits,
+exploring. Discs: what a run makes of its held-out visits at the end, playing what it thinks best, with two standard errors. A run that
+imitated first starts its line where it begins to play. Time is of a shared machine: it says a factor, not a percentage.
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+from snooker_env._check import choice, refuse
+
+from .contestants import Agent
+from .destinations import formats
+from .evaluate import writable
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt
+
+PICTURE = Path(__file__).parent / "pictures" / "curves.png"
+LEVELS = ("trained", "ghost_ball", "random")
+"""Of whom a run keeps how well they play held-out visits; the level of the last two is drawn across."""
+
+
+def run_of(path):
+    """What a finished run kept. Raises ValueError."""
+    file = Path(path) / "results.json"
+    if not file.is_file():
+        raise refuse("run", str(path), "must be the folder of a finished run: it holds results.json")
+    try:
+        run = json.loads(file.read_text(encoding="utf-8"))
+        taught = run["imitation"][-1]["seconds"] if run["imitation"] else 0.0
+        shots = np.array([at["steps"] for at in run["curve"]], float)
+        points = np.array([at["points"] for at in run["curve"]], float)
+        minutes = (taught + (run["seconds"] - taught) * shots / run["steps"]) / 60.0
+        levels = {name: (run["evaluation"][name]["points_a_visit"], run["evaluation"][name]["points_a_visit_se"]) for name in LEVELS}
+        return {"shots": shots, "minutes": minutes, "points": points, "end": (run["steps"], run["seconds"] / 60.0), "levels": levels}
+    except (ValueError, KeyError, TypeError, IndexError, AttributeError):
+        raise refuse("run", str(file), "must be what today's train.py writes") from None
+
+
+def draw(agents, file):
+    """Draw ``agents``: label -> list of ``run_of``."""
+    figure, sides = plt.subplots(1, 2, figsize=(11, 4.6), sharey=True, layout="constrained")
+    for k, (label, runs) in enumerate(agents.items()):
+        colour = f"C{k % 10}"
+        for i, run in enumerate(runs):
+            score, error = run["levels"]["trained"]
+            for axes, x, end in zip(sides, (run["minutes"], run["shots"]), run["end"][::-1], strict=True):
+                axes.plot(x, run["points"], color=colour, lw=1.0, alpha=0.8)
+                axes.errorbar(end, score, 2 * error, fmt="o", ms=4, color=colour, elinewidth=0.9, label=label if i == 0 else None)
+    for name in LEVELS[1:]:
+        level = np.mean([run["levels"][name][0] for runs in agents.values() for run in runs])
+        for axes in sides:
+            axes.axhline(level, color="#888888", lw=0.9, ls=":")
+        sides[0].annotate(name, (0.01, level), xycoords=("axes fraction", "data"), fontsize=8, color="#555555", va="bottom")
+    for axes, name in zip(sides, ("minutes of training, imitation included", "shots played in training"), strict=True):
+        axes.set(xscale="log", yscale="log", xlabel=name)
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
+            axis.set_minor_locator(NullLocator())
+        axes.grid(alpha=0.25, which="both", lw=0.5)
+        for side in ("top", "right"):
+            axes.spines[side].set_visible(False)
+    sides[0].set_ylabel("points a visit")
+    sides[1].legend(frameon=False, fontsize=9)
+    figure.suptitle("Lines: in training, exploring. Discs: held-out visits at the end, playing the best", fontsize=11)
+    figure.savefig(file, dpi=110)
+    plt.close(figure)
+
+
+def main(argv=None):
+    """Check, draw. Exit code 0."""
+    p = argparse.ArgumentParser("python -m agents.curves", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("agents", nargs="+", metavar="AGENT", help="a run folder, or LABEL=FOLDER,FOLDER,... or patterns")
+    p.add_argument("--out", type=Path, default=PICTURE, help="the picture [agents/pictures/curves.png]")
+    args = p.parse_args(argv)
+    try:
+        choice("out", args.out.suffix, formats())
+        agents = {agent.label: [run_of(run) for run in agent.runs] for agent in map(Agent.of, args.agents)}
+        if len(agents) < len(args.agents):
+            raise refuse("agents", " ".join(args.agents), "must have another label each")
+        writable("out", args.out)
+    except ValueError as error:
+        p.error(str(error))
+    draw(agents, args.out)
+    print(args.out)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
