@@ -72,12 +72,12 @@ class Settings:
     imitate: int = option(-1, "positions on which it is first taught by the search; -1: as many as the recipe says")
     start: str = option("", "a model of the same agent to start from, its .zip or run folder")
     set: tuple = option((), "other hyper-parameters, as gamma=0", nargs="+")
-    eval_visits: int = option(500, "held-out visits each agent plays at the end")
+    eval_visits: int = option(500, "held-out visits each agent plays at the end, at most one from each of the 2048 tables")
     checkpoint_every: int = option(100_000, "shots from one checkpoint to the next")
 
 
 BOUNDS = {
-    "steps": (0, 10**12), "envs": (0, 2**24), "seed": (0, 2**32 - 1), "imitate": (-1, 10**9), "eval_visits": (2, 2**20),
+    "steps": (0, 10**12), "envs": (0, 2**24), "seed": (0, 2**32 - 1), "imitate": (-1, 10**9), "eval_visits": (2, 2048),
     "checkpoint_every": (1, 10**12),
 }  # fmt: skip
 FREE_ON_RESUME = ("steps", "parallel", "eval_visits", "checkpoint_every")  # how long and where, not what; lr falls over the new steps
@@ -168,6 +168,12 @@ def load_model(state, algo, envs):
     return model
 
 
+def goal_of(model, steps):
+    """Shots played when training to ``steps`` ends: it goes by whole rollouts."""
+    rollout = model.n_envs * (model.n_steps if hasattr(model, "n_steps") else model.train_freq.frequency)
+    return model.num_timesteps + rollout * -(-max(0, steps - model.num_timesteps) // rollout)
+
+
 class Keeper(BaseCallback):
     """Keeps the run: progress bar, learning curve, checkpoints, and an orderly stop after SIGINT or SIGTERM."""
 
@@ -185,7 +191,7 @@ class Keeper(BaseCallback):
         """Only note it: the save comes when the running update is done. A second signal acts at once."""
         self.signal = number
         signal.signal(number, signal.SIG_DFL if number != signal.SIGINT else signal.default_int_handler)
-        self.bar.console.print(f"\n{signal.Signals(number).name}: saving after this update ...")
+        self.bar.console.print(f"\n{signal.Signals(number).name}: saving after this update ... (once more stops at once, without a save)")
 
     @property
     def seconds(self):
@@ -198,7 +204,8 @@ class Keeper(BaseCallback):
             tables: Any = self.training_env
             tables.running = self.running
         self.bar.start()
-        self.task = self.bar.add_task(self.settings.agent, total=self.settings.steps, completed=self.num_timesteps)
+        total = goal_of(self.model, self.settings.steps)
+        self.task = self.bar.add_task(self.settings.agent, total=total, completed=self.num_timesteps)
 
     def _on_rollout_start(self):
         # here, and only here, everything played so far has been learned from: a checkpoint loses nothing
@@ -213,7 +220,7 @@ class Keeper(BaseCallback):
             self.save()
 
     def _on_step(self):
-        self.bar.update(self.task, completed=min(self.num_timesteps, self.settings.steps))
+        self.bar.update(self.task, completed=self.num_timesteps)
         return not self.stop  # SB3 can stop only here; the one shot played since the save is played again after a resume
 
     def _on_training_end(self):
@@ -255,11 +262,8 @@ def open_run(parser, given, out, resume):
     """(settings, checkpoint or None); every reason not to start ends here with one message."""
     checkpoint = out / "checkpoint.pkl"
     if not resume:
-        kept = [p.name for p in out.iterdir() if p.name not in ("tb", "checkpoint.pkl.tmp")] if out.is_dir() else []
         if out.exists() and not out.is_dir():
             raise refuse("out", str(out), "must be a folder, new or empty")
-        if kept:
-            parser.error(f"{out} is not empty (it holds {', '.join(sorted(kept)[:3])}): --resume goes on with it, --out names another")
         return Settings(**given), None
     if not checkpoint.is_file():
         parser.error(f"{out} holds no checkpoint: start the run without --resume")
@@ -295,6 +299,9 @@ def prepared(parser, given, out, resume):
             model = recipe.new_model(tables, settings.seed)
             if settings.start:
                 load_weights(model, Path(settings.start))
+        kept = sorted(p.name for p in out.iterdir() if p.name not in ("tb", "checkpoint.pkl.tmp")) if out.is_dir() and not resume else []
+        if kept:  # told last: another folder is no use as long as an option is wrong
+            parser.error(f"{out} is not empty (it holds {', '.join(kept[:3])}): --resume goes on with it, --out names another")
         out.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=out).close()
     except ValueError as error:
@@ -323,8 +330,10 @@ def main(argv=None):
             out / "checkpoint.pkl", settings, kept["seconds"], kept["curve"], imitation, kept["running"], not rest.no_progress
         )  # fmt: skip
         before = {number: signal.signal(number, keeper.on_signal) for number in (signal.SIGINT, signal.SIGTERM)}
-        print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {settings.steps:,} shots played", flush=True)
-        if model.num_timesteps < settings.steps:
+        print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {goal_of(model, settings.steps):,} shots played", flush=True)
+        if model.num_timesteps >= settings.steps:
+            print("Nothing is left to train.", flush=True)
+        else:
             try:
                 model.learn(settings.steps - model.num_timesteps, keeper, tb_log_name=settings.agent, reset_num_timesteps=state is None)
             finally:
@@ -357,4 +366,10 @@ if __name__ == "__main__":
     try:
         sys.exit(main())
     except KeyboardInterrupt:
-        sys.exit("Interrupted. If there is a checkpoint it is whole: --resume goes on from it.")
+        kept = parse(None)[2].out
+        saved = (kept / "checkpoint.pkl").is_file()
+        sys.exit(
+            f"Interrupted. Go on from the last save with:  python train.py --resume --out {kept}"
+            if saved
+            else "Interrupted, nothing saved."
+        )

@@ -11,7 +11,7 @@ from snooker_env._check import number, refuse
 from snooker_env.envs.snooker import LAYOUTS
 
 from .models import PRETRAINED, pretrained
-from .players import NAMES, player_of
+from .players import NAMES, is_player, player_of
 from .world import text_of
 
 
@@ -33,16 +33,18 @@ class Agent:
         for path in paths.split(","):
             if path in pretrained():
                 path = str(PRETRAINED / f"{path}.zip")
-            found = [path] if path in NAMES or Path(path).exists() else sorted(glob.glob(path))
+            found = [path] if is_player(path) or Path(path).exists() else sorted(glob.glob(path))
             if not found:
                 known = ", ".join((*NAMES, *pretrained()))
-                allowed = f"must be {known}, or name models that are there: a .zip, a run folder, a pattern"
+                allowed = f"must be {known}, MODULE:CLASS, or name models that are there: a .zip, a run folder, a pattern"
                 raise refuse("agent", path, allowed)
             runs += found
         if equals and not label:
             raise refuse("agent", text, "must have a label before the =")
-        if any(run in NAMES for run in runs) and not all(run in NAMES for run in runs):
+        if any(map(is_player, runs)) and not all(map(is_player, runs)):
             raise refuse("agent", text, "must be players or trained models, not both under one label")
+        if is_player(runs[0]):
+            return cls(label or runs[0].rpartition(":")[2], tuple(runs))
         path = Path(runs[0])
         return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs))
 
@@ -64,26 +66,25 @@ def _model(path):
         raise refuse("agent", path, f"must be a model that train.py saved ({type(error).__name__}: {why})") from error
 
 
-def _told(file, *names):
-    """The number that a JSON file holds under these names, one within the other; None if it holds none. Raises ValueError."""
+def _told(file, name):
+    """The number of this name that a JSON file holds; None if it holds none. Raises ValueError."""
     try:
         told = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
     except ValueError as error:
         raise refuse("agent", str(file), f"must be JSON ({error})") from None
-    for name in names:
-        if not isinstance(told, dict):
-            raise refuse("agent", str(file), f"must hold {name} in an object")
-        told = told.get(name, {})
-    return None if told in ({}, None) else number(f"{file}: {'.'.join(names)}", told, 0)
+    if not isinstance(told, dict):
+        raise refuse("agent", str(file), f"must hold {name} in an object")
+    return None if told.get(name) is None else number(f"{file}: {name}", told[name], 0)
 
 
 def player_for(run, budget, seed):
     """A fresh player, or a model, read once."""
-    return player_of(run, budget=budget, seed=seed) if run in NAMES else _model(run)
+    return player_of(run, budget=budget, seed=seed) if is_player(run) else _model(run)
 
 
 def _training(run):
-    if run in NAMES:
+    if is_player(run):
+        player_of(run)  # one's own may not be there
         return {}
     model, path = _model(run).model, Path(run)
     card, results = path.with_suffix(".json"), (path if path.is_dir() else path.parent) / "results.json"
@@ -91,7 +92,7 @@ def _training(run):
         seconds, imitated = _told(card, "hours"), _told(card, "imitated")
         seconds = None if seconds is None else 3600.0 * seconds
     else:
-        seconds, imitated = _told(results, "seconds"), _told(results, "settings", "imitate")
+        seconds, imitated = _told(results, "seconds"), getattr(model, "imitated", None)
     usual = {"layout": LAYOUTS["visit"], "noise": "none", "fidelity": "standard"}
     return {
         "recipe": model.recipe, "shots": model.num_timesteps, "imitated": imitated, "seconds": seconds, "seed": model.seed,

@@ -11,9 +11,10 @@ training sees, no two of them equal or mirrored, 500 line-ups and 500 times the 
 --noise, --fidelity and --physics: agents that were trained under A and B, played under A and B, make the table of A against B. (The aim
 of a discrete choice is solved in the world that is played.)
 
-Agents are named as ``NAME`` (a player of agents/players.py), as a model's .zip or run folder, or as LABEL=PATH,PATH,... for one that was
-trained with several seeds; a PATH may be a pattern. Intervals are 95 % bootstrap intervals over training seeds and visits
-(agents/statistics.py); the ratios are paired: same tables above and below.
+Agents are named as ``NAME`` (a player of agents/players.py, a model of agents/pretrained), as a model's .zip or run folder, as
+LABEL=PATH,PATH,... for one that was trained with several seeds (a PATH may be a pattern), or as MODULE:CLASS for a player of your own.
+Intervals are 95 % bootstrap intervals over training seeds and visits (agents/statistics.py); the ratios are paired: same tables above
+and below.
 """
 
 import argparse
@@ -34,16 +35,16 @@ import snooker_env
 from snooker_env._check import choice, integer, refuse
 from snooker_env.envs.noise import Noise
 from snooker_env.game.balls import BallOn
-from snooker_env.game.layouts import POT_WINDOWS, deal_tables, plan_of
-from snooker_env.game.stream import stream_of
+from snooker_env.game.layouts import POT_WINDOWS, plan_of
 from snooker_env.physics.contact import parse_fidelity
 
 from .commit import commit
 from .contestants import Agent, player_for
+from .models import pretrained
 from .players import NAMES
 from .report import AXES, main_condition, markdown, show
 from .statistics import RESAMPLES, Resamples, interval, iqm
-from .visits import CENTURY, HELD_OUT_SEED, MAXIMUM, Strokes, play
+from .visits import CENTURY, HELD_OUT_SEED, MAXIMUM, Strokes, play, tables_of
 from .world import world
 
 PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
@@ -54,27 +55,6 @@ EASY = POT_WINDOWS["easy"][0]
 HIGH = 6
 """Pink and black are colours of high value."""
 PICTURE = Path(__file__).parent / "pictures" / "destinations.png"
-
-
-# what is played ------------------------------------------------------------------------------------------------------------------
-
-
-def tables_of(layout, visits):
-    """Seeds of as many different tables: the first from ``HELD_OUT_SEED`` on that are not as one before, or as one before in a mirror.
-
-    Raises ValueError if the layout has too few.
-    """
-    plan, seeds, known = plan_of(layout), [], set()
-    for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + 20 * visits):
-        positions, on_table = np.zeros((1, 22, 2)), np.zeros((1, 22), bool)
-        deal_tables(np.ones(1, bool), plan.code, plan.tables, stream_of(np.random.default_rng(seed))[None], positions, on_table)
-        table = np.sort(np.abs(positions[0, :, 0])).round(9).tobytes()
-        if table not in known:
-            known.add(table)
-            seeds.append(seed)
-            if len(seeds) == visits:
-                return seeds
-    raise refuse("visits", visits, f"must be at most {len(seeds)} on layout {layout!r}: it has no more tables")
 
 
 # figures -------------------------------------------------------------------------------------------------------------------------
@@ -201,7 +181,11 @@ def parser():
     """The command line."""
     p = argparse.ArgumentParser("python -m agents.evaluate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument(
-        "--agent", nargs="+", required=True, metavar="AGENT", help="NAME, MODEL or LABEL=PATH,PATH,...; NAME: " + ", ".join(NAMES)
+        "--agent",
+        nargs="+",
+        required=True,
+        metavar="AGENT",
+        help=f"NAME, MODEL, LABEL=PATH,PATH,... or MODULE:CLASS; NAME: {', '.join((*NAMES, *pretrained()))}",
     )
     p.add_argument("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=f"agents to compare the others with [{REFERENCE}]")
     usual = [f"{name}={n}" for name, n in PROTOCOL.items()]
@@ -339,6 +323,9 @@ def main(argv=None):
         write(args.markdown, markdown(report, picture))
     if args.picture:
         draw(report, shown, args.picture)
+    for name in ("json", "markdown", "picture"):
+        if getattr(args, name):
+            print(f"{name}: {getattr(args, name)}")
     return 0
 
 

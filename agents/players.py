@@ -2,8 +2,10 @@
 
 A player says with ``options`` how it wants its tables (``SnookerEnv`` arguments), and ``act(tables, observations, going)`` gives an action
 for each of the n tables of a ``SnookerVectorEnv`` with flat observations. Only the tables ``going`` (n,) bool matter; the others get any.
+Any class of such players, made without arguments, can be named as MODULE:CLASS.
 """
 
+import importlib
 from pathlib import Path
 from typing import Any
 
@@ -89,8 +91,25 @@ class Geometric:
 NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "lookahead", "search")
 
 
+def is_player(name):
+    """Whether that is the name of a player, built in or MODULE:CLASS, and not of a model."""
+    return name in NAMES or (":" in name and not Path(name).exists())
+
+
+def _own(name):
+    """The player MODULE:CLASS."""
+    module, _, maker = name.partition(":")
+    try:
+        player = getattr(importlib.import_module(module), maker)()
+    except Exception as error:  # it is the user's code
+        raise refuse("agent", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
+    if not isinstance(getattr(player, "options", None), dict) or not callable(getattr(player, "act", None)):
+        raise refuse("agent", name, "must be a class of players: with options, a dict, and act(tables, observations, going)")
+    return player
+
+
 def player_of(name, *, budget=2000, seed=0):
-    """The player or pre-trained model of that name, or the model in that file or run folder. ValueError if there is none."""
+    """The player or pre-trained model of that name, the model in that file or run folder, or MODULE:CLASS. ValueError if there is none."""
     makers = {
         "random": lambda: Random(seed=seed),
         "random_absolute": lambda: Random(ABSOLUTE, seed),
@@ -101,6 +120,8 @@ def player_of(name, *, budget=2000, seed=0):
     }
     if name in makers:
         return makers[name]()
+    if is_player(name):
+        return _own(name)
     if name in pretrained():
         return load_player(PRETRAINED / f"{name}.zip")
     if not Path(name).exists():

@@ -196,7 +196,7 @@ LEGEND = (
     "[low, high]: 95 % bootstrap interval over training seeds and visits. inter-quartile: mean of the middle half of all visits. "
     "times X: points over those of X on the same tables, paired. next pot: pots that left a ball and were followed by another. "
     'easy left: of these, those that left a pot whose line may err by 4 mrad, as on "pots:easy". high: pink or black, of all colours '
-    "potted, and after all reds potted. ms: a decision's time."
+    "potted, and after all reds potted. ms: a decision's time, all tables played at once."
 )
 
 

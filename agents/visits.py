@@ -5,10 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from snooker_env._check import refuse
 from snooker_env.envs.observations import SIZE
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import BallOn
+from snooker_env.game.layouts import deal_tables, plan_of
+from snooker_env.game.stream import stream_of
 
 from .view import TOLERANCE, tolerance_of, with_pots
 
@@ -81,6 +84,24 @@ class Strokes:
     def followed(self):
         """Of the pots that left something to pot: whether the next stroke pots too, an entry for each."""
         return self.made[self.following[self.goes_on]]
+
+
+def tables_of(layout, visits):
+    """Seeds of as many different tables: the first from ``HELD_OUT_SEED`` on that are not as one before, or as one before in a mirror.
+
+    Raises ValueError if the layout has too few.
+    """
+    plan, seeds, known = plan_of(layout), [], set()
+    for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + 20 * visits):
+        positions, on_table = np.zeros((1, 22, 2)), np.zeros((1, 22), bool)
+        deal_tables(np.ones(1, bool), plan.code, plan.tables, stream_of(np.random.default_rng(seed))[None], positions, on_table)
+        table = np.sort(np.abs(positions[0, :, 0])).round(9).tobytes()
+        if table not in known:
+            known.add(table)
+            seeds.append(seed)
+            if len(seeds) == visits:
+                return seeds
+    raise refuse("visits", visits, f"must be at most {len(seeds)} on layout {layout!r}: it has no more tables")
 
 
 def play(

@@ -1,4 +1,4 @@
-"""Are the figures of ``agents.evaluate`` right, sure to the degree they say, and the same tables for everyone?"""
+"""Are the figures of ``agents.evaluate`` as sure as they say, and does its command do and refuse what it should?"""
 
 import json
 import re
@@ -10,14 +10,11 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from agents import evaluate, report, visits
-from agents.players import GhostBall, Random
+from agents import evaluate, report
 from agents.recipes import Recipe
 from agents.statistics import Resamples, interval, iqm
 from agents.tables import training_tables
 from agents.world import text_of, world
-from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.game.balls import BallOn
 from snooker_env.physics.parameters import Physics
 
 # statistics ----------------------------------------------------------------------------------------------------------------------
@@ -108,140 +105,6 @@ def test_paired_ratio():
     assert apart["high"] - apart["low"] == pytest.approx(2 * 3.92 * np.sqrt(2) * spread, rel=0.2)
 
 
-# strokes and counts --------------------------------------------------------------------------------------------------------------
-
-
-class Watched:
-    """A player that keeps how the tables stood before its first stroke."""
-
-    def __init__(self, player):
-        self.player, self.options, self.start = player, player.options, None
-
-    def act(self, tables, observations, going):
-        if self.start is None:
-            self.start = tables.visits.positions.copy(), tables.visits.on_table.copy()
-        return self.player.act(tables, observations, going)
-
-
-def test_counts_of_a_visit_by_hand():
-    """Two visits: red, black, red with nothing after; then a miss."""
-    s = visits.Strokes(
-        visits=2, visit=np.array([0, 1, 0, 0, 0]), number=np.array([0, 0, 1, 2, 3]), points=np.array([1.0, 0, 7, 1, 0]),
-        foul=np.array([False, False, False, False, True]), ball_on=np.array([BallOn.RED, BallOn.RED, BallOn.ANY_COLOUR, BallOn.RED, 0]),
-        cleared=np.zeros(5, bool), cue=np.zeros((5, 2)), tolerance=np.array([1e-2, 0, 1e-3, 1e-2, 0]), thinking=0.0,
-    )  # fmt: skip
-    assert s.following.tolist() == [2, -1, 3, 4, -1]
-    c = {name: values.tolist() for name, values in evaluate.counts(s).items()}
-    assert c == {
-        "points": [9, 0], "pots": [3, 0], "strokes": [4, 1], "fouls": [1, 0], "goes_on": [3, 0], "followed": [2, 0], "easy": [2, 0],
-        "colours": [1, 0], "colour_points": [7, 0], "high": [1, 0], "reds": [2, 0], "high_after_red": [1, 0], "clearances": [0, 0],
-        "visits": [1, 1], "centuries": [0, 0], "maximums": [0, 0],
-    }  # fmt: skip
-    f = visits.summary(s)
-    assert (f["points_a_visit"], f["pots_a_visit"], f["next_pot_after_a_pot"], f["high_colours"]) == (4.5, 1.5, pytest.approx(2 / 3), 1.0)
-
-
-def a_clearance_a_foul_and_a_miss():
-    """Three visits: the last ball goes in for a century (points as no shot brings them); it goes in by a foul; it stays."""
-    return visits.Strokes(
-        visits=3, visit=np.array([0, 1, 2, 0]), number=np.array([0, 0, 0, 1]), points=np.array([95.0, 0, 0, 7]),
-        foul=np.array([False, True, False, False]), ball_on=np.array([BallOn.ANY_COLOUR, BallOn.BLACK, BallOn.BLACK, BallOn.BLACK]),
-        cleared=np.array([False, True, False, True]), cue=np.zeros((4, 2)), tolerance=np.zeros(4), thinking=0.0,
-    )  # fmt: skip
-
-
-def test_a_foul_clears_no_table():
-    c, f = evaluate.counts(a_clearance_a_foul_and_a_miss()), visits.summary(a_clearance_a_foul_and_a_miss())
-    assert c["clearances"].tolist() == c["centuries"].tolist() == [1, 0, 0]
-    assert f["clearances"] == f["centuries"] == pytest.approx(1 / 3)
-
-
-@pytest.mark.parametrize(("points", "century", "maximum"), [(99, 0, 0), (100, 1, 0), (146, 1, 0), (147, 1, 1)])
-def test_centuries_and_maximums(points, century, maximum):
-    s = a_clearance_a_foul_and_a_miss()
-    s.points[0] = points - s.points[-1]
-    c = evaluate.counts(s)
-    assert c["centuries"].tolist() == [century, 0, 0] and c["maximums"].tolist() == [maximum, 0, 0]
-
-
-def test_counts_agree_with_the_summary():
-    s = visits.play(GhostBall(), 60, noise="professional")
-    for strokes in (s, a_clearance_a_foul_and_a_miss()):
-        c, f = evaluate.counts(strokes), visits.summary(strokes)
-        for name in ("points_a_visit", "pots_a_visit", "fouls_a_visit", "pot_rate", "next_pot_after_a_pot", "colour_value", "high_colours",
-                     "centuries", "clearances"):  # fmt: skip
-            above, below = evaluate.FIGURES[name]
-            assert c[above].sum() / c[below].sum() == pytest.approx(f[name])
-    c, f = evaluate.counts(s), visits.summary(s)
-    assert f["next_pot_after_a_pot"] > 0.4 and np.all(c["strokes"] - c["pots"] == 1 - c["clearances"])  # a visit ends with its first miss
-
-
-def test_the_cue_balls_place_is_kept_unless_it_was_potted(monkeypatch):
-    after = []
-
-    class Kept(SnookerVectorEnv):
-        def step(self, actions):
-            found = super().step(actions)
-            after.append((self.visits.positions[:, 0].copy(), self.visits.on_table[:, 0].copy()))
-            return found
-
-    monkeypatch.setattr(visits, "SnookerVectorEnv", Kept)
-    s = visits.play(Random(seed=1), 200, noise="club")
-    places, there = (np.stack(column)[s.number, s.visit] for column in zip(*after, strict=True))
-    assert 0 < (~there).sum() < s.foul.sum()
-    assert np.isnan(s.cue[~there]).all() and np.array_equal(s.cue[there], places[there])
-
-
-# conditions ----------------------------------------------------------------------------------------------------------------------
-
-USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
-
-
-@pytest.mark.parametrize("change", [{}, {"layout": "colours"}, {"noise": "club"}, {"fidelity": "fast"}, {"physics": "match"}, {"seeds": 7}])
-def test_an_agent_is_played_under_its_condition(change):
-    """Stroke by stroke as ``visits.play`` plays it there; and what is changed changes the play."""
-    condition, seeds = USUAL | change, list(range(change.get("seeds", 3), 33))[:20]
-    condition.pop("seeds", None)
-    found = evaluate.play_agent(evaluate.Agent("a", ("ghost_ball",)), condition, seeds, 100, 100)
-    wanted = visits.play(GhostBall(), 20, first_seed=seeds, **condition)
-    usual = visits.play(GhostBall(), 20, first_seed=list(range(3, 23)), **USUAL)
-    (strokes,) = found.strokes
-    for name in ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance"):
-        assert np.array_equal(getattr(strokes, name), getattr(wanted, name), equal_nan=name == "cue"), name
-    assert found.counted["points"].tolist() == [wanted.a_visit(wanted.points).tolist()]
-    assert np.array_equal(strokes.cue, usual.cue, equal_nan=True) == (not change)
-
-
-# tables --------------------------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("layout", ["held_out", "line_up", "colours"])
-def test_everyone_starts_from_the_same_tables(layout):
-    seeds, starts = evaluate.tables_of(layout, 12), []
-    for player, noise, fidelity in (
-        (GhostBall(), "none", "fast"),
-        (Random(), "club", "standard"),
-        (Random({"aim": "absolute"}), "none", "standard"),
-    ):
-        watched = Watched(player)
-        visits.play(watched, 12, layout=layout, noise=noise, fidelity=fidelity, first_seed=seeds)
-        starts.append(watched.start)
-    for positions, on_table in starts[1:]:
-        assert np.array_equal(positions, starts[0][0]) and np.array_equal(on_table, starts[0][1])
-
-
-def test_no_table_comes_twice_or_mirrored():
-    seeds = evaluate.tables_of("held_out", 300)
-    assert seeds == sorted(set(seeds)) and seeds[0] == visits.HELD_OUT_SEED
-    tables = SnookerVectorEnv(300, layout="held_out")
-    tables.reset(seed=seeds)
-    reds = np.sort(np.abs(tables.visits.positions[:, 1:16, 0]), axis=1)
-    apart = np.abs(reds[:, None] - reds[None]).max(axis=2) + np.eye(300)
-    assert apart.min() > 1e-6
-    with pytest.raises(ValueError, match=r"visits = 2100: must be at most 20\d\d"):
-        evaluate.tables_of("held_out", 2100)
-
-
 # the command ---------------------------------------------------------------------------------------------------------------------
 
 QUICK = ["--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"]
@@ -254,8 +117,10 @@ def models(tmp_path_factory):
     tables = training_tables(2, action="discrete")
     for seed in (0, 1):
         (folder / f"m-{seed}").mkdir()
-        Recipe.of("ppo_mask").new_model(tables, seed).save(folder / f"m-{seed}" / "model.zip")
-    (folder / "m-0" / "results.json").write_text('{"seconds": 2.0, "settings": {"imitate": 300}}')
+        model = Recipe.of("ppo_mask").new_model(tables, seed)
+        model.imitated = 300 * seed
+        model.save(folder / f"m-{seed}" / "model.zip")
+    (folder / "m-0" / "results.json").write_text('{"seconds": 2.0}')
     tables.close()
     return folder
 
@@ -270,7 +135,7 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     assert found["protocol"]["layouts"] == {"held_out": 12, "colours": 12}
     assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
     first, second = found["agents"][0]["runs"]
-    assert (first["seconds"], first["imitated"], second["seconds"], second["imitated"]) == (2.0, 300, None, None)
+    assert (first["seconds"], first["imitated"], second["seconds"], second["imitated"]) == (2.0, 0, None, 300)
     assert first["layout"] == "opened" and first["recipe"] == "ppo_mask" and first["gamma"] == 0.95
     assert len(found["results"]) == 3 * 2 * 2
     for row in found["results"]:
@@ -348,7 +213,34 @@ def test_bad_input_ends_with_one_clear_line(options, says, capsys):
     assert re.search(says, capsys.readouterr().err.strip().splitlines()[-1])
 
 
-@pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}"])
+OWN = """
+class Soft:
+    options = {"action": "discrete"}
+    def act(self, tables, observations, going):
+        return [30] * len(going)
+
+class Mute:
+    options = {}
+
+silent = 3
+"""
+
+
+def test_a_player_of_ones_own_is_compared(tmp_path, monkeypatch):
+    (tmp_path / "mine.py").write_text(OWN)
+    monkeypatch.syspath_prepend(tmp_path)
+    assert evaluate.main(["--agent", "mine:Soft", "me=mine:Soft", *QUICK, "--json", str(tmp_path / "r.json")]) == 0
+    found = json.loads((tmp_path / "r.json").read_text())
+    rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in found["results"]}
+    assert rows.keys() == {"Soft", "me", "ghost_ball"} and rows["Soft"] == rows["me"] != rows["ghost_ball"]
+    for name, why in (("Mute", "with options, a dict"), ("silent", "TypeError"), ("Nobody", "AttributeError")):
+        with pytest.raises(ValueError, match=f"agent = 'mine:{name}': .*{why}"):
+            evaluate.Agent.of(f"mine:{name}").trained()
+    with pytest.raises(ValueError, match=r"agent = 'nothere:Soft': .*ModuleNotFoundError"):
+        evaluate.Agent.of("nothere:Soft").trained()
+
+
+@pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},agents.players:GhostBall"])
 def test_players_and_models_under_one_label_are_refused(which, models):
     with pytest.raises(ValueError, match=r"agent = 'x=.*: must be players or trained models, not both"):
         evaluate.Agent.of(which.format(models / "m-0"))
@@ -363,7 +255,7 @@ def test_players_and_models_under_one_label_are_refused(which, models):
         ("results.json", '{"seconds": 2.0', "agent = '.*results.json': must be JSON"),
         ("results.json", "[2.0]", "agent = '.*results.json': must hold seconds"),
         ("results.json", '{"seconds": "2 h"}', "results.json: seconds = '2 h': must be a finite number"),
-        ("results.json", '{"settings": {"imitate": [1]}}', "results.json: settings.imitate = \\[1\\]: must be a finite number"),
+        ("model.json", '{"imitated": [1]}', "model.json: imitated = \\[1\\]: must be a finite number"),
         ("model.json", "{", "agent = '.*model.json': must be JSON"),
     ],
 )

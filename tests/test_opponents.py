@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -85,7 +86,14 @@ def test_a_saved_model_may_play(tmp_path, task, name):
 
 def test_a_model_of_another_environment_is_refused(tmp_path):
     sb3 = pytest.importorskip("stable_baselines3")
-    sb3.PPO("MlpPolicy", "CartPole-v1", device="cpu").save(tmp_path / "cart.zip")
-    env = frame_env(opponent=str(tmp_path / "cart.zip"), layout="random:2")
-    with pytest.raises(ValueError, match=r"opponent = .*must be a model for observation"):
+    sb3.PPO("MlpPolicy", "Pendulum-v1", device="cpu").save(tmp_path / "pendulum.zip")
+    env = frame_env(opponent=str(tmp_path / "pendulum.zip"), layout="random:2")
+    with pytest.raises(ValueError, match=r"opponent = .*must be a model that sees observation"):
         [env.reset(seed=seed) for seed in range(10)]
+
+
+def test_a_model_that_chooses_among_pots_is_refused_at_once():
+    """A frame has no such action; before anything is played."""
+    pytest.importorskip("sb3_contrib")
+    with pytest.raises(ValueError, match=r"opponent = .*ppo_mask.zip': must be a model whose actions are a Box"):
+        frame_env(opponent=str(Path(__file__).parents[1] / "agents/pretrained/ppo_mask.zip"))

@@ -22,20 +22,8 @@ from snooker_env.envs.snooker import SnookerEnv
 ROOT = Path(__file__).resolve().parents[1]
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
 TINY = [
-    "--agent",
-    "ppo_mask",
-    "--envs",
-    "2",
-    "--eval-visits",
-    "4",
-    "--no-progress",
-    "--parallel",
-    "one",
-    "--steps",
-    "512",
-    "--imitate",
-    "0",
-]
+    "--agent", "ppo_mask", "--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512", "--imitate", "0",
+]  # fmt: skip
 
 
 def run(out, *options):
@@ -194,12 +182,13 @@ def test_existing_run_is_not_overwritten(finished, tmp_path, capsys):
     (tmp_path / "thesis.txt").write_text("mine")
     assert "thesis.txt" in refused(capsys, "--out", str(tmp_path))
     assert "holds no checkpoint" in refused(capsys, "--resume", "--out", str(tmp_path))
+    assert "noise = 'pro'" in refused(capsys, "--noise", "pro", "--out", str(tmp_path))  # wrong options are told first
 
 
 @pytest.mark.parametrize(
     ("option", "value"),
     [("layout", "moon"), ("layout", "held_out"), ("noise", "drunk"), ("fidelity", "rough"), ("agent", "dqn"), ("set", "gamma"),
-     ("set", "charm=2"), ("envs", "-1"), ("steps", "-1"), ("eval-visits", "1"), ("eval-visits", "9999999"), ("seed", "-1"), ("seed", "x"),
+     ("set", "charm=2"), ("envs", "-1"), ("steps", "-1"), ("eval-visits", "1"), ("eval-visits", "2049"), ("seed", "-1"), ("seed", "x"),
      ("seed", "4294967296"), ("start", "nowhere"), ("start", __file__)],
 )  # fmt: skip
 def test_bad_option_gives_one_clear_error(tmp_path, capsys, monkeypatch, option, value):
@@ -307,7 +296,8 @@ def test_evaluation_plays_in_the_world_trained_in(finished, monkeypatch):
     lesson.evaluate(train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model, 2, 0)
     bare = train.recipe_of(train.Settings(agent="ppo_mask", set=("env_kwargs={'action': 'discrete'}",)))
     lesson.evaluate(bare, model, 2, 0)
-    assert [options for _, options in played] == [{"noise": "professional"}] * 3 + [world] * 3 + [{"noise": "none"}] * 3
+    worlds = [{"noise": "professional"}] * 3 + [world] * 3 + [{"noise": "none"}] * 3
+    assert [options for _, options in played] == [{"first_seed": visits.tables_of("held_out", 2)} | one for one in worlds]
     assert all(own == {"action": "discrete"} for own, _ in played)
 
 
@@ -376,6 +366,15 @@ def test_missing_extra_says_the_pip_line(missing):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
     assert done.returncode == 1
     assert done.stderr.strip().splitlines()[-1].endswith('pip install "snooker-env[train]"')
+
+
+@pytest.mark.parametrize("agent", ["ppo_mask", "tqc_target"])
+def test_whole_rollouts_are_announced_and_a_finished_run_says_so(tmp_path, capsys, agent):
+    assert run(tmp_path / "run", "--agent", agent, "--steps", "1") == 0
+    steps = results(tmp_path / "run")["steps"]
+    assert f": 0 of {steps:,} shots played" in capsys.readouterr().out and steps > 1
+    assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
+    assert f": {steps:,} of {steps:,} shots played\nNothing is left to train." in capsys.readouterr().out
 
 
 @pytest.mark.slow

@@ -133,7 +133,8 @@ class Model:
         model = algorithm(self.path).load(self.path, device="cpu")
         spaces = [observations.space(self.kind), observations.space(self.kind, frame=True)]
         if model.observation_space not in spaces:
-            raise refuse("opponent", str(self.path), f'must be a model for observation="{self.kind}" of the visit or frame task')
+            allowed = f'must be a model that sees observation="{self.kind}" of the visit or frame task and nothing else'
+            raise refuse("opponent", str(self.path), allowed)
         sizes = {self.actions.size, self.actions.size - self.actions.decision}
         if model.action_space.shape not in {(size,) for size in sizes}:
             raise refuse("opponent", str(self.path), f"must be a model with {min(sizes)} to {max(sizes)} actions")
@@ -163,6 +164,8 @@ def algorithm(path):
             saved = json.loads(file.read("data"))
     except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
         raise refuse("opponent", str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
+    if "Discrete'>" in str(saved.get("action_space")):
+        raise refuse("opponent", str(path), "must be a model whose actions are a Box: a frame has no choices of pots")
     for attribute, (library, name) in _ALGORITHMS.items():
         if attribute in saved:
             try:
