@@ -19,6 +19,10 @@ runs() { # name, then the options of train.py
     for k in 0 1 2 3 4; do echo "absolute-$k --agent ppo_absolute --steps 500000 --seed $k"; done
     for k in 0 1 2 3 4; do echo "target-$k --agent ppo_target --steps 1000000 --seed $k"; done
     echo "tqc-0 --agent tqc_target"
+    for k in 0 1 2; do echo "lineup-$k --agent ppo_mask --layout line_up --steps 300000 --seed $k"; done
+}
+later() { # these start from some of those
+    for k in 0 1 2; do echo "curriculum-$k --agent ppo_mask --start $folder/lineup-$k --steps 700000 --seed $k"; done
 }
 
 train() {
@@ -31,12 +35,14 @@ train() {
     echo "$(date +%H:%M) $name"
 }
 export -f train
-if [[ -z ${LIST:-} ]]; then
-    mkdir -p "$folder"
-    runs | grep -E "^(${ONLY:-.*})" | xargs -d '\n' -P "$jobs" -I{} bash -c 'train {}'
-else
-    runs | sed 's/^[^ ]* /python train.py /'
-fi
+for list in runs later; do
+    if [[ -z ${LIST:-} ]]; then
+        mkdir -p "$folder"
+        "$list" | { grep -E "^(${ONLY:-.*})" || true; } | xargs -d '\n' -r -P "$jobs" -I{} bash -c 'train {}'
+    else
+        "$list" | sed 's/^[^ ]* /python train.py /'
+    fi
+done
 [[ -n ${ONLY:-} ]] && exit
 
 evaluate() { # name of the output, then the options of agents.evaluate
@@ -56,6 +62,8 @@ evaluate results --against ghost_ball ppo_foresight_gamma0 --picture agents/pict
     geometric random
 evaluate results_aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
     "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?" ghost_ball random_absolute
+evaluate results_curriculum --against ghost_ball ppo_mask_1M --layouts held_out line_up --noise professional --agent \
+    "curriculum=$folder/curriculum-?" "ppo_mask_1M=$folder/mask-[012]" ghost_ball
 evaluate results_fidelity --layouts held_out --noise professional --fidelity fast standard reference --agent \
     "fast=$folder/fast-?" "standard=$folder/fore-0" "reference=$folder/reference-?"
 evaluate results_physics --layouts held_out --noise professional --physics paper match paper,mu_bb=marlow --agent \
