@@ -26,8 +26,10 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 
 PICTURE = Path(__file__).parent / "pictures" / "curves.png"
-LEVELS = ("trained", "ghost_ball", "random")
-"""Of whom a run keeps how well they play held-out visits; the level of the last two is drawn across."""
+LEVELS = ("trained", "ghost_ball")
+"""Of whom a run's score on held-out visits is drawn: its own at its end, the plain player's across."""
+LEAST = 0.1
+"""Points a visit; less is not drawn, the scale being logarithmic."""
 
 
 def run_of(path):
@@ -55,24 +57,24 @@ def draw(agents, file):
         for i, run in enumerate(runs):
             score, error = run["levels"]["trained"]
             for axes, x, end in zip(sides, (run["minutes"], run["shots"]), run["end"][::-1], strict=True):
-                axes.plot(x, run["points"], color=colour, lw=1.0, alpha=0.8)
+                drawn = run["points"] >= LEAST
+                axes.plot(x[drawn], run["points"][drawn], color=colour, lw=1.0, alpha=0.8)
                 axes.errorbar(end, score, 2 * error, fmt="o", ms=4, color=colour, elinewidth=0.9, label=label if i == 0 else None)
-    for name in LEVELS[1:]:
-        level = np.mean([run["levels"][name][0] for runs in agents.values() for run in runs])
-        for axes in sides:
-            axes.axhline(level, color="#888888", lw=0.9, ls=":")
-        sides[0].annotate(name, (0.01, level), xycoords=("axes fraction", "data"), fontsize=8, color="#555555", va="bottom")
+    level = np.mean([run["levels"]["ghost_ball"][0] for runs in agents.values() for run in runs])
+    for axes in sides:
+        axes.axhline(level, color="#888888", lw=0.9, ls=":")
+    sides[0].annotate("ghost_ball", (0.01, level), xycoords=("axes fraction", "data"), fontsize=8, color="#555555", va="bottom")
     for axes, name in zip(sides, ("minutes of training, imitation included", "shots played in training"), strict=True):
         axes.set(xscale="log", yscale="log", xlabel=name)
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        for axis, subs in ((axes.xaxis, (1,)), (axes.yaxis, (1, 2, 5))):
+            axis.set_major_locator(LogLocator(subs=subs))
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
             axis.set_minor_locator(NullLocator())
         axes.grid(alpha=0.25, which="both", lw=0.5)
         for side in ("top", "right"):
             axes.spines[side].set_visible(False)
     sides[0].set_ylabel("points a visit")
-    sides[1].legend(frameon=False, fontsize=9)
+    sides[0].legend(frameon=False, fontsize=9)
     figure.suptitle("Lines: in training, exploring. Discs: held-out visits at the end, playing the best", fontsize=11)
     figure.savefig(file, dpi=110)
     plt.close(figure)
