@@ -62,6 +62,7 @@ evaluate results --against ghost_ball ppo_foresight_gamma0 --picture agents/pict
     geometric random
 evaluate results_aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
     "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?" ghost_ball random_absolute
+evaluate results_teacher --against lookahead --noise professional --agent "ppo_foresight=$folder/fore-?" lookahead
 evaluate results_curriculum --against ghost_ball ppo_mask_1M --layouts held_out line_up --noise professional --agent \
     "curriculum=$folder/curriculum-?" "ppo_mask_1M=$folder/mask-[012]" ghost_ball
 evaluate results_fidelity --layouts held_out --noise professional --fidelity fast standard reference --agent \
