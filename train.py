@@ -170,7 +170,8 @@ def load_model(state, algo, envs):
 
 def goal_of(model, steps):
     """Shots played when training to ``steps`` ends: it goes by whole rollouts."""
-    rollout = model.n_envs * (model.n_steps if hasattr(model, "n_steps") else model.train_freq.frequency)
+    off_policy = hasattr(model, "train_freq")  # their n_steps is that of n-step returns
+    rollout = model.n_envs * (model.train_freq.frequency if off_policy else model.n_steps)
     return model.num_timesteps + rollout * -(-max(0, steps - model.num_timesteps) // rollout)
 
 
@@ -258,8 +259,15 @@ def command_of(settings):
     return shlex.join(words)
 
 
+def refuse_full(parser, out):
+    """End with a message if the folder holds another run, or anything."""
+    held = sorted(p.name for p in out.iterdir() if p.name not in ("tb", "checkpoint.pkl.tmp")) if out.is_dir() else []
+    if held:
+        parser.error(f"{out} is not empty (it holds {', '.join(held[:3])}): --resume goes on with it, --out names another")
+
+
 def open_run(parser, given, out, resume):
-    """(settings, checkpoint or None); every reason not to start ends here with one message."""
+    """(settings, checkpoint or None) of a folder and the options given."""
     checkpoint = out / "checkpoint.pkl"
     if not resume:
         if out.exists() and not out.is_dir():
@@ -290,6 +298,8 @@ def prepared(parser, given, out, resume):
         recipe = recipe_of(settings)
         settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs, imitate=recipe.imitation)
         tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, view=recipe.view, **recipe.env_kwargs)
+        if not resume:
+            refuse_full(parser, out)  # another folder is no use as long as an option is wrong
         if state:
             try:
                 model = load_model(state, recipe.algo, tables)
@@ -299,9 +309,6 @@ def prepared(parser, given, out, resume):
             model = recipe.new_model(tables, settings.seed)
             if settings.start:
                 load_weights(model, Path(settings.start))
-        kept = sorted(p.name for p in out.iterdir() if p.name not in ("tb", "checkpoint.pkl.tmp")) if out.is_dir() and not resume else []
-        if kept:  # told last: another folder is no use as long as an option is wrong
-            parser.error(f"{out} is not empty (it holds {', '.join(kept[:3])}): --resume goes on with it, --out names another")
         out.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=out).close()
     except ValueError as error:
@@ -343,7 +350,9 @@ def main(argv=None):
     finally:
         tables.close()
     if keeper.signal:
-        print(f"Saved at {keeper.saved or model.num_timesteps:,} shots. Go on with:  python train.py --resume --out {out}")
+        print(
+            f"Saved at {keeper.saved or model.num_timesteps:,} shots. Go on with:  python train.py --resume --out {shlex.quote(str(out))}"
+        )
         return 128 + keeper.signal
 
     steps, seconds = model.num_timesteps, keeper.seconds_before
@@ -366,10 +375,4 @@ if __name__ == "__main__":
     try:
         sys.exit(main())
     except KeyboardInterrupt:
-        kept = parse(None)[2].out
-        saved = (kept / "checkpoint.pkl").is_file()
-        sys.exit(
-            f"Interrupted. Go on from the last save with:  python train.py --resume --out {kept}"
-            if saved
-            else "Interrupted, nothing saved."
-        )
+        sys.exit("Interrupted. What the last save holds is kept; --resume goes on from there.")

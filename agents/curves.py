@@ -2,9 +2,10 @@
 
     python -m agents.curves "ppo_mask=runs/mask-?" "pots only=runs/gamma0-?" [--out agents/pictures/curves.png]
 
-Read from the ``results.json`` of finished runs (train.py). Thin lines: one training seed each, points a visit of the last 100 visits,
-exploring. Discs: what a run makes of its held-out visits at the end, playing what it thinks best, with two standard errors. A run that
-imitated first starts its line where it begins to play. Time is of a shared machine: it says a factor, not a percentage.
+Read from the ``results.json`` of finished runs (train.py). Thin lines: one training seed each, points a visit of the last 1,000 visits on
+the tables of training, exploring. Discs, and the line of ``ghost_ball``: held-out tables, a run at its end playing what it thinks best,
+with two standard errors. A run that imitated first starts its line where it begins to play; what a run with --start brought along is not
+counted. Shots are taken to be spread evenly over the time, and the machine was shared: minutes say a factor, not a percentage.
 """
 
 import argparse
@@ -29,7 +30,7 @@ PICTURE = Path(__file__).parent / "pictures" / "curves.png"
 LEVELS = ("trained", "ghost_ball")
 """Of whom a run's score on held-out visits is drawn: its own at its end, the plain player's across."""
 LEAST = 0.1
-"""Points a visit; less is not drawn, the scale being logarithmic."""
+"""Points a visit; the scale is logarithmic, lines below it are not drawn, discs are drawn there."""
 
 
 def run_of(path):
@@ -43,7 +44,8 @@ def run_of(path):
         shots = np.array([at["steps"] for at in run["curve"]], float)
         points = np.array([at["points"] for at in run["curve"]], float)
         minutes = (taught + (run["seconds"] - taught) * shots / run["steps"]) / 60.0
-        levels = {name: (run["evaluation"][name]["points_a_visit"], run["evaluation"][name]["points_a_visit_se"]) for name in LEVELS}
+        ends = {name: run["evaluation"][name] for name in LEVELS}
+        levels = {name: (float(end["points_a_visit"]), float(end["points_a_visit_se"])) for name, end in ends.items()}
         return {"shots": shots, "minutes": minutes, "points": points, "end": (run["steps"], run["seconds"] / 60.0), "levels": levels}
     except (ValueError, KeyError, TypeError, IndexError, AttributeError):
         raise refuse("run", str(file), "must be what today's train.py writes") from None
@@ -59,8 +61,10 @@ def draw(agents, file):
             for axes, x, end in zip(sides, (run["minutes"], run["shots"]), run["end"][::-1], strict=True):
                 drawn = run["points"] >= LEAST
                 axes.plot(x[drawn], run["points"][drawn], color=colour, lw=1.0, alpha=0.8)
-                axes.errorbar(end, score, 2 * error, fmt="o", ms=4, color=colour, elinewidth=0.9, label=label if i == 0 else None)
-    level = np.mean([run["levels"]["ghost_ball"][0] for runs in agents.values() for run in runs])
+                axes.errorbar(
+                    end, max(score, LEAST), 2 * error, fmt="o", ms=4, color=colour, elinewidth=0.9, label=label if i == 0 else None
+                )
+    level = next(iter(agents.values()))[0]["levels"]["ghost_ball"][0]
     for axes in sides:
         axes.axhline(level, color="#888888", lw=0.9, ls=":")
     sides[0].annotate("ghost_ball", (0.01, level), xycoords=("axes fraction", "data"), fontsize=8, color="#555555", va="bottom")
@@ -75,7 +79,7 @@ def draw(agents, file):
             axes.spines[side].set_visible(False)
     sides[0].set_ylabel("points a visit")
     sides[0].legend(frameon=False, fontsize=9)
-    figure.suptitle("Lines: in training, exploring. Discs: held-out visits at the end, playing the best", fontsize=11)
+    figure.suptitle("Lines: in training, exploring. Discs and ghost_ball: held-out visits, at the end, playing the best", fontsize=11)
     figure.savefig(file, dpi=110)
     plt.close(figure)
 
@@ -91,6 +95,9 @@ def main(argv=None):
         agents = {agent.label: [run_of(run) for run in agent.runs] for agent in map(Agent.of, args.agents)}
         if len(agents) < len(args.agents):
             raise refuse("agents", " ".join(args.agents), "must have another label each")
+        judged = {run["levels"]["ghost_ball"] for runs in agents.values() for run in runs}
+        if len(judged) > 1:
+            raise refuse("agents", " ".join(args.agents), "must have been judged on the same tables: ghost_ball's score differs")
         writable("out", args.out)
     except ValueError as error:
         p.error(str(error))

@@ -35,10 +35,11 @@ train() {
     echo "$(date +%H:%M) $name"
 }
 export -f train
+{ runs; later; } | grep -qE "^(${ONLY:-.*})" || { echo "ONLY='$ONLY' names no run" >&2; exit 2; }
 for list in runs later; do
     if [[ -z ${LIST:-} ]]; then
         mkdir -p "$folder"
-        "$list" | { grep -E "^(${ONLY:-.*})" || true; } | xargs -d '\n' -r -P "$jobs" -I{} bash -c 'train {}'
+        "$list" | { grep -E "^(${ONLY:-.*})" || [[ $? == 1 ]]; } | xargs -d '\n' -r -P "$jobs" -I{} bash -c 'train {}'
     else
         "$list" | sed 's/^[^ ]* /python train.py /'
     fi

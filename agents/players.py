@@ -2,22 +2,26 @@
 
 A player says with ``options`` how it wants its tables (``SnookerEnv`` arguments), and ``act(tables, observations, going)`` gives an action
 for each of the n tables of a ``SnookerVectorEnv`` with flat observations. Only the tables ``going`` (n,) bool matter; the others get any.
-Any class of such players, made without arguments, can be named as MODULE:CLASS.
+Any class of such players, made without arguments, can be named as MODULE:CLASS; of the environment it may choose how its actions are read
+(``recipes.READ``), the world is given.
 """
 
 import importlib
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from snooker_env._check import refuse
+from snooker_env._check import choice, refuse
 from snooker_env.envs.choices import SIDES, SIZE, SPEEDS, TOPS, choice_of
+from snooker_env.envs.vector import SnookerVectorEnv
 
 from .aimer import Aimer
 from .foresight import PICKS, Foresight, worth_by_hand
 from .lookahead import Position
 from .models import PRETRAINED, load_player, pretrained
+from .recipes import READ
 from .search import Search
 
 DISCRETE = {"action": "discrete"}
@@ -93,7 +97,8 @@ NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "lookahead", "s
 
 def is_player(name):
     """Whether that is the name of a player, built in or MODULE:CLASS, and not of a model."""
-    return name in NAMES or (":" in name and not Path(name).exists())
+    own = re.fullmatch(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*", name) and not Path(name).exists()
+    return name in NAMES or bool(own)
 
 
 def _own(name):
@@ -105,6 +110,9 @@ def _own(name):
         raise refuse("agent", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
     if not isinstance(getattr(player, "options", None), dict) or not callable(getattr(player, "act", None)):
         raise refuse("agent", name, "must be a class of players: with options, a dict, and act(tables, observations, going)")
+    for key in player.options:
+        choice(f"{name}: key of options", key, READ)
+    SnookerVectorEnv(1, **player.options).close()
     return player
 
 

@@ -64,6 +64,8 @@ def test_every_run_is_drawn(tmp_path, drawn, capsys):
         (["a"], ["{}/a", "--out", "x.txt"], "out = '.txt': must be one of"),
         (["a"], ["x={}/a", "x={}/a"], "must have another label each"),
         (["a"], ["{}/a", "--out", "{}/a/results.json/c.png"], "out = .* must be a file that can be written"),
+        (["a", ("b", {"evaluation": {"trained": level(4.0), "ghost_ball": level(5.1)}})], ["{}/a", "{}/b"], "ghost_ball's score differs"),
+        ([("a", {"evaluation": {"trained": level(None), "ghost_ball": level(5.0)}})], ["{}/a"], "must be what today's train.py writes"),
         ([("a", {"curve": None})], ["{}/a"], "must be what today's train.py writes"),
         ([("a", {"evaluation": {}})], ["{}/a"], "must be what today's train.py writes"),
     ],

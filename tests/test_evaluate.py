@@ -222,6 +222,12 @@ class Soft:
 class Mute:
     options = {}
 
+class Worldly(Soft):
+    options = {"noise": "none"}
+
+class Discreet(Soft):
+    options = {"action": "discreet"}
+
 silent = 3
 """
 
@@ -233,11 +239,25 @@ def test_a_player_of_ones_own_is_compared(tmp_path, monkeypatch):
     found = json.loads((tmp_path / "r.json").read_text())
     rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in found["results"]}
     assert rows.keys() == {"Soft", "me", "ghost_ball"} and rows["Soft"] == rows["me"] != rows["ghost_ball"]
-    for name, why in (("Mute", "with options, a dict"), ("silent", "TypeError"), ("Nobody", "AttributeError")):
-        with pytest.raises(ValueError, match=f"agent = 'mine:{name}': .*{why}"):
+    for name, why in (
+        ("Mute", "with options, a dict"),
+        ("silent", "TypeError"),
+        ("Nobody", "AttributeError"),
+        ("Worldly", "'noise'"),
+        ("Discreet", "'discreet'"),
+    ):
+        with pytest.raises(ValueError, match=f"(agent = 'mine:{name}': .*)?{why}"):
             evaluate.Agent.of(f"mine:{name}").trained()
     with pytest.raises(ValueError, match=r"agent = 'nothere:Soft': .*ModuleNotFoundError"):
         evaluate.Agent.of("nothere:Soft").trained()
+
+
+def test_a_path_with_a_colon_is_a_path(models, tmp_path):
+    (tmp_path / "10:00").symlink_to(models)
+    assert len(evaluate.Agent.of(f"x={tmp_path}/10:00/m-?").runs) == 2
+    for path in (r"C:\runs\m-0\model.zip", "a/b:c", "10:00"):
+        with pytest.raises(ValueError, match="or name models that are there"):
+            evaluate.Agent.of(f"x={path}")
 
 
 @pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},agents.players:GhostBall"])

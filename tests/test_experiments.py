@@ -5,6 +5,8 @@ import shlex
 import subprocess
 from pathlib import Path
 
+import pytest
+
 import train
 from agents.evaluate import parser
 from agents.players import NAMES
@@ -20,6 +22,10 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
     comparisons, curves = ([line[3:] for line in lines if line[2] == f"agents.{name}"] for name in ("evaluate", "curves"))
     assert len(runs) > 25 and len(comparisons) == 9 and len(curves) == 1 and len(runs) + 10 == len(lines)
     assert all(agent.partition("=")[2].startswith(f"{tmp_path}/") for agent in curves[0])
+    starts = [run[run.index("--start") + 1] for run in runs if "--start" in run]
+    assert [Path(start).name for start in starts] == ["lineup-0", "lineup-1", "lineup-2"] and 'echo "lineup-$k ' in Path(
+        command[1]
+    ).read_text()
     recipes = [train.recipe_of(train.Settings(**train.parse(run)[1])) for run in runs]
     assert {recipe.name for recipe in recipes} == {"ppo_foresight", "ppo_mask", "ppo_absolute", "ppo_target", "tqc_target"}
     for comparison in comparisons:
@@ -42,3 +48,10 @@ def test_a_run_that_fails_stops_the_whole(tmp_path):
     )
     assert done.returncode != 0 and "tqc-0 failed" in done.stderr
     assert (tmp_path / "runs/tqc-0.txt").read_text() == "no memory\n"
+
+
+@pytest.mark.parametrize("only", ["nothing-", "mask-(0"])
+def test_a_choice_of_no_run_is_an_error(tmp_path, only):
+    command = ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path / "runs")]
+    done = subprocess.run(command, env=os.environ | {"ONLY": only, "LIST": ""}, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2 and f"ONLY='{only}' names no run" in done.stderr
