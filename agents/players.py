@@ -106,13 +106,13 @@ def _own(name):
     module, _, maker = name.partition(":")
     try:
         player = getattr(importlib.import_module(module), maker)()
+        for key in player.options:
+            choice("key of options", key, READ)
+        SnookerVectorEnv(1, **player.options).close()
+        if not callable(player.act):
+            raise TypeError("act cannot be called")
     except Exception as error:  # it is the user's code
         raise refuse("agent", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
-    if not isinstance(getattr(player, "options", None), dict) or not callable(getattr(player, "act", None)):
-        raise refuse("agent", name, "must be a class of players: with options, a dict, and act(tables, observations, going)")
-    for key in player.options:
-        choice(f"{name}: key of options", key, READ)
-    SnookerVectorEnv(1, **player.options).close()
     return player
 
 
