@@ -114,10 +114,13 @@ def fairness(report):
 
 def comparison(report):
     """Sentences: each agent against those it is compared with."""
-    at, said = main_condition(report), []
+    at, said, told = main_condition(report), [], set()
     rows = {r["agent"]: r for r in _picked(report, **at)}
     for name, row in rows.items():
         for other, ratios in row["ratios"].items():
+            if (other, name) in told:  # the other way round
+                continue
+            told.add((name, other))
             ratio, mine, its = ratios["points_a_visit"], row["figures"], rows[other]["figures"]
             if ratio["value"] is None or ratio["low"] is None:
                 continue

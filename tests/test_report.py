@@ -102,8 +102,11 @@ def row(label, noise, points, shares, ratios):
 )
 def test_the_comparison_says_whose_is_which(ratio, words):
     made = told(agent("a"), agent("b"))
-    made["results"] = [row("a", "none", 20.0, (0.9, 0.5, 0.4), {"b": figure(*ratio)}), row("b", "none", 10.0, (0.6, 0.2, None), {})]
-    assert report.comparison(made) == [
+    made["results"] = [
+        row("a", "none", 20.0, (0.9, 0.5, 0.4), {"b": figure(*ratio)}),
+        row("b", "none", 10.0, (0.6, 0.2, None), {"a": figure(9.0, 8.0, 10.0)}),
+    ]
+    assert report.comparison(made) == [  # the other way round is not told again
         "On layout held_out, noise none, fidelity standard, physics paper:",
         f"a makes {words}; after a pot it pots again: 90.0 against 60.0 %; an easy pot is left: 50.0 against 20.0 %.",
     ]
