@@ -46,18 +46,17 @@ for list in runs later; do
 done
 [[ -n ${ONLY:-} ]] && exit
 
+module() { # its name, then its options
+    ${LIST:+printf '%q '} python -m "$@"
+    ${LIST:+echo}
+}
 evaluate() { # name of the output, then the options of agents.evaluate
     local name=$1
     shift
-    ${LIST:+printf '%q '} python -m agents.evaluate "$@" --json "agents/$name.json" --markdown "agents/$name.md"
-    ${LIST:+echo}
+    module agents.evaluate "$@" --json "agents/$name.json" --markdown "agents/$name.md"
 }
-curves() {
-    ${LIST:+printf '%q '} python -m agents.curves "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" \
-        "ppo_mask=$folder/mask-?" "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?"
-    ${LIST:+echo}
-}
-curves
+module agents.curves "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" \
+    "ppo_mask=$folder/mask-?" "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?"
 evaluate results --against ghost_ball ppo_foresight_gamma0 --picture agents/pictures/destinations.png --agent \
     "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" ghost_ball lookahead ppo_mask "ppo_mask_1M=$folder/mask-?" \
     geometric random
