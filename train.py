@@ -32,6 +32,7 @@ import numpy as np
 import snooker_env
 from snooker_env._check import refuse
 from snooker_env.envs.vector import processors
+from snooker_env.game.opened import HELD_OUT
 
 try:
     import rich.progress
@@ -72,12 +73,12 @@ class Settings:
     imitate: int = option(-1, "positions on which it is first taught by the search; -1: as many as the recipe says")
     start: str = option("", "a model of the same agent to start from, its .zip or run folder")
     set: tuple = option((), "other hyper-parameters, as gamma=0", nargs="+")
-    eval_visits: int = option(500, "held-out visits each agent plays at the end, at most one from each of the 2048 tables")
+    eval_visits: int = option(500, f"held-out visits each agent plays at the end, each on a table of its own, of {HELD_OUT}")
     checkpoint_every: int = option(100_000, "shots from one checkpoint to the next")
 
 
 BOUNDS = {
-    "steps": (0, 10**12), "envs": (0, 2**24), "seed": (0, 2**32 - 1), "imitate": (-1, 10**9), "eval_visits": (2, 2048),
+    "steps": (0, 10**12), "envs": (0, 2**24), "seed": (0, 2**32 - 1), "imitate": (-1, 10**9), "eval_visits": (2, HELD_OUT),
     "checkpoint_every": (1, 10**12),
 }  # fmt: skip
 FREE_ON_RESUME = ("steps", "parallel", "eval_visits", "checkpoint_every")  # how long and where, not what; lr falls over the new steps
@@ -375,4 +376,4 @@ if __name__ == "__main__":
     try:
         sys.exit(main())
     except KeyboardInterrupt:
-        sys.exit("Interrupted. What the last save holds is kept; --resume goes on from there.")
+        sys.exit("Interrupted. A run that was saved goes on with --resume, another begins anew.")

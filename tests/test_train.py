@@ -13,11 +13,8 @@ import numpy as np
 import pytest
 
 import train
-from agents import lesson, models, view, visits
+from agents import lesson, models, visits
 from agents.players import GhostBall
-from snooker_env.envs.actions import line
-from snooker_env.envs.observations import observe
-from snooker_env.envs.snooker import SnookerEnv
 
 ROOT = Path(__file__).resolve().parents[1]
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
@@ -82,19 +79,6 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
 def test_saved_model_plays_as_it_was_judged(finished, agent):
     again = visits.summary(visits.play(models.load_player(finished / agent / "model.zip"), 4))
     assert again == results(finished / agent)["evaluation"]["trained"]
-
-
-def test_pot_view_shows_the_line_that_the_aim_is_read_against():
-    table = SnookerEnv(aim="target", layout="held_out")
-    for seed in range(20):
-        observation = view.with_pots(table.reset(seed=seed)[0][None])[0]
-        rows = observation[121:].reshape(-1, view.POT_ENTRIES)
-        assert np.array_equal(observation[:121], observe("flat", table.positions, table.on_table, table.ball_on, table.on, 0, 0))
-        direction = line(table.positions, table.on_table, table.on)
-        assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=1e-6)
-        shown = rows[rows[:, 0] == 1]
-        assert np.hypot(shown[:, 3], shown[:, 4]) == pytest.approx(1.0, abs=1e-6)  # sine and cosine of one angle
-        assert np.all(np.diff(shown[:, 7]) <= 0) and not rows[len(shown) :].any()  # widest first, then nothing
 
 
 @pytest.mark.parametrize(("agent", "at", "number"), [("ppo_mask", 100, signal.SIGTERM), ("tqc_target", 100, signal.SIGINT)])
@@ -366,6 +350,18 @@ def test_missing_extra_says_the_pip_line(missing):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
     assert done.returncode == 1
     assert done.stderr.strip().splitlines()[-1].endswith('pip install "snooker-env[train]"')
+
+
+def test_an_interruption_before_the_first_save_is_told_in_one_line(tmp_path):
+    code = f"""
+import runpy, sys, snooker_env
+def stop(): raise KeyboardInterrupt
+snooker_env.warmup, sys.argv = stop, {["train.py", *TINY, "--out", str(tmp_path / "run")]!r}
+runpy.run_path("train.py", run_name="__main__")
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
+    assert done.returncode == 1
+    assert done.stderr == "Interrupted. A run that was saved goes on with --resume, another begins anew.\n"
 
 
 @pytest.mark.parametrize("agent", ["ppo_mask", "tqc_target"])

@@ -7,8 +7,10 @@ import pytest
 from positions import position, tables
 
 from agents import view
+from snooker_env.envs.actions import line
 from snooker_env.envs.choices import POTS
-from snooker_env.envs.observations import SIZE
+from snooker_env.envs.observations import SIZE, observe
+from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import BALL_RADIUS, BLACK, CUE, HALF_LENGTH, HALF_WIDTH, BallOn, mask_of
 from snooker_env.game.pots import POCKETS, pots
@@ -51,3 +53,16 @@ def test_every_pot_is_shown_entry_by_entry(ball_on):
 
 def test_the_tolerance_is_read_back():
     assert view.tolerance_of(1 + log10(4e-3) / 2) == pytest.approx(4e-3)
+
+
+def test_pot_view_shows_the_line_that_the_aim_is_read_against():
+    table = SnookerEnv(aim="target", layout="held_out")
+    for seed in range(20):
+        observation = view.with_pots(table.reset(seed=seed)[0][None])[0]
+        rows = observation[SIZE:].reshape(-1, view.POT_ENTRIES)
+        assert np.array_equal(observation[:SIZE], observe("flat", table.positions, table.on_table, table.ball_on, table.on, 0, 0))
+        direction = line(table.positions, table.on_table, table.on)
+        assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=1e-6)
+        shown = rows[rows[:, 0] == 1]
+        assert np.hypot(shown[:, 3], shown[:, 4]) == pytest.approx(1.0, abs=1e-6)  # sine and cosine of one angle
+        assert np.all(np.diff(shown[:, 7]) <= 0) and not rows[len(shown) :].any()  # widest first, then nothing

@@ -162,10 +162,10 @@ def algorithm(path):
     try:
         with zipfile.ZipFile(path) as file:
             saved = json.loads(file.read("data"))
-            actions = saved["action_space"][":type:"]
+            is_box = "Box" in saved["action_space"][":type:"]
     except (OSError, KeyError, ValueError, TypeError, zipfile.BadZipFile) as error:
         raise refuse("opponent", str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
-    if "Box" not in actions:  # a frame is played by numbers; MaskablePPO would pass for PPO below
+    if not is_box:  # a frame is played by numbers; MaskablePPO would pass for PPO below
         raise refuse("opponent", str(path), "must be a model whose actions are a Box")
     for attribute, (library, name) in _ALGORITHMS.items():
         if attribute in saved:
