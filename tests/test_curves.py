@@ -52,8 +52,16 @@ def test_every_run_is_drawn(tmp_path, drawn, capsys):
     assert lines == 3 * [[[0, 2.0], [500, 3.5]]]
     ends = [(bar[0].get_xdata()[0], bar[0].get_ydata()[0]) for bar in shots.containers]
     assert ends == [(1000, 4.0), (1000, 4.0), (2000, 4.0)] and [bar[0].get_xdata()[0] for bar in time.containers] == 3 * [700 / 60]
+    low, high = shots.containers[0][2][0].get_segments()[0][:, 1]
+    assert (low, high) == pytest.approx((3.0, 5.0))  # two standard errors
     assert [text.get_text() for text in time.get_legend().get_texts()] == ["A", "b-0"]
     assert [line.get_ydata()[0] for line in time.get_lines() if line.get_linestyle() == ":"] == [5.0]
+
+
+def test_what_is_below_the_scale_lies_on_its_edge(tmp_path, drawn):
+    keep(tmp_path / "a", evaluation={"trained": level(0.02), "ghost_ball": level(5.0)})
+    assert curves.main([str(tmp_path / "a"), "--out", str(tmp_path / "c.png")]) == 0
+    assert drawn[0].axes[1].containers[0][0].get_ydata()[0] == 0.1
 
 
 @pytest.mark.parametrize(

@@ -97,7 +97,7 @@ def test_looks_are_even():
     assert np.abs(np.corrcoef(errors[:, :4].T) - np.eye(4)).max() < 0.55
     _, least, median = find(len(LOOKS), keys=200, starts=1)
     assert unevenness(errors) < least < median / 2
-    many = errors_of(range(1, 400_001))
+    many = errors_of(range(1, 400_001))  # standard errors: 0.0016 of a mean, 0.0022 of a variance
     assert np.abs(many.mean(0)).max() < 0.01 and np.abs(np.cov(many.T) - np.eye(5)).max() < 0.01
     assert unevenness(many[:2000]) < 0.01
 
