@@ -35,7 +35,7 @@ train() {
     echo "$(date +%H:%M) $name"
 }
 export -f train
-{ runs; later; } | grep -qE "^(${ONLY:-.*})" || { echo "ONLY='$ONLY' names no run" >&2; exit 2; }
+grep -qE "^(${ONLY:-.*})" <<< "$(runs; later)" || { echo "ONLY='$ONLY' names no run" >&2; exit 2; } # no pipe: grep -q leaves early
 for list in runs later; do
     if [[ -z ${LIST:-} ]]; then
         mkdir -p "$folder"
