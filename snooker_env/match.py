@@ -17,7 +17,7 @@ def match_env(
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] != "pettingzoo":
             raise
-        raise ImportError('match_env needs PettingZoo; install it with: pip install "snooker-env[multi]"') from error
+        raise ImportError('match_env needs PettingZoo; install it, in a clone of snooker_env, with: pip install -e ".[multi]"') from error
     return MatchEnv(
         layout=layout, aim=aim, observation=observation, noise=noise, reward=reward, elevation=elevation, placement=placement,
         decision=decision, miss=miss, physics=physics, table=table, fidelity=fidelity, max_strokes=max_strokes, render_mode=render_mode,

@@ -84,7 +84,8 @@ def test_with_the_core_dependencies_alone_everything_but_pictures_works():
         "try: env.render()\n"
         "except ImportError as error: print(error)\n",
     )
-    assert out.splitlines() == ["True", 'pictures need pygame-ce; install it with: pip install "snooker-env[render]"'] and err == ""
+    assert out.splitlines() == ["True", 'pictures need pygame-ce; install it, in a clone of snooker_env, with: pip install -e ".[render]"']
+    assert err == ""
 
 
 def test_every_public_name_is_there_once_and_explained():

@@ -32,7 +32,7 @@ def _pygame():
     try:
         import pygame
     except ImportError as error:
-        raise ImportError('pictures need pygame-ce; install it with: pip install "snooker-env[render]"') from error
+        raise ImportError('pictures need pygame-ce; install it, in a clone of snooker_env, with: pip install -e ".[render]"') from error
     return pygame
 
 
