@@ -10,7 +10,7 @@ from ._check import array, flags, integer, refuse, refuse_what
 from ._jit import entry
 from .physics import cloth, contact, cue, engine, trajectory
 from .physics.engine import EventKind, Status
-from .physics.parameters import FASTEST, MOST_SPIN, P_E_B, Physics
+from .physics.parameters import FASTEST, FASTEST_IMPACT, MOST_SPIN, MOST_SPIN_IMPACT, P_E_B, Physics
 from .physics.polynomial import WORK
 from .physics.table import Table
 
@@ -50,17 +50,17 @@ def _unit_normal(normal):
 
 
 def _velocity(name, value):
-    return tuple(array(name, value, (3,), FASTEST, "m/s").tolist())
+    return tuple(array(name, value, (3,), FASTEST_IMPACT, "m/s").tolist())
 
 
 def _spin(name, value):
-    return tuple(array(name, value, (3,), MOST_SPIN, "rad/s").tolist())
+    return tuple(array(name, value, (3,), MOST_SPIN_IMPACT, "rad/s").tolist())
 
 
 def collide_balls(v1, w1, v2, w2, normal, physics=None, fidelity="standard"):
     """The frictional impact of two balls standing on the cloth (Mathavan, Jackson & Parkin 2014, 2.1 to 2.4).
 
-    v1, v2: velocities [m/s], w1, w2: spins [rad/s], each (3,), no number beyond 1,000 m/s and 100,000 rad/s; normal: horizontal unit
+    v1, v2: velocities [m/s], w1, w2: spins [rad/s], each (3,), no number beyond 1e6 m/s and 1e9 rad/s; normal: horizontal unit
     vector from ball 1 to ball 2. Returns v1, w1, v2, w2 after the impact, (3,) float64 each, the vertical velocity of the lifted ball
     included. Balls that do not close (zero or parting normal speed) come back unchanged. ``fidelity``: "fast" (closed form, free
     spheres), "standard", "reference", or "euler:N" (the paper's own scheme with N of eq. 14).

@@ -15,11 +15,14 @@ MARLOW = (9.951e-3, 0.108, 1.088)
 """Marlow's law of ball-ball friction, mu(s) = a + b exp(-c s), s the slip speed in m/s."""
 
 FASTEST = 1000.0
-"""No ball and no cue may be given a velocity with a component beyond this [m/s]. The hardest breaks reach 15 m/s. Measured: all invariants
-of a shot hold to 10,000 m/s; at 100,000 m/s rounding (1e-16 of the speed) is above what counts as rest, and shots do not end."""
+"""No ball of a shot and no cue may be given a velocity with a component beyond this [m/s]; the hardest strokes reach some 15 m/s.
+Measured: all invariants of a shot hold to 10,000 m/s; at 100,000 m/s rounding (1e-16 of the speed) is above what counts as rest, and
+shots do not end."""
 MOST_SPIN = 1e5
-"""No ball may be given a spin with a component beyond this [rad/s]: what a strike at ``FASTEST`` can give a ball of snooker's size.
-Measured: shots are right to 1e6 rad/s and do not end at 1e7."""
+"""No ball of a shot may be given a spin with a component beyond this [rad/s]: what a strike at ``FASTEST`` can give a ball of snooker's
+size. Measured: shots are right to 1e6 rad/s and do not end at 1e7."""
+FASTEST_IMPACT, MOST_SPIN_IMPACT = 1e6, 1e9
+"""The same for one impact alone, whose outcome scales with its speeds (up to the laws that name a speed) and is right far beyond."""
 _LEAST_DECELERATION, _MOST_DECELERATION = 1e-6, 1e6
 
 # Places in the packed vector. They are indices, not tunables: freezing them into a kernel is safe.

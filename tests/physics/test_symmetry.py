@@ -3,21 +3,10 @@
 import numpy as np
 import pytest
 
-import snooker_env as sn
 from benchmarks import fuzz
+from benchmarks._stability_symmetry import images
 
 AXES = (0, 1)
-
-
-def images(drawn, axis, rows=slice(None)):
-    """How a batch ends, and how its mirror image ends, seen in the mirror: positions and durations of each."""
-    flip = np.array([1.0, 1.0])
-    flip[axis] = -1.0
-    spin = np.array([-flip[0], -flip[1], -1.0])  # spins are axial
-    how = drawn.table, drawn.physics, drawn.fidelity
-    here = sn.simulate_batch(drawn.positions[rows], drawn.velocities[rows], drawn.spins[rows], *how)
-    there = sn.simulate_batch(drawn.positions[rows] * flip, drawn.velocities[rows] * flip, drawn.spins[rows] * spin, *how)
-    return (here.positions, here.duration), (there.positions * flip, there.duration)
 
 
 def assert_mirrored(drawn, axis, rows=slice(None)):
