@@ -51,11 +51,8 @@ def counted(positions, velocities, spins, physics):
 def main():
     """Command line."""
     found = []
-    for file in sys.argv[2:]:
+    physics, *files = sys.argv[1:]
+    for file in files:
         with np.load(file) as shots, np.errstate(all="ignore"):
-            found.append(counted(shots["positions"], shots["velocities"], shots["spins"], sys.argv[1]))
+            found.append(counted(shots["positions"], shots["velocities"], shots["spins"], physics))
     print(json.dumps(found))
-
-
-if __name__ == "__main__":
-    main()

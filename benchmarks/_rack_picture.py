@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._command import pyplot
+from ._command import pyplot, saved
 from ._rack_breaks import apex_break
 from ._rack_compliant import R
 
@@ -50,5 +50,6 @@ def picture(file, states, figures, samples):
         ax.set_title({"apex, touching": "whole shots: apex of a touching rack"}.get(kind, f"whole shots: {kind}"), fontsize=10)
         ax.legend(fontsize=8)
     file.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(file, dpi=110)
+    with saved(file) as place:
+        fig.savefig(place, dpi=110)
     print(file)

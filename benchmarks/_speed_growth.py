@@ -9,7 +9,7 @@ import snooker_env as sn
 from snooker_env.physics import contact
 from snooker_env.simulation import MAX_EVENTS, _run
 
-from ._command import pyplot
+from ._command import pyplot, saved
 
 BALLS = (2, 3, 4, 6, 8, 11, 15, 22)
 BATCHES = tuple(4**k for k in range(9))  # 1 to 65,536
@@ -143,5 +143,6 @@ def draw(found, file):
     for axes in (by_balls, by_event, by_batch, by_thread):
         axes.grid(alpha=0.3)
         axes.legend(frameon=False, fontsize=8)
-    figure.savefig(file, dpi=110)
+    with saved(file) as place:
+        figure.savefig(place, dpi=110)
     plt.close(figure)

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from . import fuzz, invariants
-from ._command import pyplot
+from . import _invariants as invariants
+from . import fuzz
+from ._command import pyplot, saved
 from ._stability_impacts import IMPACT_LIMITS
 from ._stability_shots import SHOT_LIMITS
 from ._stability_symmetry import growth
@@ -20,7 +21,8 @@ def draw(path, impacts, shots, euler, symmetry, found):
     scheme(axes[0, 1], euler)
     chaos(axes[1, 1], *symmetry)
     invariants_of_fuzz(axes[1, 0], found)
-    figure.savefig(path, dpi=90)
+    with saved(path) as place:
+        figure.savefig(place, dpi=90)
     plt.close(figure)
 
 

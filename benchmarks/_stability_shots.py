@@ -14,7 +14,8 @@ from snooker_env.physics import contact
 from snooker_env.physics.engine import Status
 from snooker_env.physics.table import PLAY
 
-from . import fuzz, invariants
+from . import _invariants as invariants
+from . import fuzz
 from ._stability_worst import EXACT_FIDELITIES, merge
 from .fuzz import D, R
 
@@ -26,7 +27,7 @@ SHOT_LIMITS = {
     "lost": 0, "events": MOST_EVENTS, "energy": 1e-9, "momentum": 1e-6, "parting": 1e-5, "overlap": 1e-9, "in cushion": 1e-9,
     "rest": 1e-9, "log": 1e-12,
 }  # fmt: skip
-"""Of a shot: see ``invariants.WHAT``; "log" is the worst of its finite, clock, jump and account."""
+"""Of a shot: see ``_invariants.WHAT``; "log" is the worst of its finite, clock, jump and account."""
 
 
 def shot_figures(p, v, w, table: Any = "match", physics: Any = "paper", fidelities=EXACT_FIDELITIES):

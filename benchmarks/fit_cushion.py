@@ -13,6 +13,8 @@ from scipy.optimize import least_squares
 
 import snooker_env as sn
 
+from ._command import command, run
+
 DATA = Path(__file__).parent / "data" / "cushion_rebound.csv"
 
 
@@ -23,7 +25,8 @@ def rebound(speed, e_c):
 
 
 def main():
-    """Fit, print the table."""
+    """Command line: fit, print the table."""
+    command("fit_cushion", __doc__).parse_args()
     speed, measured = np.loadtxt(DATA, delimiter=",", skiprows=2).T
 
     def residuals(knee, slope, e_c=0.98):
@@ -55,4 +58,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -7,9 +7,9 @@ overlapping or off the table; and once a frame, that the state written as JSON a
 Nobody concedes, claims or is stopped: a frame ends by its last black, by a re-spotted black, or by a third miss ("clear_path").
 """
 
-import argparse
 import json
 import os
+import signal
 import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
@@ -25,7 +25,7 @@ from snooker_env.envs.shooting import mask, shooter_of
 from snooker_env.game.balls import BALL_RADIUS, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of
 from snooker_env.game.layouts import break_off
 
-from ._command import at_least
+from ._command import at_least, command, run
 
 MOST_STROKES = 20_000
 """A frame that is longer counts as a failure."""
@@ -177,12 +177,13 @@ def row(kind, miss, tallies, seconds):
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("frames", __doc__)
     parser.add_argument("--frames", type=at_least(1), default=2000, help="of each kind")
     parser.add_argument("--jobs", type=at_least(1), default=os.cpu_count() or 1, help="processes")
     args = parser.parse_args()
     print("players    miss rule   frames  strokes   most  fouls %  break  best seconds   endings")
-    with ProcessPoolExecutor(args.jobs, mp_context=get_context("spawn")) as pool:
+    quiet = {"initializer": signal.signal, "initargs": (signal.SIGINT, signal.SIG_DFL)}  # Ctrl-C ends them without a word
+    with ProcessPoolExecutor(args.jobs, mp_context=get_context("spawn"), **quiet) as pool:
         for kind, miss in KINDS:
             start = time.perf_counter()
             tallies = list(pool.map(partial(play_frame, kind=kind, miss=miss), range(args.frames), chunksize=10))
@@ -191,4 +192,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -1,10 +1,14 @@
-"""Does any shot break? Random shots of every kind, fidelity and physics, each checked against every invariant of ``invariants.py``.
+"""Does any shot break? Random shots of every kind, fidelity and physics, each checked against every invariant of ``_invariants.py``.
 
-Run by ``python -m benchmarks.stability --fuzz N``. A batch is made of nothing but its seed and its number, so that a failure, named by
-seed, batch and index, can be played again: ``python -m benchmarks.stability --replay SEED BATCH INDEX``.
+    python -m benchmarks.fuzz [--shots 1000000] [--seed 0] [--threads 2]
+    python -m benchmarks.fuzz --replay SEED BATCH INDEX
+
+``python -m benchmarks.stability`` does the same after its extremes. A batch is made of nothing but its seed and its number, so that a
+failure, named by seed, batch and index, can be played again. Exit code 1 if an invariant fails.
 """
 
 import dataclasses
+import sys
 import time
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
@@ -19,7 +23,8 @@ from snooker_env.physics import contact
 from snooker_env.physics.engine import Status
 from snooker_env.physics.table import HALF_LENGTH, HALF_WIDTH, MOUTH
 
-from . import invariants
+from . import _invariants as invariants
+from ._command import at_least, command, run
 
 R = 0.02625
 D = 2 * R
@@ -192,7 +197,7 @@ def batch(seed, number):
 
 
 def allowed(fidelity):
-    """The bound of each invariant, in the order of ``invariants.NAMES``.
+    """The bound of each invariant, in the order of ``_invariants.NAMES``.
 
     Euler's steps are not located: its energy may err by 5/N. "fast" takes steps in cushions to 1e-4: a ball may still close at 1e-2 of its
     speed.
@@ -222,7 +227,7 @@ class Fuzzed:
     shots: int = 0
     seconds: float = 0.0
     worst: dict = field(default_factory=dict)
-    """Fidelity -> worst figure of each invariant, in the order of ``invariants.NAMES``."""
+    """Fidelity -> worst figure of each invariant, in the order of ``_invariants.NAMES``."""
     events: dict = field(default_factory=dict)
     """Scene -> most events of a shot."""
     drawn: Counter = field(default_factory=Counter)
@@ -238,8 +243,8 @@ def compare_public(one, found, threads):
     return same & (batch.potted == found.potted).all(1) & (batch.on_table == found.on_table).all(1)
 
 
-def run(shots, seed, threads, say):
-    """The fuzz: shots in batches of ``BATCH``, every ``PUBLIC``-th batch through ``simulate_batch`` as well. ``say``: a progress line."""
+def fuzz(shots, seed, threads):
+    """Shots in batches of ``BATCH``, every ``PUBLIC``-th batch through ``simulate_batch`` as well; a line of progress on stderr."""
     out, started, count = Fuzzed(), time.perf_counter(), -(-shots // BATCH)
 
     def one(number):
@@ -252,7 +257,9 @@ def run(shots, seed, threads, say):
             for number, drawn, found in pool.map(one, range(first, min(first + 50, count))):
                 _take(out, number, drawn, found, threads)
             out.seconds = time.perf_counter() - started
-            say(f"{out.shots:,} of {count * BATCH:,} shots, {len(out.failures)} failures, {out.seconds:.0f} s")
+            progress = f"\r{out.shots:,} of {count * BATCH:,} shots, {len(out.failures)} failures, {out.seconds:.0f} s"
+            print(progress, end="", file=sys.stderr, flush=True)
+    print(file=sys.stderr)
     return out
 
 
@@ -271,3 +278,55 @@ def _take(out, number, drawn, found, threads):
     if number % PUBLIC == 0 and ok.all():
         other = np.flatnonzero(~compare_public(drawn, found, threads))
         out.failures += [(number, int(k), "simulate_batch gives other bits", 1.0, *labels) for k in other]
+
+
+def lines(found, seed):
+    """The fuzz's table, and its failures by kind with one to replay."""
+    most = ", ".join(f"{scene} {n:,}" for scene, n in found.events.items())
+    text = [f"fuzz: {found.shots:,} shots in {found.seconds:.0f} s, seed {seed}; most events: {most}"]
+    names = invariants.NAMES
+    text.append(f"{'worst of':14}" + "".join(f"{name:>17}" for name in names))
+    for fidelity in sorted(found.worst):
+        text.append(f"{fidelity:14}" + "".join(f"{'-' if x == -np.inf else f'{x:.1e}':>17}" for x in found.worst[fidelity]))
+    text.append(f"{'(standard may)':14}" + "".join(f"{x:>17.0e}" for x in allowed("standard")))
+    kinds = Counter((what, world, fidelity) for _, _, what, _, _, world, fidelity in found.failures)
+    text.append(f"{len(found.failures)} failures")
+    for kind, n in kinds.most_common():
+        number, index, _, figure, scene, _, _ = next(f for f in found.failures if (f[2], f[5], f[6]) == kind)
+        what, world, fidelity = kind
+        text.append(f"  {n:>6} {what} ({fidelity}, physics {world}), as --replay {seed} {number} {index} ({scene}, {figure:.3g})")
+    return text
+
+
+def replay(seed, number, index):
+    """Play one shot of the fuzz again and print what it breaks; True if nothing."""
+    drawn = batch(seed, number)
+    found = play(drawn)
+    print(f"seed {seed}, batch {number}, shot {index}: {drawn.scene}, {drawn.fidelity}, table {drawn.table.name}, {drawn.physics}")
+    print(
+        f"positions {drawn.positions[index].tolist()}\nvelocities {drawn.velocities[index].tolist()}\nspins {drawn.spins[index].tolist()}"
+    )
+    print(f"{Status(found.status[index]).name} after {found.n_events[index]} events, {found.duration[index]:.6f} s")
+    broken = found.worst[index] > allowed(drawn.fidelity)
+    for name, x, limit, bad in zip(invariants.NAMES, found.worst[index], allowed(drawn.fidelity), broken, strict=True):
+        print(f"  {name:18}{x:>12.3g}  allowed {limit:.1g}  {'FAIL' if bad else 'pass'}   {invariants.WHAT[name]}")
+    return found.status[index] == Status.OK and not broken.any()
+
+
+def main():
+    """Command line."""
+    parser = command("fuzz", __doc__)
+    parser.add_argument("--shots", type=at_least(1), default=1_000_000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--threads", type=at_least(1), default=2)
+    parser.add_argument("--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot again")
+    options = parser.parse_args()
+    if options.replay:
+        return int(not replay(*options.replay))
+    found = fuzz(options.shots, options.seed, options.threads)
+    print("\n".join(lines(found, options.seed)))
+    return int(bool(found.failures))
+
+
+if __name__ == "__main__":
+    run(main)

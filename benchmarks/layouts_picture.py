@@ -3,7 +3,6 @@
 python -m benchmarks.layouts_picture [--out FILE] [--seed N]
 """
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,8 @@ from snooker_env.game.layouts import layout
 from snooker_env.game.pots import pots
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import scene
+
+from ._command import command, run, saved, writable
 
 FILE = Path(__file__).parent / "pictures" / "layouts.png"
 HEIGHT, COLUMNS, GAP = 330, 3, 6
@@ -68,14 +69,16 @@ def main():
     """Command line."""
     import pygame
 
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("layouts_picture", __doc__)
     parser.add_argument("--out", type=Path, default=FILE)
     parser.add_argument("--seed", type=int, default=4)
     args = parser.parse_args()
-    args.out.parent.mkdir(exist_ok=True)
-    pygame.image.save(pygame.surfarray.make_surface(sheet(args.seed).swapaxes(0, 1)), args.out)
+    writable(args.out)
+    image = pygame.surfarray.make_surface(sheet(args.seed).swapaxes(0, 1))
+    with saved(args.out) as place:
+        pygame.image.save(image, place)
     print(args.out)
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

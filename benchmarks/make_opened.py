@@ -3,8 +3,8 @@
 python -m benchmarks.make_opened [--tables 10240] [--seed 0]
 """
 
-import argparse
 from math import atan2
+from pathlib import Path
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from snooker_env.physics.contact import parse_fidelity
 from snooker_env.physics.parameters import Physics
 from snooker_env.physics.table import Table
 from snooker_env.simulation import play
+
+from ._command import at_least, command, run, saved, writable
 
 PHYSICS, TABLE, FIDELITY = Physics.preset("match"), Table.preset("match"), parse_fidelity("standard")
 SPREAD = 6.0  # m: mean distance of the reds from their centre of mass, times 15, that counts as opened
@@ -69,11 +71,12 @@ def opened_table(rng):
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--tables", type=int, default=10240)
+    parser = command("make_opened", __doc__)
+    parser.add_argument("--tables", type=at_least(1), default=10240)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--out", default=FILE)
+    parser.add_argument("--out", type=Path, default=FILE, help="an .npz file")
     options = parser.parse_args()
+    writable(options.out)
     rng = np.random.default_rng(options.seed)
     tables, frames = [], 0
     while len(tables) < options.tables:
@@ -81,9 +84,10 @@ def main():
         table = opened_table(rng)
         if table is not None:
             tables.append(table.astype(np.float32))  # to a tenth of a micrometre: within what the engine accepts as touching
-    np.savez_compressed(options.out, positions=np.array(tables))
+    with saved(options.out) as place:
+        np.savez_compressed(place, positions=np.array(tables))
     print(f"{len(tables)} tables from {frames} frames -> {options.out}")
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -5,19 +5,19 @@
 Paper: Mathavan, Jackson & Parkin (2014). Tables 1 and 2; the error of each collision model per shot (Figs. 7 and 8); full hits (Fig. 4);
 the curved object ball (Fig. 6); one pot with different spins (Fig. 1); throw and cushion rebound against other data. The models are
 stated in ``_paper_shots.py`` and ``_paper_data.py``. Takes a few seconds; the pictures (``paper.png``, ``paper_data.png``) need matplotlib,
-which ``pip install -e ".[dev]"`` brings.
+which ``pip install -e ".[test]"`` brings.
 """
 
-import argparse
-import json
 from pathlib import Path
 
 import numpy as np
 
 from . import _paper_data, _paper_shots
+from ._command import command, pyplot, run, save_json, writable
 from ._paper_shots import MEASURED_TO, QUANTITIES
 
 PICTURES = Path(__file__).parent / "pictures"
+FILES = ("paper.png", "paper_data.png")
 LABELS = dict(zip(QUANTITIES, ("cue ball's speed", "object ball's speed", "cue ball's angle", "object ball's angle"), strict=True))
 
 
@@ -169,30 +169,33 @@ def draw(folder, figures, shots, curves):
     """Both pictures into ``folder``."""
     from . import _paper_pictures
 
-    folder.mkdir(parents=True, exist_ok=True)
-    _paper_pictures.paper(folder / "paper.png", figures, shots, curves)
-    _paper_pictures.data(folder / "paper_data.png", figures)
-    print(f"\n{folder / 'paper.png'}\n{folder / 'paper_data.png'}")
+    paper, data = (folder / name for name in FILES)
+    _paper_pictures.paper(paper, figures, shots, curves)
+    _paper_pictures.data(data, figures)
+    print(f"\n{paper}\n{data}")
 
 
 def main(argv=None):
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("paper", __doc__)
     parser.add_argument("--json", type=Path, help="also write every figure there")
     parser.add_argument("--pictures", type=Path, default=PICTURES, help="folder of the pictures")
     parser.add_argument("--no-pictures", action="store_true")
     options = parser.parse_args(argv)
+    writable(options.json)
+    if not options.no_pictures:
+        pyplot()  # before the work: can the pictures be drawn, and their files written?
+        writable(*(options.pictures / name for name in FILES))
     figures, shots, curves = measure()
     print_tables(figures["tables"])
     print_models(figures["models"])
     print_figures(figures)
     print_throw(figures["throw_a14"], figures["throw_domenech"])
     print_cushion(figures["cushion"])
-    if options.json:
-        options.json.write_text(json.dumps(figures, indent=1) + "\n")
+    save_json(options.json, figures)
     if not options.no_pictures:
         draw(options.pictures, figures, shots, curves)
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

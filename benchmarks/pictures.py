@@ -3,7 +3,6 @@
 python -m benchmarks.pictures [--out FILE]
 """
 
-import argparse
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +12,8 @@ from snooker_env.game.layouts import opened
 from snooker_env.game.pots import pots
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import ball_paths, scene
+
+from ._command import command, run, saved, writable
 
 FILE = Path(__file__).parent / "pictures" / "shot.png"
 
@@ -39,17 +40,18 @@ def main():
     """Command line."""
     import pygame
 
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("pictures", __doc__)
     parser.add_argument("--out", type=Path, default=FILE)
     out = parser.parse_args().out
+    writable(out)
 
     positions, ball, shot = pot(6)
     text = "a red potted with screw and right-hand side: the table before the shot, and where the two balls went"
     picture = rgb_array(scene("match", positions, paths=ball_paths(shot, balls=(0, ball)), text=text))
-    out.parent.mkdir(exist_ok=True)
-    pygame.image.save(pygame.surfarray.make_surface(picture.swapaxes(0, 1)), out)
+    with saved(out) as place:
+        pygame.image.save(pygame.surfarray.make_surface(picture.swapaxes(0, 1)), place)
     print(out)
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -19,8 +19,6 @@ a model has on other balls than Hertz does, or has lost: half the sum of the dif
 (sum E)^2 / sum E^2 over the reds, how many share their energy.
 """
 
-import argparse
-import json
 import os
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -33,7 +31,7 @@ import snooker_env as sn
 from snooker_env.game.balls import SPOTS
 from snooker_env.physics.engine import EventKind
 
-from ._command import at_least, pyplot
+from ._command import at_least, command, pyplot, run, save_json, writable
 from ._rack_breaks import apex_break, break_off
 from ._rack_checks import checks
 from ._rack_compliant import LAWS, STEP, R, compliant
@@ -306,7 +304,7 @@ def verdict(models, figures):
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("rack", __doc__)
     parser.add_argument("--shots", type=at_least(1), default=100, help="whole shots of each kind")
     parser.add_argument("--orders", type=at_least(1), default=100, help="numberings of the rack")
     parser.add_argument("--racks", type=at_least(1), default=30, help="loose racks for each gap")
@@ -315,7 +313,8 @@ def main():
     parser.add_argument("--json", type=Path, help="also write every figure there")
     parser.add_argument("--out", type=Path, default=FILE, help="the picture")
     options = parser.parse_args()
-    pyplot()  # before the work: can the picture be drawn?
+    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
+    writable(options.out, options.json)
     models = Models(sn.Physics.preset(options.physics))
     rng = np.random.default_rng(options.seed)
     figures: dict = {"physics": options.physics, "seed": options.seed, "checks": checks(models), "cradle": cradle(models)}
@@ -327,10 +326,9 @@ def main():
         figures["whole shots"], samples = whole_shots(models, options.shots, rng, workers)
     figures["cost"] = cost(models)
     figures["verdict"] = verdict(models, figures)
+    save_json(options.json, figures)
     picture(options.out, states, figures, samples)
-    if options.json:
-        options.json.write_text(json.dumps(figures, indent=1) + "\n")
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

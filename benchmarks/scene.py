@@ -15,7 +15,6 @@ v v_z / g (twice that, v times the time of flight, if landing had no friction). 
 the air, the speed lost in rolling, and what the shift changes later.
 """
 
-import argparse
 import json
 import os
 import subprocess
@@ -33,7 +32,7 @@ from snooker_env.physics import contact, table
 from snooker_env.physics.engine import PART, EventKind
 
 from . import _machine, _shots, _variants
-from ._command import at_least, pyplot
+from ._command import at_least, command, pyplot, run, save_json, saved, writable
 
 STANDARD = contact.parse_fidelity("standard")[0]
 FULL, HAND, CHAOS, HOP = "everything", "a professional's hand", "aim turned by 1e-9 rad", "hop of the lifted ball"
@@ -190,7 +189,7 @@ def counts(starts, physics, most=40):
         files = [Path(folder) / f"{k}.npz" for k in range(len(starts))]
         for file, (positions, velocities, spins, _here) in zip(files, starts, strict=True):
             np.savez(file, positions=positions[:most], velocities=velocities[:most], spins=spins[:most])
-        command = [sys.executable, "-m", "benchmarks._counts", physics, *map(str, files)]
+        command = [sys.executable, "-c", "from benchmarks import _counts; _counts.main()", physics, *map(str, files)]
         root = Path(__file__).parent.parent
         done = subprocess.run(command, cwd=root, env=os.environ | {"NUMBA_DISABLE_JIT": "1"}, check=True, capture_output=True, text=True)
     return json.loads(done.stdout)
@@ -322,13 +321,13 @@ def draw(scenes, names, out):
         ax.set_yticks(range(len(mixed)), mixed, fontsize=9)
         ax.tick_params(length=0)
     fig.suptitle(f"What a scene requires: each model left out in turn; bold where it matters.  {_machine.line()}", fontsize=10)
-    out.parent.mkdir(exist_ok=True)
-    fig.savefig(out, dpi=90)
+    with saved(out) as place:
+        fig.savefig(place, dpi=90)
 
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("scene", __doc__)
     parser.add_argument("--shots", type=at_least(2), default=600, help="shots in each scene")
     parser.add_argument("--repeats", type=at_least(1), default=5, help="timed runs of every shot; the best counts")
     parser.add_argument("--physics", default="match", help="the world with every model: match, or paper")
@@ -336,7 +335,8 @@ def main():
     parser.add_argument("--json", type=Path, help="also write every figure there")
     parser.add_argument("--out", type=Path, default=FILE, help="the picture")
     options = parser.parse_args()
-    pyplot()  # before the work: can the picture be drawn?
+    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
+    writable(options.out, options.json)
 
     print(f"{_machine.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters")
     scenes, starts = {}, []
@@ -366,12 +366,11 @@ def main():
     print("\nWhat follows")
     for sentence in lines:
         print(f"* {sentence}")
+    figures = {"machine": _machine.machine(), "physics": options.physics, "shots": options.shots, "scenes": scenes, "says": lines}
+    save_json(options.json, figures)
     draw(scenes, options.models, options.out)
     print(f"\n{options.out}")
-    if options.json:
-        figures = {"machine": _machine.machine(), "physics": options.physics, "shots": options.shots, "scenes": scenes, "says": lines}
-        options.json.write_text(json.dumps(figures, indent=1) + "\n")
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -14,8 +14,6 @@ call's own cost taken off. An event is one entry of the shot's log. Errors are a
 (needs the network): ``_speed_pooltool.py``. With ``--profile`` or ``--against`` and no ``--parts``, only these are done.
 """
 
-import argparse
-import json
 import tempfile
 import time
 from pathlib import Path
@@ -33,7 +31,7 @@ from snooker_env.physics.table import Table
 from snooker_env.simulation import _run
 
 from . import _machine, _speed_clock, _speed_growth, _speed_pooltool, _speed_profile, _speed_start
-from ._command import at_least, pyplot
+from ._command import at_least, command, pyplot, run, save_json, writable
 
 R = 0.02625
 IMPACT_FIDELITIES = ("fast", "standard", "reference", "euler:200", "euler:1000", "euler:10000")
@@ -285,7 +283,7 @@ def _simulate_seconds(p, v, w):
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("speed", __doc__)
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots (and impacts) in a set")
     parser.add_argument("--repeats", type=at_least(1), default=7, help="passes over a set")
     parser.add_argument("--parts", nargs="+", choices=PARTS, help="only these")
@@ -296,7 +294,8 @@ def main():
     parser.add_argument("--json", type=Path, help="also write every figure there")
     parser.add_argument("--out", type=Path, default=FILE, help="the picture of the growth")
     options = parser.parse_args()
-    pyplot()  # before the work: can the picture be drawn?
+    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
+    writable(options.out, options.json)
     parts = options.parts or (() if options.profile or options.against else PARTS)
     figures: dict[str, object] = {"machine": _machine.machine()}
     print(_machine.line() + ("" if _speed_clock.HAS_COUNTER else "; no cycle counter: best of the calls"))
@@ -327,11 +326,10 @@ def main():
             figures["against pooltool"] = measure_against(options.peer_shots, options.repeats)
         except _speed_pooltool.PeerError as why:
             problem = f"\n{why}"
-    if options.json:
-        options.json.write_text(json.dumps(figures, indent=1) + "\n")
+    save_json(options.json, figures)
     if problem:
         raise SystemExit(problem)
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -8,8 +8,6 @@ cue ball and the object ball stop, if they stay on the table, and how often the 
 hand: the same intended stroke, played twice by the truth with the errors of ``envs.noise``.
 """
 
-import argparse
-import json
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +17,7 @@ from snooker_env.physics import contact
 from snooker_env.physics.engine import EventKind
 
 from . import _machine, _shots
-from ._command import at_least, pyplot
+from ._command import at_least, command, pyplot, run, save_json, saved, writable
 from .speed import impacts, median_impact, one_by_one, results
 
 OWN = ("fast", "standard", "reference")
@@ -227,13 +225,13 @@ def draw(figures, out):
     handles += [Line2D([], [], marker="o", ls="", color=c, label=t) for c, t in colours]
     axes[0, 1].legend(handles=handles, loc="lower right", fontsize=8)
     fig.suptitle(f"Time against error, {_machine.line()}", fontsize=10)
-    out.parent.mkdir(exist_ok=True)
-    fig.savefig(out, dpi=110)
+    with saved(out) as place:
+        fig.savefig(place, dpi=110)
 
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("tradeoff", __doc__)
     parser.add_argument("--impacts", type=at_least(2), default=2000, help="impacts in the set")
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots in each set")
     parser.add_argument("--repeats", type=at_least(1), default=3, help="timed runs of every shot; the best counts")
@@ -241,7 +239,8 @@ def main():
     parser.add_argument("--json", type=Path, help="also write every figure there")
     parser.add_argument("--out", type=Path, default=FILE, help="the picture")
     options = parser.parse_args()
-    pyplot()  # before the work: can the picture be drawn?
+    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
+    writable(options.out, options.json)
 
     print(_machine.line())
     impact_rows = play_impacts(options.impacts)
@@ -271,11 +270,10 @@ def main():
     for sentence in says:
         print(f"* {sentence}")
     figures = {"machine": _machine.machine(), "physics": options.physics, "impacts": impact_rows, "shots": sets, "recommendation": says}
+    save_json(options.json, figures)
     draw(figures, options.out)
     print(f"\n{options.out}")
-    if options.json:
-        options.json.write_text(json.dumps(figures, indent=1) + "\n")
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

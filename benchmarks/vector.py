@@ -8,8 +8,6 @@ that a busy machine slows all alike. Outside the engine: the same shots, from th
 left of the step. Threads: what two threads give must be read against the control, plain arithmetic on two threads at the same time.
 """
 
-import argparse
-import json
 import os
 import platform
 import threading
@@ -25,7 +23,7 @@ from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.envs.visit import Visits, Work
 
-from ._command import at_least
+from ._command import at_least, command, run, save_json, writable
 
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)
 
@@ -207,13 +205,14 @@ def show(found):
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command("vector", __doc__)
     parser.add_argument("--seconds", type=float, default=2.0, help="of each timing")
     parser.add_argument("--repeats", type=at_least(1), default=5)
     parser.add_argument("--tables", type=at_least(1), default=1024)
     parser.add_argument("--ppo-steps", type=at_least(1), default=16384)
-    parser.add_argument("--json")
+    parser.add_argument("--json", help="also write every figure there")
     args = parser.parse_args()
+    writable(args.json)
     snooker_env.warmup()
     found = {
         "machine": platform.platform(), "processors": os.cpu_count(), "tables": args.tables,
@@ -221,10 +220,8 @@ def main():
         "sizes": sizes(args.seconds), "ppo": [p for p in (ppo(args.ppo_steps, n) for n in (16, 64)) if p],
     }  # fmt: skip
     show(found)
-    if args.json:
-        with open(args.json, "w") as file:
-            json.dump(found, file, indent=1)
+    save_json(args.json, found)
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

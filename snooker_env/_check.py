@@ -19,6 +19,8 @@ def number(field, value, low=-np.inf, high=np.inf, *, open_low=False):
     bounds = f"must be a finite number in {left}{low:g}, {high:g}{right}"
     if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
         raise refuse(field, value, bounds)
+    if isinstance(value, np.ndarray) and (value.ndim or np.ma.is_masked(value)):
+        raise refuse(field, value, bounds)
     try:
         x = float(value)
     except (TypeError, ValueError, OverflowError):
@@ -28,23 +30,24 @@ def number(field, value, low=-np.inf, high=np.inf, *, open_low=False):
     return x
 
 
-def array(field, value, shape):
-    """A finite float64 array of the given shape (-1: any length); always a fresh C-ordered copy."""
+def array(field, value, shape, most=np.inf, unit=""):
+    """A finite float64 array of the given shape (-1: any length), no number beyond ``most`` [unit]; always a fresh C-ordered copy."""
     free = iter("bn" if shape.count(-1) == 2 else "n")
     want = "(" + ", ".join(next(free) if s == -1 else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
     try:
         raw = np.asarray(value)
     except (TypeError, ValueError):
         raise refuse(field, value, f"must be real numbers of shape {want}") from None
-    if raw.dtype.kind not in "iuf":
+    if raw.dtype.kind not in "iuf" or np.ma.is_masked(value):
         raise refuse(field, value, f"must be real numbers of shape {want}")
-    a = np.array(raw, dtype=np.float64, order="C")
+    with np.errstate(over="ignore"):  # a wider number may become an infinity, which is refused below
+        a = np.array(raw, dtype=np.float64, order="C")
     if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
         raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {want}")
-    bad = np.argwhere(~np.isfinite(a))
+    bad = np.argwhere(~np.isfinite(a) | (np.abs(a) > most))
     if len(bad):
         at = tuple(int(k) for k in bad[0])
-        raise refuse(f"{field}{list(at)}", float(a[at]), "must be finite")
+        raise refuse(f"{field}{list(at)}", float(a[at]), "must be finite" + (f", within {most:,g} {unit} of zero" if most < np.inf else ""))
     return a
 
 

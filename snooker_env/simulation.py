@@ -10,7 +10,7 @@ from ._check import array, flags, integer, refuse, refuse_what
 from ._jit import entry
 from .physics import cloth, contact, cue, engine, trajectory
 from .physics.engine import EventKind, Status
-from .physics.parameters import P_E_B, Physics
+from .physics.parameters import FASTEST, FASTEST_IMPACT, MOST_SPIN, MOST_SPIN_IMPACT, P_E_B, Physics
 from .physics.polynomial import WORK
 from .physics.table import Table
 
@@ -18,6 +18,10 @@ EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j
 """One logged event; ``kind`` is an ``EventKind``."""
 
 MAX_EVENTS = 100_000
+MAX_BALLS = 4096
+"""Balls of one shot: the times of all pairs are kept, 134 MB of them here."""
+FARTHEST = 1e6
+"""Balls lie within this [m] of the origin: there places are still known to 1e-10 m."""
 _FIRST_LOG = 512
 
 
@@ -45,22 +49,27 @@ def _unit_normal(normal):
     return nx / size, ny / size
 
 
-def _vector(name, value):
-    return tuple(array(name, value, (3,)).tolist())
+def _velocity(name, value):
+    return tuple(array(name, value, (3,), FASTEST_IMPACT, "m/s").tolist())
+
+
+def _spin(name, value):
+    return tuple(array(name, value, (3,), MOST_SPIN_IMPACT, "rad/s").tolist())
 
 
 def collide_balls(v1, w1, v2, w2, normal, physics=None, fidelity="standard"):
     """The frictional impact of two balls standing on the cloth (Mathavan, Jackson & Parkin 2014, 2.1 to 2.4).
 
-    v1, v2: velocities [m/s], w1, w2: spins [rad/s], each (3,); normal: horizontal unit vector from ball 1 to ball 2.
-    Returns v1, w1, v2, w2 after the impact, (3,) float64 each, the vertical velocity of the lifted ball included. Balls that do not
-    close (zero or parting normal speed) come back unchanged. ``fidelity``: "fast" (closed form, free spheres), "standard",
-    "reference", or "euler:N" (the paper's own scheme with N of eq. 14).
+    v1, v2: velocities [m/s], w1, w2: spins [rad/s], each (3,), no number beyond 1e6 m/s and 1e9 rad/s; normal: horizontal unit
+    vector from ball 1 to ball 2. Returns v1, w1, v2, w2 after the impact, (3,) float64 each, the vertical velocity of the lifted ball
+    included. Balls that do not close (zero or parting normal speed) come back unchanged. ``fidelity``: "fast" (closed form, free
+    spheres), "standard", "reference", or "euler:N" (the paper's own scheme with N of eq. 14).
 
-    Raises ValueError on bad shapes, non-finite numbers, a normal that is not horizontal and unit, an unknown fidelity or physics.
+    Raises ValueError on bad shapes, numbers not finite or beyond these, a normal that is not horizontal and unit, an unknown fidelity or
+    physics.
     """
     physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
-    args = _vector("v1", v1), _vector("w1", w1), _vector("v2", v2), _vector("w2", w2)
+    args = _velocity("v1", v1), _spin("w1", w1), _velocity("v2", v2), _spin("w2", w2)
     *out, solved = _collide_balls(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
     if not solved:
         raise SimulationError(f"the impact of v1, w1, v2, w2 = {args} did not end at fidelity {fidelity!r}; try another fidelity")
@@ -70,12 +79,13 @@ def collide_balls(v1, w1, v2, w2, normal, physics=None, fidelity="standard"):
 def collide_cushion(v, w, normal, physics=None, fidelity="standard"):
     """The impact of a ball with a cushion's nose (Mathavan, Jackson & Parkin 2010, with Coulomb's law at zero slip).
 
-    v: velocity [m/s], w: spin [rad/s], (3,) each; normal: horizontal unit vector INTO the cushion. Returns v, w after the impact; a
-    ball that does not move into the cushion comes back unchanged. Fidelities as in ``collide_balls``; "fast" integrates with a loose
-    tolerance (no closed form keeps the cloth's reaction, worth 7 % of the rebound). Raises ValueError as ``collide_balls`` does.
+    v: velocity [m/s], w: spin [rad/s], (3,) each, bounded as in ``collide_balls``; normal: horizontal unit vector INTO the cushion.
+    Returns v, w after the impact; a ball that does not move into the cushion comes back unchanged. Fidelities as in ``collide_balls``;
+    "fast" integrates with a loose tolerance (no closed form keeps the cloth's reaction, worth 7 % of the rebound). Raises ValueError as
+    ``collide_balls`` does.
     """
     physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
-    args = _vector("v", v), _vector("w", w)
+    args = _velocity("v", v), _spin("w", w)
     *out, solved = _collide_cushion(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
     if not solved:
         raise SimulationError(f"the cushion impact of v, w = {args} did not end at fidelity {fidelity!r}; try another fidelity")
@@ -85,7 +95,7 @@ def collide_cushion(v, w, normal, physics=None, fidelity="standard"):
 def strike(speed, aim, side=0.0, top=0.0, elevation=0.0, physics=None):
     """The cue ball's velocity (3,) [m/s] and spin (3,) [rad/s] just after the cue has struck it.
 
-    speed >= 0: the speed the cue gives [m/s], along the cue; aim: direction of the cue [rad], anticlockwise from +x; side, top: tip
+    speed in [0, 1000]: the speed the cue gives [m/s], along the cue; aim: direction of the cue [rad], anticlockwise from +x; side, top: tip
     offset over R, + right, + up as the player sees it; elevation of the butt [rad] in [0, 1.5]. Side spin deflects the ball off the
     aim (squirt, to the left for right side); an elevated cue with side gives the spin of a swerve or masse, and the cloth takes the
     downward part of the speed: the ball leaves along the cloth with speed cos(elevation).
@@ -105,7 +115,8 @@ class Shot:
     * positions: (n, 2) [m] at rest; of a potted ball: where its centre crossed the fall.
     * potted: (n,) int: pocket index (``snooker_env.POCKETS``), or -1 if not potted in this shot.
     * on_table: (n,) bool: still in play.
-    * duration: Time [s] until everything is at rest, spin included.
+    * duration: Time [s] until everything is at rest, spin included (with ``spin_decel`` 0, which ends no spin: until no ball moves across
+      the table).
     * events: Structured array of ``time`` [s], ``kind`` (EventKind), ``i``, ``j``, in order.
     """
 
@@ -118,9 +129,12 @@ class Shot:
     physics: Physics = field(repr=False)
 
     def at(self, t):
-        """Positions (n, 2) [m], velocities (n, 2) [m/s] and spins (n, 3) [rad/s] at time t [s]; after ``duration`` at rest.
+        """Positions (n, 2) [m], velocities (n, 2) [m/s] and spins (n, 3) [rad/s] at time t [s], finite and not negative.
 
-        t may be an array of shape (m,): then a leading axis m is added to each. At the time of an impact: just after it.
+        t may be an array of shape (m,): then a leading axis m is added to each. At the time of an impact: just after it. From ``duration``
+        on, however late, everything is at rest: the positions are ``positions``, velocities and spins zero (with ``spin_decel`` 0 a spin
+        about the vertical stays as it is). A potted ball lies still where it crossed the fall, without spin, from then on, and a ball that
+        was not on the table where it was given.
         """
         times = array("t", t if np.ndim(t) else [t], (-1,))
         if times.size and times.min() < 0:
@@ -128,6 +142,8 @@ class Shot:
         n, m = len(self.positions), len(times)
         out = np.zeros((m, n, 2)), np.zeros((m, n, 2)), np.zeros((m, n, 3))
         trajectory.states_at(self.segments, n, times, self.physics.pack(), *out)
+        if self.physics.spin_decel > 0:
+            out[2][times >= self.duration] = 0.0  # rounding may leave 1e-14 of a spin at the very time at which it ends
         return tuple(a[0] for a in out) if np.ndim(t) == 0 else out
 
 
@@ -145,11 +161,12 @@ class ShotBatch:
 
 def _balls(positions, velocities, spins, on_table, batch):
     lead = (-1,) if batch else ()
-    r = array("positions", positions, (*lead, -1, 2))
+    r = array("positions", positions, (*lead, -1, 2), FARTHEST, "m")
     shape = r.shape[:-1]
-    v, w = array("velocities", velocities, (*shape, 2)), array("spins", spins, (*shape, 3))
-    if shape[-1] == 0:
-        raise refuse_what("positions", f"array of shape {r.shape}", "must hold at least one ball")
+    v = array("velocities", velocities, (*shape, 2), FASTEST, "m/s")
+    w = array("spins", spins, (*shape, 3), MOST_SPIN, "rad/s")
+    if not 1 <= shape[-1] <= MAX_BALLS:
+        raise refuse_what("positions", f"array of shape {r.shape}", f"must hold at least one ball and at most {MAX_BALLS}")
     here = np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)
     return r, v, w, here
 
@@ -157,9 +174,10 @@ def _balls(positions, velocities, spins, on_table, batch):
 def simulate(positions, velocities, spins, table="match", physics=None, fidelity="standard", *, on_table=None, max_events=MAX_EVENTS):
     """Play one shot until everything is at rest.
 
-    positions (n, 2) [m], velocities (n, 2) [m/s], spins (n, 3) [rad/s] of n balls in the world frame (origin at the table's centre, +y
-    to the black end); table: "match", "tight", a ``Table``, or None for unbounded cloth; on_table (n,) bool: balls to leave out are
-    False. Balls may touch each other and the cushions (to within 1e-6 m). The same input gives the same bits.
+    positions (n, 2) [m], velocities (n, 2) [m/s] and spins (n, 3) [rad/s] of n balls in the world frame (origin at the table's centre, +y
+    to the black end), each number within 1,000 m/s and 100,000 rad/s; table: "match", "tight" (both for snooker's own balls: physics.R
+    0.02625), a ``Table``, or None for unbounded cloth; on_table (n,) bool: balls to leave out are False. Balls may touch each other and
+    the cushions (to within 1e-6 m). The same input gives the same bits.
 
     Returns a ``Shot``. Raises ValueError on bad input (field, value, what is allowed), SimulationError if the shot does not come to rest
     within ``max_events`` events.

@@ -7,7 +7,7 @@ from snooker_env.envs.snooker import SnookerEnv
 from tests.refusals import INF, NAN, batch, case, cushion, impact, refused, shot, strike
 
 RANGES = {
-    "R": ("(0, 1]", 0, -1, 1.1), "M": ("(0, inf)", 0, -0.1), "g": ("(0, inf)", 0, -9.81), "mu_s": ("[0, 1]", -0.1, 1.1),
+    "R": ("[0.001, 1]", 0, -1, 1.1, 1e-300), "M": ("(0, inf)", 0, -0.1), "g": ("(0, inf)", 0, -9.81), "mu_s": ("[0, 1]", -0.1, 1.1),
     "mu_r": ("[0, 1]", -0.01, 1.01), "spin_decel": ("[0, inf)", -1), "e_b": ("[0, 1]", -0.1, 1.01), "e_c": ("[0, 1]", -0.1, 1.01),
     "e_c_knee": ("[0, inf)", -1), "e_c_slope": ("[0, inf)", -1), "mu_c": ("[0, 1]", -0.1, 2), "sin_theta": ("[0, 0.95]", -0.1, 0.96),
     "end_mass_ratio": ("[0, inf)", -1), "max_offset": ("(0, 0.999]", 0, 1.0),

@@ -28,8 +28,38 @@ VECTORS = [
         ("name", "abc", "'abc'", "must be real numbers of shape (3,)"),
         ("complex", (1j, 0.0, 0.0), "1j", "must be real numbers of shape (3,)"),
         ("ragged", [(1.0, 2.0), 0.0, 0.0], "[(1.0, 2.0), 0.0, 0.0]", "must be real numbers of shape (3,)"),
+        ("masked", np.ma.array([1.0, 0.0, 0.0], mask=[False, True, False]), "masked", "must be real numbers of shape (3,)"),
+        ("objects", np.array([1.0, 0.0, 0.0], object), "array([1.0, 0.0, 0.0], dtype=object)", "must be real numbers of shape (3,)"),
     ]
 ]
+
+SPEED, SPIN = "must be finite, within 1,000 m/s of zero", "must be finite, within 100,000 rad/s of zero"
+SPEED_IMPACT, SPIN_IMPACT = "must be finite, within 1e+06 m/s of zero", "must be finite, within 1e+09 rad/s of zero"
+HUGE = [
+    *[
+        case(call(**{field: np.eye(3)[k] * wrong}), f"{field}[{k}]", repr(float(wrong)), allowed, f"{who}-{field}[{k}]={wrong:g}")
+        for call, who, fields in [(impact, "balls", ("v1", "w1", "v2", "w2")), (cushion, "cushion", ("v", "w"))]
+        for field in fields
+        for allowed, low in [(SPIN_IMPACT, 1e9) if field.startswith("w") else (SPEED_IMPACT, 1e6)]
+        for k in range(3)
+        for wrong in (np.nextafter(low, np.inf), -1.1 * low, 1e25, -1e200)
+    ],
+    *[
+        case(call(**{field: first(np.array([moved]))}), f"{field}[{at}{k}]", repr(moved[k]), allowed, f"{who}-{field}={moved[k]:g}")
+        for call, who, at, first in [
+            (shot, "shot", "0, ", lambda a: np.concatenate([a, 0 * a])),
+            (batch, "batch", "1, 0, ", lambda a: np.array([np.zeros((2, a.shape[1])), [*a, *(0 * a)], np.zeros((2, a.shape[1]))])),
+        ]
+        for field, allowed, moved, k in [
+            ("velocities", SPEED, (1e25, 0.0), 0), ("velocities", SPEED, (0.0, -1e200), 1), ("velocities", SPEED, (0.0, 1000.1), 1),
+            ("spins", SPIN, (0.0, 0.0, 1e25), 2), ("spins", SPIN, (-100_001.0, 0.0, 0.0), 0),
+        ]
+    ],
+    case(shot(positions=[(0.0, 0.0), (1e7, 0.0)], table=None), "positions[1, 0]", "10000000.0", "must be finite, within 1e+06 m of zero"),
+    case(shot(velocities=np.array([["1e4000", 0], [0, 0]], np.longdouble)), "velocities[0, 0]", "inf", "must be finite", "longdouble"),
+    case(shot(positions=np.broadcast_to((0.1, 0.1), (4097, 2)), velocities=np.zeros((4097, 2)), spins=np.zeros((4097, 3))),
+         "positions", "shape (4097, 2)", "at most 4096", "too many balls"),
+]  # fmt: skip
 
 NORMALS = [
     case(call(normal=normal), "normal", value, "must be a horizontal unit vector", f"{who}-{value}")
@@ -66,7 +96,8 @@ LAYOUTS = [
     case(shot(positions=put(0.0525 - 1.1e-6, 0.0)), "positions", "balls 0 and 1", "overlap by 1.1e-06 m, at most 1e-06 is allowed", "just"),
     case(shot(positions=put(1.5, 0.0)), "positions", "(1.5, 0.0)", "must be on the table, |x| <= 0.86275, |y| <= 1.75825"),
     case(shot(positions=put(0.0, -2.0)), "positions", "(0.0, -2.0)", "must be on the table"),
-    case(shot(positions=put(1e300, 0.3)), "positions", "(1e+300, 0.3)", "must be on the table"),
+    case(shot(positions=put(1e300, 0.3)), "positions[1, 0]", "1e+300", "must be finite, within 1e+06 m of zero"),
+    case(shot(positions=put(1e5, 0.3)), "positions", "(100000.0, 0.3)", "must be on the table"),
     case(shot(positions=put(0.87, 0.5)), "positions", "(0.87, 0.5)", "overlaps the cushion at x = 0.889"),
     case(shot(positions=put(-0.862752, 0.5)), "positions", "(-0.862752, 0.5)", "overlaps the cushion at x = -0.889"),
     case(shot(positions=put(0.2, 1.77)), "positions", "(0.2, 1.77)", "overlaps the cushion at y = 1.7845"),
@@ -113,19 +144,30 @@ LAYOUTS = [
         for call, who in [(shot, "shot"), (batch, "batch")]
         for name in ("mu_s", "mu_r")
     ],
+    *[
+        case(call(physics={name: wrong}), f"physics.{name}", repr(wrong), allowed, f"{who}-{name}={wrong}")
+        for call, who in [(shot, "shot"), (batch, "batch")]
+        for name, wrong, allowed in [
+            ("mu_s", 5e-324, "times g = 9.81 in [1e-06, 1e+06] m/s^2"),
+            ("mu_r", 1e-8, "times g = 9.81 in [1e-06, 1e+06] m/s^2"),
+            ("spin_decel", 5e-324, "must be 0 (a spin about the vertical stays) or at least 1e-06 rad/s^2"),
+        ]
+    ],
+    case(shot(physics={"g": 1e308}), "physics.mu_s", "0.21", "times g = 1e+308 in [1e-06, 1e+06]", "crushing weight"),
+    case(shot(physics={"g": 1e-300}), "physics.mu_s", "0.21", "times g = 1e-300 in [1e-06, 1e+06]", "no weight"),
 ]
 
 STRIKES = [
     *[
         case(strike(**{field: wrong}), field, repr(wrong), allowed, f"strike-{field}={wrong!r}")
         for field, allowed, wrongs in [
-            ("speed", "must be a finite number in [0, inf)", (-1.0, -1e-300, NAN, INF)),
+            ("speed", "must be a finite number in [0, 1000]", (-1.0, -1e-300, 1000.1, 1e25, 1e200, NAN, INF)),
             ("elevation", "must be a finite number in [0, 1.5]", (-0.01, 1.51, NAN, INF)),
             ("aim", "must be a finite number", (NAN, INF)),
             ("side", "must be a finite number", (NAN, -INF)),
             ("top", "must be a finite number", (NAN, INF)),
         ]
-        for wrong in (*wrongs, "1", None, True, [1.0, 2.0], 1j, b"1")
+        for wrong in (*wrongs, "1", None, True, [1.0, 2.0], 1j, b"1", np.array([2.0]), np.ma.masked, [[1.0], 2.0], {})
     ],
     case(strike(side=0.6), "(side, top)", "(0.6, 0.0)", "0.6 R is a miscue, must be within 0.5 R of the ball's centre", "miscue"),
     case(strike(side=-0.4, top=0.4), "(side, top)", "(-0.4, 0.4)", "miscue, must be within 0.5 R", "miscue of the pair"),
@@ -144,6 +186,8 @@ TIMES = [
     case(moved(t=NAN), "t[0]", "nan", "must be finite"),
     case(moved(t=[0.0, INF]), "t[1]", "inf", "must be finite"),
     case(moved(t=[[0.1]]), "t", "shape (1, 1)", "must have shape (n,)"),
+    case(moved(t=True), "t", "True", "must be real numbers of shape (n,)"),
+    case(moved(t=np.ma.array([0.1], mask=[True])), "t", "masked", "must be real numbers of shape (n,)"),
     case(moved(t="soon"), "t", "soon", "must be real numbers of shape (n,)"),
     case(moved(t=1j), "t", "1j", "must be real numbers of shape (n,)"),
 ]
@@ -162,7 +206,7 @@ DTYPES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("call", "field", "value", "allowed"), [*VECTORS, *NORMALS])
+@pytest.mark.parametrize(("call", "field", "value", "allowed"), [*VECTORS, *NORMALS, *HUGE])
 def test_wrong_vectors_of_an_impact(call, field, value, allowed):
     refused(call, field, value, allowed)
 

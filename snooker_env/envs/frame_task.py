@@ -8,7 +8,7 @@ the balls lie, without a free ball.
 from dataclasses import replace
 
 from .._check import choice
-from ..game.layouts import layout as make_layout
+from ..game.layouts import layout
 from . import observations
 from .frame_table import FrameTable
 from .opponents import opponent_of
@@ -28,14 +28,15 @@ class FrameTask:
         self.opponent_strokes = 0
         """Strokes that the opponent played in the last step (or before the first)."""
 
-    def start(self, layout, rng, watch):
-        """A new frame. Who breaks is drawn from ``rng`` (alone it is the agent); an opponent who breaks has played when this returns.
+    def start(self, plan, rng, watch):
+        """A new frame, its table dealt by a ``Plan``. Who breaks is drawn from ``rng`` (alone it is the agent); an opponent who breaks has
+        played when this returns.
 
         A frame that the opponent wins at its first visit is dealt again: each episode holds a stroke of the agent.
         """
         while True:
             breaker = AGENT if self.opponent is None else int(rng.integers(2))
-            self.table.start(*make_layout(layout, rng), breaker=breaker, in_hand=layout == "break_off")
+            self.table.start(*layout(plan, rng), breaker=breaker, in_hand=plan.in_hand)
             self._until_agent(rng, watch)
             if not self.table.over:
                 return

@@ -7,9 +7,9 @@ from gymnasium.utils import seeding
 from pettingzoo import AECEnv
 
 from .._check import choice, integer
-from ..game.layouts import layout as make_layout
-from ..game.layouts import plan_of
+from ..game.layouts import layout as deal
 from . import observations
+from .bed import fitted
 from .frame_table import FrameTable
 from .frame_task import frame_text
 from .pictures import FPS, MODES, Pictures
@@ -60,7 +60,7 @@ class MatchEnv(AECEnv):
     ):  # fmt: skip
         super().__init__()
         shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity)
-        plan_of(layout)  # an unknown name fails here and not in reset
+        self._plan = fitted(layout, shooter.table)
         self.layout, self.observation = layout, observation
         self.reward = FRAME_REWARDS[choice("reward", reward, FRAME_REWARDS)]
         self.max_strokes = None if max_strokes is None else integer("max_strokes", max_strokes, 1, 10**9)
@@ -97,7 +97,7 @@ class MatchEnv(AECEnv):
             self.set_state(options["state"])
         else:
             breaker = int(self.np_random.integers(2))
-            self.table.start(*make_layout(self.layout, self.np_random), breaker=breaker, in_hand=self.layout == "break_off")
+            self.table.start(*deal(self._plan, self.np_random), breaker=breaker, in_hand=self._plan.in_hand)
             self._begin()
         if self.render_mode == "human":
             self._show(film=False)

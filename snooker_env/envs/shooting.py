@@ -15,6 +15,7 @@ from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..simulation import play
 from .actions import AIMS, Actions, tip
+from .bed import bed_of
 from .choices import Choices
 from .noise import Noise
 
@@ -85,12 +86,11 @@ class Shooter:
 
 def shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action="box"):
     """The ``Shooter`` of an environment's arguments, each as documented in ``SnookerEnv``. Raises ValueError."""
-    world, cloth = Physics.of(physics), Table.of(table)
+    world = Physics.of(physics)
     if world.R != BALL_RADIUS:
         raise refuse("physics.R", world.R, f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it")
     world.check_stopping()
-    if cloth.name == "unbounded":
-        raise refuse("table", table, 'must be "match", "tight" or a Table')
+    cloth = bed_of(table)
     quality, errors = parse_fidelity(fidelity), Noise.of(noise)
     if choice("action", action, ACTIONS) == "discrete":
         for name, value in (("elevation", elevation), ("placement", placement), ("decision", decision)):

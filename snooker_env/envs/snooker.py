@@ -7,8 +7,8 @@ import numpy as np
 
 from .._check import choice, refuse
 from ..game.balls import REDS_MASK, BallOn, balls_on
-from ..game.layouts import plan_of
 from . import observations
+from .bed import fitted
 from .choices import Choices
 from .frame_task import FrameTask
 from .pictures import FPS, MODES, Pictures
@@ -97,7 +97,7 @@ class SnookerEnv(gymnasium.Env):
     | reward | "points" | see Rewards |
     | elevation, placement | False | longer actions |
     | physics | "paper" | "match", or a dict of overrides of ``snooker_env.Physics`` (not R) |
-    | table | "match" | or "tight" |
+    | table | "match" | or "tight", or a ``Table`` of your own whose noses are where theirs are |
     | fidelity | "standard" | "fast", "reference", "euler:N" |
     | render_mode | None | "human", "rgb_array", "ansi" |
 
@@ -126,9 +126,9 @@ class SnookerEnv(gymnasium.Env):
     ):  # fmt: skip
         whole = choice("task", task, TASKS) == "frame"
         layout = LAYOUTS[task] if isinstance(layout, str) and layout == "default" else layout
-        plan = plan_of(layout)
         self.layout, self.observation, self.reward = layout, observation, reward
         self.shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action)
+        self._plan = fitted(layout, self.shooter.table)
         self.actions, self.noise, self.physics = self.shooter.actions, self.shooter.noise, self.shooter.physics
         self.table, self.fidelity = self.shooter.table, self.shooter.fidelity
         self.action_space = self.actions.space
@@ -144,7 +144,7 @@ class SnookerEnv(gymnasium.Env):
             self.frames = FrameTask(self.shooter, opponent=opponent, miss=miss, reward=reward, observation=observation)
         else:
             visit_only(reward, opponent, miss, decision)
-            self.visits = Visits(Rules(self.shooter, plan, reward), 1)
+            self.visits = Visits(Rules(self.shooter, self._plan, reward), 1)
             self._work, self._seeded = Work(1, path=render_mode is not None), False
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
@@ -247,7 +247,7 @@ class SnookerEnv(gymnasium.Env):
     def _reset_frame(self, fresh):
         if fresh:
             self._unbegun = False
-            self.frames.start(self.layout, self.np_random, self._watch if self.render_mode is not None else None)
+            self.frames.start(self._plan, self.np_random, self._watch if self.render_mode is not None else None)
         return self.frames.observe(), self._frame_info(None)
 
     def step(self, action):

@@ -15,8 +15,8 @@ from gymnasium.vector.utils import batch_space
 
 from .._check import choice, integer, refuse, refuse_what
 from ..game.balls import BallOn
-from ..game.layouts import plan_of
 from . import observations
+from .bed import fitted
 from .choices import Choices
 from .pictures import Pictures
 from .shooting import shooter_of
@@ -66,8 +66,8 @@ class SnookerVectorEnv(VectorEnv):
         if render_mode is not None:
             choice("render_mode", render_mode, PICTURES)
         layout = LAYOUTS["visit"] if isinstance(layout, str) and layout == "default" else layout
-        plan = plan_of(layout)
         shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action)
+        plan = fitted(layout, shooter.table)
         visit_only(reward, opponent, miss, decision)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode, self.observation, self.shooter = render_mode, observation, shooter

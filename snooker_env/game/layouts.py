@@ -12,7 +12,7 @@ import numpy as np
 from .._check import refuse
 from .._jit import entry, kernel
 from .balls import BALL_RADIUS, BAULK_Y, CUE, D_RADIUS, GREEN, HALF_LENGTH, HALF_WIDTH, N_BALLS, N_REDS, POCKETS, REDS_MASK, SPOTS, YELLOW
-from .opened import HELD_OUT, NO_BANK, bank
+from .opened import NO_BANK, bank_without, kept
 from .pots import POT_COLUMNS, find_pots
 from .snookered import NO_JAWS, snookered_from
 from .stream import normals, pair, stream_of
@@ -171,6 +171,8 @@ class Plan:
     """Kind, number of reds, and two numbers: the first and last table of the bank, or the window of a pot."""
     tables: np.ndarray
     """The bank of opened tables, or none."""
+    unfit: tuple[int, ...] = ()
+    """The tables of the bank that others stand in for, as they do not fit the table played on."""
 
     @property
     def in_hand(self):
@@ -178,7 +180,7 @@ class Plan:
         return self.name == "break_off"
 
     def __reduce__(self):
-        return plan_of, (self.name,)
+        return plan_of, (self.name, self.unfit)
 
 
 _NAMES = {"break_off": (BREAK_OFF, N_REDS), "line_up": (LINE_UP, N_REDS), "colours": (COLOURS, 0), "snookered": (SNOOKERED, SNOOKERED_REDS)}
@@ -186,13 +188,17 @@ _COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = ("opened", "held_out", *_NAMES)
 
 
-def plan_of(name):
-    """The ``Plan`` of a layout: one of ``LAYOUTS``, ``"random:N"`` with N reds, or ``"pots:D"`` with D one of ``POT_WINDOWS``."""
+def plan_of(name, unfit=()):
+    """The ``Plan`` of a layout: one of ``LAYOUTS``, ``"random:N"`` with N reds, or ``"pots:D"`` with D one of ``POT_WINDOWS``.
+
+    ``unfit``: tables of the bank not to be dealt, a tuple of indices in order.
+    """
     head, _, which = name.partition(":") if isinstance(name, str) else ("", "", "")
     tables, code = NO_BANK, None
     if name in ("opened", "held_out"):
-        tables = bank()
-        code = (OPENED, N_REDS, *((0, len(tables) - HELD_OUT) if name == "opened" else (len(tables) - HELD_OUT, len(tables))))
+        tables = bank_without(unfit)
+        part = kept(len(tables))[name == "held_out"]
+        code = (OPENED, N_REDS, part.start, part.stop)
     elif isinstance(name, str) and name in _NAMES:
         code = (*_NAMES[name], 0, 0)
     elif head == "random" and which in _COUNTS:
@@ -203,15 +209,15 @@ def plan_of(name):
         known = ", ".join(map(repr, LAYOUTS))
         allowed = f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard" or "random:N" with N from 0 to {N_REDS}'
         raise refuse("layout", name, allowed)
-    return Plan(name, np.array(code, np.float64), tables)
+    return Plan(name, np.array(code, np.float64), tables, unfit if len(tables) else ())
 
 
-def layout(name, rng):
-    """A layout by its name (see ``plan_of``): ``positions`` (22, 2) [m] and ``on_table`` (22,) bool, fresh.
+def layout(plan, rng):
+    """A layout by its ``Plan`` or name (see ``plan_of``): ``positions`` (22, 2) [m] and ``on_table`` (22,) bool, fresh.
 
     ``rng``: a numpy Generator, of which one number is drawn: the key of the layout's stream.
     """
-    plan = plan_of(name)
+    plan = plan if isinstance(plan, Plan) else plan_of(plan)
     positions, on_table = np.empty((1, N_BALLS, 2)), np.empty((1, N_BALLS), np.bool_)
     deal_tables(np.ones(1, np.bool_), plan.code, plan.tables, stream_of(rng)[None], positions, on_table)
     return positions[0], on_table[0]

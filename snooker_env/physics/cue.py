@@ -4,6 +4,7 @@ from math import atan, cos, hypot, sin, sqrt
 
 from .._check import number, refuse
 from .._jit import entry, kernel
+from .parameters import FASTEST
 
 MAX_ELEVATION = 1.5
 """Highest elevation of the butt [rad]: just under the vertical."""
@@ -38,7 +39,7 @@ def _struck(speed, aim, side, top, elevation, R, end_mass_ratio):
 
 def strike(speed, aim, side, top, elevation, physics):
     """``struck`` from Python, with its input checked; see ``snooker_env.strike``."""
-    speed = number("speed", speed, 0)
+    speed = number("speed", speed, 0, FASTEST)
     aim = number("aim", aim)
     side, top = number("side", side), number("top", top)
     elevation = number("elevation", elevation, 0, MAX_ELEVATION)

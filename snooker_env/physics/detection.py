@@ -165,17 +165,20 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
         lo_x, hi_x = extent(x0, x1, motion[i, AX], best)
         lo_y, hi_y = extent(y0, y1, motion[i, AY], best)
         lo_x, hi_x, lo_y, hi_y = lo_x - _MARGIN, hi_x + _MARGIN, lo_y - _MARGIN, hi_y + _MARGIN
+    # one limit for all falls, then one for all jaws: what is found for one of them does not hang on which comes before it in the list
+    T = min(T, best)
     for k in range(falls.shape[0]):
         if _apart(lo_x, hi_x, lo_y, hi_y, falls[k, 0], falls[k, 1], falls[k, 2]):
             continue
-        s = distance_crossing(x0 - falls[k, 0], y0 - falls[k, 1], x1, y1, x2, y2, falls[k, 2], min(T, best))
+        s = distance_crossing(x0 - falls[k, 0], y0 - falls[k, 1], x1, y1, x2, y2, falls[k, 2], T)
         if s < best:
             best, kind, index = s, 3, k
+    T = min(T, best)
     for k in range(jaws.shape[0]):
         if _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, 0], jaws[k, 1], jaws[k, 2] + R):
             continue
         cx, cy = x0 - jaws[k, 0], y0 - jaws[k, 1]
-        s = distance_crossing(cx, cy, x1, y1, x2, y2, jaws[k, 2] + R, min(T, best))
+        s = distance_crossing(cx, cy, x1, y1, x2, y2, jaws[k, 2] + R, T)
         if s < best:
             dx, dy = cx + (x1 + x2 * s) * s, cy + (y1 + y2 * s) * s
             d = sqrt(dx * dx + dy * dy)

@@ -14,6 +14,17 @@ from .._check import choice, number, refuse
 MARLOW = (9.951e-3, 0.108, 1.088)
 """Marlow's law of ball-ball friction, mu(s) = a + b exp(-c s), s the slip speed in m/s."""
 
+FASTEST = 1000.0
+"""No ball of a shot and no cue may be given a velocity with a component beyond this [m/s]; the hardest strokes reach some 15 m/s.
+Measured: all invariants of a shot hold to 10,000 m/s; at 100,000 m/s rounding (1e-16 of the speed) is above what counts as rest, and
+shots do not end."""
+MOST_SPIN = 1e5
+"""No ball of a shot may be given a spin with a component beyond this [rad/s]: what a strike at ``FASTEST`` can give a ball of snooker's
+size. Measured: shots are right to 1e6 rad/s and do not end at 1e7."""
+FASTEST_IMPACT, MOST_SPIN_IMPACT = 1e6, 1e9
+"""The same for one impact alone, whose outcome scales with its speeds (up to the laws that name a speed) and is right far beyond."""
+_LEAST_DECELERATION, _MOST_DECELERATION = 1e-6, 1e6
+
 # Places in the packed vector. They are indices, not tunables: freezing them into a kernel is safe.
 (P_R, P_M, P_G, P_MU_S, P_MU_R, P_SPIN, P_E_B, P_MU_A, P_MU_B, P_MU_C, P_E_C, P_E_KNEE, P_E_SLOPE, P_MU_W, P_SIN) = range(15)
 
@@ -26,12 +37,13 @@ class Physics:
 
     Fields:
 
-    * R: Ball radius [m], in (0, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3].
+    * R: Ball radius [m], in [0.001, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3].
     * M: Ball mass [kg], > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal.
     * g: Gravity [m/s^2], > 0.
     * mu_s: Sliding friction ball-cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
     * mu_r: Rolling resistance, deceleration over g, in [0, 1] (measured 0.124 to 0.126 m/s^2).
-    * spin_decel: Decay of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21].
+    * spin_decel: Decay of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21]. With 0 nothing ends such
+      a spin: a shot ends when no ball moves across the table, and what spin is left then stays.
     * e_b: Energetic restitution ball-ball, in [0, 1] [MJP14 2.4.2].
     * mu_bb: Ball-ball friction: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) for mu(s) = a + b exp(-c s), s in m/s.
     * e_c: Energetic restitution ball-cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
@@ -61,12 +73,12 @@ class Physics:
 
     def __post_init__(self):
         low_high = {
-            "R": (0, 1), "M": (0, np.inf), "g": (0, np.inf), "mu_s": (0, 1), "mu_r": (0, 1), "spin_decel": (0, np.inf),
+            "R": (1e-3, 1), "M": (0, np.inf), "g": (0, np.inf), "mu_s": (0, 1), "mu_r": (0, 1), "spin_decel": (0, np.inf),
             "e_b": (0, 1), "e_c": (0, 1), "e_c_knee": (0, np.inf), "e_c_slope": (0, np.inf), "mu_c": (0, 1),
             "sin_theta": (0, 0.95), "end_mass_ratio": (0, np.inf), "max_offset": (0, 0.999),
         }  # fmt: skip
         for field, (low, high) in low_high.items():
-            open_low = field in ("R", "M", "g", "max_offset")
+            open_low = field in ("M", "g", "max_offset")
             object.__setattr__(self, field, number(f"physics.{field}", getattr(self, field), low, high, open_low=open_low))
         object.__setattr__(self, "mu_bb", _mu_bb(self.mu_bb))
 
@@ -100,10 +112,15 @@ class Physics:
         return cls(**{**base, **fields})
 
     def check_stopping(self):
-        """Raise ValueError if balls in this world would never come to rest."""
+        """Raise ValueError if balls in this world would never come to rest, or stop in no time."""
         for name in ("mu_s", "mu_r"):
-            if getattr(self, name) <= 0:
-                raise refuse(f"physics.{name}", getattr(self, name), "must be > 0 to simulate a shot: without it no ball comes to rest")
+            if not _LEAST_DECELERATION <= getattr(self, name) * self.g <= _MOST_DECELERATION:
+                bounds = f"times g = {self.g:g} in [{_LEAST_DECELERATION:g}, {_MOST_DECELERATION:g}] m/s^2"
+                allowed = f"must be > 0 to simulate a shot, {bounds}: without it no ball comes to rest"
+                raise refuse(f"physics.{name}", getattr(self, name), allowed)
+        if 0 < self.spin_decel < _LEAST_DECELERATION:
+            allowed = f"must be 0 (a spin about the vertical stays) or at least {_LEAST_DECELERATION:g} rad/s^2 to simulate a shot"
+            raise refuse("physics.spin_decel", self.spin_decel, allowed)
 
     @property
     def friction_law(self):

@@ -5,7 +5,7 @@ monotone, so the first piece that starts above zero and ends at or below it hold
 inside the bracket. A crossing of even order that only touches zero from above is no crossing.
 """
 
-from math import copysign, inf, sqrt
+from math import inf, sqrt
 
 from .._jit import kernel
 
@@ -18,7 +18,8 @@ def _quadratic_roots(a, b, c):
     disc = b * b - 4.0 * a * c
     if disc < 0.0:
         return inf, inf
-    q = -0.5 * (b + copysign(sqrt(disc), b))
+    root = sqrt(disc)
+    q = -0.5 * (b + (root if b >= 0.0 else -root))  # by b's value, not its sign bit: -0.0 and 0.0 give the same bits
     first = q / a
     second = c / q if q != 0.0 else first
     return (first, second) if first <= second else (second, first)

@@ -7,7 +7,7 @@ crosses the fall before it could touch one.
 """
 
 from dataclasses import dataclass, field
-from math import hypot, sqrt
+from math import hypot, inf, sqrt
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from .._check import array, choice, refuse, refuse_what
 from .._jit import entry
 
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
+BALL_RADIUS = 0.02625
+"""The ball [m] that the presets' cushions and pockets are made for."""
 MOUTH = 0.012
 """How far past the line of the noses [m] a ball may lie still: just so far between the jaw and the fall of a middle pocket."""
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
@@ -33,7 +35,10 @@ OVERLAP_ALLOWED = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A table's shape. ``Table.preset("match")`` or ``"tight"`` (narrower corner pockets)."""
+    """A table's shape. ``Table.preset("match")`` or ``"tight"`` (narrower corner pockets), or one of your own from the arrays below.
+
+    A preset is the one object of its name, also after pickling and copying; a table of your own stays what it is whatever it is called.
+    """
 
     name: str
     noses: np.ndarray
@@ -44,13 +49,18 @@ class Table:
     falls: np.ndarray
     """(k, 3) falls: centre x, y, radius [m]; a ball drops when its centre crosses the circle. Index = pocket, see ``POCKETS``."""
     _narrowest: tuple[float, int, int] = field(init=False, repr=False)
+    _bed: np.ndarray = field(init=False, repr=False)
 
     def __post_init__(self):
+        if not isinstance(self.name, str):
+            raise refuse("table.name", self.name, "must be a str")
         for name, columns in (("noses", 5), ("jaws", 6), ("falls", 3)):
             a = array(f"table.{name}", getattr(self, name), (-1, columns))
             a.setflags(write=False)
             object.__setattr__(self, name, a)
+        _check_shapes(self.noses, self.jaws, self.falls)
         object.__setattr__(self, "_narrowest", _narrowest(self.noses))
+        object.__setattr__(self, "_bed", _bed(self.noses))
 
     @classmethod
     def preset(cls, name="match"):
@@ -68,18 +78,33 @@ class Table:
             return cls.preset(table)
         raise refuse("table", table, 'must be "match", "tight", a Table, or None for unbounded cloth')
 
-    def __reduce__(self):
-        return (Table._rebuild, (self.name, self.noses, self.jaws, self.falls))
+    @property
+    def is_preset(self):
+        """Is this the preset of its name, and no table of somebody's own that is called so?"""
+        return _PRESETS.get(self.name) is self
 
-    @classmethod
-    def _rebuild(cls, name, noses, jaws, falls):
-        return _PRESETS[name] if name in _PRESETS else cls(name, noses, jaws, falls)
+    def __reduce__(self):
+        if self.is_preset:
+            return Table.preset, (self.name,)
+        return (Table.of, (None,)) if self is UNBOUNDED else (Table, (self.name, self.noses, self.jaws, self.falls))
+
+    def unfit(self, positions, R):
+        """Which of the layouts (b, n, 2), all balls on the table, are not sound here: their indices, in order."""
+        here, found, first = np.ones(positions.shape[:2], bool), [], 0
+        while True:
+            k, _, fault, _ = _first_fault(positions[first:], here[first:], self._bed, self.noses, self.jaws, self.falls, float(R))
+            if fault == _SOUND:
+                return found
+            first += k + 1
+            found.append(first - 1)
 
     def check(self, positions, R, field="positions", on_table=None):
         """Raise ValueError unless every layout is sound: no ball off the table, in a cushion, jaw or other ball, or over a pocket.
 
         positions (n, 2) or, of many tables at once, (b, n, 2); on_table (n,) or (b, n) bool: balls that do not count are False.
         """
+        if self.is_preset and abs(R - BALL_RADIUS) > 1e-9:
+            raise refuse("physics.R", R, f'must be {BALL_RADIUS} on table "{self.name}", which is made for it; give a Table of your own')
         positions = np.asarray(positions, float)
         many = positions.ndim == 3
         places = positions if many else positions[None]
@@ -88,13 +113,14 @@ class Table:
         if width - 2 * R < PLAY:  # it would bounce between them without end in no time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
             raise refuse_what("table.noses", f"{pair[0]} and {pair[1]}", what)
-        k, i, fault, j = _first_fault(places, here, self.noses, self.jaws, self.falls, float(R))
+        k, i, fault, j = _first_fault(places, here, self._bed, self.noses, self.jaws, self.falls, float(R))
         if fault == _SOUND:
             return
         field = f"{field}[{k}]" if many else field
         place = f"{field}[{i}]", (float(places[k, i, 0]), float(places[k, i, 1]))
         if fault == _OFF:
-            raise refuse(*place, f"must be on the table, |x| <= {HALF_WIDTH - R:.6g}, |y| <= {HALF_LENGTH - R:.6g} away from pockets")
+            ranges = [_range(name, low + R, high - R) for name, (low, high) in zip("xy", self._bed.tolist(), strict=True)]
+            raise refuse(*place, f"must be on the table, {', '.join(filter(None, ranges))} away from pockets")
         if fault == _IN_NOSE:
             axis, side, level = self.noses[j, :3]
             raise refuse(*place, f"overlaps the cushion at {'xy'[int(axis)]} = {side * level:g}")
@@ -104,6 +130,37 @@ class Table:
             raise refuse(*place, f"overlaps jaw {j} at ({self.jaws[j, 0]:.4f}, {self.jaws[j, 1]:.4f})")
         depth = 2 * R - float(hypot(*(places[k, i] - places[k, j])))
         raise refuse_what(field, f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
+
+
+def _check_shapes(noses, jaws, falls):
+    """Raise ValueError for a nose, jaw or fall that no kernel could make sense of."""
+    for k, (axis, side, _, low, high) in enumerate(noses.tolist()):
+        if axis not in (0, 1) or side not in (-1, 1) or not low <= high:
+            raise refuse(f"table.noses[{k}]", tuple(noses[k].tolist()), "must be axis 0 or 1, side -1 or 1, level, and lo <= hi")
+    for k, (_, _, radius, ux, uy, cos_half) in enumerate(jaws.tolist()):
+        if radius < 0 or abs(hypot(ux, uy) - 1.0) > 1e-6 or abs(cos_half) > 1:
+            allowed = "must be x, y, radius >= 0, a unit vector (to 1e-6), and a cosine"
+            raise refuse(f"table.jaws[{k}]", tuple(jaws[k].tolist()), allowed)
+    for k, radius in enumerate(falls[:, 2].tolist()):
+        if radius <= 0:
+            raise refuse(f"table.falls[{k}]", tuple(falls[k].tolist()), "must be x, y, and a radius > 0")
+
+
+def _bed(noses):
+    """Between which lines the balls lie: (2, 2), of x and y the levels of the outermost noses, infinite where there is none."""
+    bed = np.full((2, 2), inf)
+    for axis in (0, 1):
+        for end, side in enumerate((-1, 1)):
+            levels = noses[(noses[:, 0] == axis) & (noses[:, 1] == side), 2]
+            bed[axis, end] = side * max(levels, default=inf)
+    return bed
+
+
+def _range(name, low, high):
+    """A range in words; None of one without ends."""
+    if low == -inf and high == inf:
+        return None
+    return f"|{name}| <= {high:.6g}" if low == -high else f"{low:.6g} <= {name} <= {high:.6g}"
 
 
 def _narrowest(noses):
@@ -120,14 +177,14 @@ _SOUND, _OFF, _IN_NOSE, _OVER_POCKET, _IN_JAW, _IN_BALL = range(6)
 
 
 @entry
-def _first_fault(positions, on_table, noses, jaws, falls, R):
+def _first_fault(positions, on_table, bed, noses, jaws, falls, R):
     """The first unsound place of positions (b, n, 2): table, ball, what is wrong, and with which nose, fall, jaw or ball."""
     for k in range(positions.shape[0]):
         for i in range(positions.shape[1]):
             if not on_table[k, i]:
                 continue
             x, y = positions[k, i, 0], positions[k, i, 1]
-            if noses.shape[0] > 0 and not (abs(x) < HALF_WIDTH + MOUTH and abs(y) < HALF_LENGTH + MOUTH):
+            if not (bed[0, 0] - MOUTH < x < bed[0, 1] + MOUTH and bed[1, 0] - MOUTH < y < bed[1, 1] + MOUTH):
                 return k, i, _OFF, -1
             for j in range(noses.shape[0]):
                 along, across = (y, x) if noses[j, 0] == 0.0 else (x, y)

@@ -1,0 +1,68 @@
+"""Do the layouts fit a table? Snooker-v0 deals balls on snooker's bed: a table of one's own must have that bed, with any pockets."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from .._check import refuse
+from ..game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ..game.layouts import Plan, plan_of
+from ..game.opened import bank
+from ..physics.table import UNBOUNDED, Table
+
+ROUNDING = 1e-9
+"""Noses, jaws and falls may be off by this [m]."""
+
+
+def bed_of(table):
+    """The ``Table`` of an environment's argument. Raises ValueError unless every place that a layout may deal is free on it.
+
+    Spots, rack, D, sprinkled balls and respotted ones all lie where a ball's centre is between the noses, |x| <= 0.86275 and
+    |y| <= 1.75825. So the noses must be where snooker's are, and no jaw or fall may reach a ball there. Only the opened tables hold balls
+    in the mouths of pockets: see ``fitted``.
+    """
+    cloth = Table.of(table)
+    if cloth is UNBOUNDED:
+        raise refuse("table", table, 'must be "match", "tight" or a Table')
+    if not cloth.is_preset:
+        _check_noses(cloth)
+        _check_pockets(cloth)
+    return cloth
+
+
+def _check_noses(cloth):
+    for axis, half in enumerate((HALF_WIDTH, HALF_LENGTH)):
+        for side in (-1, 1):
+            levels = cloth.noses[(cloth.noses[:, 0] == axis) & (cloth.noses[:, 1] == side), 2]
+            if not len(levels) or np.abs(levels - half).max() > ROUNDING:
+                at = f"{'xy'[axis]} = {side * half:g}"
+                found = ", ".join(f"{side * level:g}" for level in levels) or "none"
+                allowed = f"must have its noses at {at} in Snooker-v0, whose layouts are made for that bed (found {found})"
+                raise refuse("table", cloth.name, allowed)
+
+
+def _check_pockets(cloth):
+    room = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS
+    for name, circles, reach in (("jaws", cloth.jaws, cloth.jaws[:, 2] + BALL_RADIUS), ("falls", cloth.falls, cloth.falls[:, 2])):
+        inside = reach - np.hypot(*np.maximum(np.abs(circles[:, :2]) - room, 0.0).T)
+        if len(inside) and inside.max() > ROUNDING:
+            k = int(inside.argmax())
+            allowed = (
+                f"must leave a ball's centre free in |x| <= {room[0]:g}, |y| <= {room[1]:g} in Snooker-v0, whose layouts put balls there: "
+                f"{name}[{k}], its whole circle, reaches {inside[k]:.3g} m into that"
+            )
+            raise refuse("table", cloth.name, allowed)
+
+
+def fitted(layout, cloth) -> Plan:
+    """The ``Plan`` of a layout on a table that ``bed_of`` has passed: without the opened tables that do not fit its pockets."""
+    plan = plan_of(layout)
+    return plan_of(layout, _unfit(cloth)) if len(plan.tables) else plan
+
+
+@lru_cache(8)
+def _unfit(cloth):
+    """Which tables of the bank have a ball, dealt as they are or mirrored, in a jaw or over a fall."""
+    if cloth is Table.preset("match"):
+        return ()  # the bank was played on it
+    return tuple(sorted({*cloth.unfit(bank(), BALL_RADIUS), *cloth.unfit(bank() * (-1.0, 1.0), BALL_RADIUS)}))

@@ -1,0 +1,147 @@
+"""Is no ball ever dealt into a cushion, a jaw or a pocket? The layouts on the presets, on tables of one's own, and tables refused."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env import Table
+from snooker_env.envs.bed import fitted
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.game.balls import BALL_RADIUS
+from snooker_env.game.layouts import LAYOUTS, deal_tables
+from snooker_env.game.opened import bank, kept
+from tests.refusals import case, refused
+
+MATCH = Table.preset("match")
+EVERY = (*LAYOUTS, "random:0", "random:15", "pots:easy", "pots:medium", "pots:hard")
+NONE = {"jaws": np.zeros((0, 6)), "falls": np.zeros((0, 3))}
+
+
+def changed(name="mine", noses=None, jaws=None, falls=None):
+    """The match table with some of its parts changed, each by a function of it."""
+    parts = {"noses": noses, "jaws": jaws, "falls": falls}
+    made = {part: getattr(MATCH, part) if change is None else change(np.array(getattr(MATCH, part))) for part, change in parts.items()}
+    return Table(name, **made)
+
+
+def scaled(columns, factor):
+    def change(rows):
+        rows[:, columns] *= factor
+        return rows
+
+    return change
+
+
+def put(row, column, value):
+    def change(rows):
+        rows[row, column] = value
+        return rows
+
+    return change
+
+
+def walls(half_width, half_length):
+    """Noses on four sides, without a gap."""
+    x, y = half_width, half_length
+    return np.array([(0, -1, x, -9, 9), (0, 1, x, -9, 9), (1, -1, y, -9, 9), (1, 1, y, -9, 9)])
+
+
+FIT = {
+    "match": MATCH,
+    "tight": Table.preset("tight"),
+    "same as match": changed("match"),
+    "no jaws": changed(jaws=lambda rows: rows[:0]),
+    "no pockets": Table("mine", walls(0.889, 1.7845), **NONE),
+    "corner falls a little larger": changed(falls=scaled([2], 1.1)),
+    "sharp jaws": changed(jaws=lambda rows: np.column_stack([rows[:, :2], 0.02 + 0 * rows[:, 2:3], rows[:, 3:]])),
+    "jaws of tight": changed(jaws=lambda rows: Table.preset("tight").jaws),
+}
+
+
+def test_some_opened_tables_do_not_fit_other_pockets():
+    """... so that the tests below see what they are for: the bank was played on the match table, where balls came to rest in the mouths."""
+    assert 3 < len(fitted("opened", Table.preset("tight")).unfit) < 100 and fitted("opened", MATCH).unfit == ()
+
+
+@pytest.mark.parametrize("layout", EVERY)
+@pytest.mark.parametrize("name", FIT)
+def test_every_layout_fits_every_table_that_is_accepted(name, layout):
+    env = SnookerVectorEnv(256, table=FIT[name], layout=layout)
+    env.reset(seed=11)
+    FIT[name].check(env.visits.positions, BALL_RADIUS, "positions", env.visits.on_table)
+
+
+@pytest.mark.parametrize("name", ["match", "tight", "sharp jaws"])
+def test_every_opened_table_that_can_be_dealt_fits(name):
+    """All of the bank, as it is and mirrored."""
+    for layout in ("opened", "held_out"):
+        tables = fitted(layout, FIT[name]).tables
+        assert not FIT[name].unfit(tables, BALL_RADIUS) and not FIT[name].unfit(tables * (-1, 1), BALL_RADIUS)
+
+
+def test_others_stand_in_for_the_opened_tables_that_do_not_fit_and_no_other_deal_changes():
+    plan = fitted("opened", Table.preset("tight"))
+    differ = np.flatnonzero((plan.tables != bank()).any((1, 2)))
+    assert set(differ) <= set(plan.unfit) and len(differ) >= len(plan.unfit) - 1
+    for part in kept(len(bank())):
+        for k in set(differ) & set(part):
+            assert any(np.array_equal(plan.tables[k], bank()[j]) for j in part)
+    streams = np.arange(8000, dtype=np.uint64).reshape(-1, 2)
+    dealt = []
+    for each in (plan, fitted("opened", MATCH)):
+        positions, on_table = np.zeros((len(streams), 22, 2)), np.zeros((len(streams), 22), bool)
+        deal_tables(np.ones(len(streams), bool), each.code, each.tables, streams.copy(), positions, on_table)
+        dealt.append(positions)
+    other = (dealt[0] != dealt[1]).any((1, 2))
+    assert 0 < other.sum() < 40
+    for copied in (copy.deepcopy(plan), pickle.loads(pickle.dumps(plan))):
+        assert copied.unfit == plan.unfit and np.array_equal(copied.tables, plan.tables)
+
+
+def test_the_tables_that_did_not_fit_can_be_dealt_in_frames_and_matches_too():
+    """What an environment deals, it takes back as a state."""
+    for task in ("visit", "frame"):
+        env = SnookerEnv(task=task, layout="opened", table="tight")
+        env.reset(seed=1)
+        env.set_state(env.get_state())
+        assert env._plan.unfit
+    assert sn.match_env(table="tight", layout="opened").unwrapped._plan.unfit  # pyright: ignore[reportAttributeAccessIssue]
+
+
+NOSES = "in Snooker-v0, whose layouts are made for that bed"
+ROOM = "must leave a ball's centre free in |x| <= 0.86275, |y| <= 1.75825 in Snooker-v0, whose layouts put balls there"
+REFUSED = [
+    ("narrower", Table("mine", walls(0.7, 1.7845), **NONE), "'mine'", f"must have its noses at x = -0.889 {NOSES} (found -0.7)"),
+    ("wider", Table("mine", walls(1.067, 1.7845), **NONE), "'mine'", f"must have its noses at x = -0.889 {NOSES} (found -1.067)"),
+    ("longer", Table("mine", walls(0.889, 2.0), **NONE), "'mine'", f"must have its noses at y = -1.7845 {NOSES} (found -2)"),
+    ("shorter", Table("match", walls(0.889, 1.7), **NONE), "'match'", f"must have its noses at y = -1.7845 {NOSES} (found -1.7)"),
+    ("one nose inside", changed(noses=put(3, 2, 0.8)), "'mine'", f"must have its noses at x = 0.889 {NOSES} (found 0.889, 0.8)"),
+    ("three sides", changed(noses=lambda rows: rows[:5]), "'mine'", f"must have its noses at y = 1.7845 {NOSES} (found none)"),
+    ("no noses", Table("unbounded", np.zeros((0, 5)), **NONE), "'unbounded'", f"must have its noses at x = -0.889 {NOSES} (found none)"),
+    ("a jaw on the bed", changed(jaws=put(5, 0, 0.8)), "'mine'", f"{ROOM}: jaws[5], its whole circle, reaches"),
+    ("a peg on the blue spot", changed(jaws=lambda rows: np.vstack([rows, (0, 0, 0.01, 1, 0, -1)])), "'mine'", ROOM),
+    ("a hole on the bed", changed(falls=lambda rows: np.vstack([rows, (0.3, 0.2, 0.05)])), "'mine'", f"{ROOM}: falls[6]"),
+    ("a middle pocket too far in", changed(falls=put(2, 0, 0.9)), "'mine'", f"{ROOM}: falls[2]"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("make", [SnookerEnv, lambda **how: SnookerVectorEnv(2, **how), lambda **how: sn.match_env(**how)])
+@pytest.mark.parametrize(("call", "field", "value", "allowed"), [case(t, "table", v, a, name) for name, t, v, a in REFUSED])
+def test_a_table_that_the_layouts_do_not_fit_is_refused_by_name(make, call, field, value, allowed):
+    refused(lambda: make(table=call), field, value, allowed)
+
+
+def test_shots_on_a_table_of_ones_own_are_played_on_it():
+    """A copy of the match table gives the same rewards and places as the preset, one without pockets none."""
+    ends = []
+    for table in ("match", changed("unbounded"), FIT["no pockets"]):
+        env = SnookerVectorEnv(64, table=table, layout="random:10")
+        env.reset(seed=3)
+        rewards = env.step(np.random.default_rng(0).uniform(-1, 1, (64, 4)).astype(np.float32))[1]
+        ends.append((rewards, env.visits.positions.copy()))
+    assert np.array_equal(ends[0][0], ends[1][0]) and np.array_equal(ends[0][1], ends[1][1])
+    assert not np.array_equal(ends[0][1], ends[2][1])
