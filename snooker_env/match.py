@@ -3,12 +3,13 @@
 
 def match_env(
     *, layout="break_off", aim="absolute", observation="flat", noise="none", reward="points", elevation=False, placement=True,
-    decision=True, miss="off", physics="paper", table="match", fidelity="standard", max_strokes=None, render_mode=None,
+    decision=True, miss="off", physics="paper", table="match", fidelity="standard", max_strokes=1000, render_mode=None,
 ):  # fmt: skip
     """A frame of snooker between "player_0" and "player_1": a PettingZoo AEC environment (``snooker_env.envs.match.MatchEnv``).
 
     The arguments are those of ``Snooker-v0`` with ``task="frame"``; placement in the D and the decision after a foul are part of the action
-    unless switched off. max_strokes: truncate after so many strokes of both players together, None for never.
+    unless switched off. max_strokes: the referee stops the frame, both players are truncated, after so many strokes of both together; None
+    for never.
 
     Raises ImportError without PettingZoo, ValueError on a bad argument.
     """
@@ -17,7 +18,9 @@ def match_env(
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] != "pettingzoo":
             raise
-        raise ImportError('match_env needs PettingZoo; install it with: pip install "snooker-env[multi]"') from error
+        raise ImportError(
+            'match_env needs PettingZoo; install it, in a clone of the repository, with: pip install -e ".[multi]"'
+        ) from error
     return MatchEnv(
         layout=layout, aim=aim, observation=observation, noise=noise, reward=reward, elevation=elevation, placement=placement,
         decision=decision, miss=miss, physics=physics, table=table, fidelity=fidelity, max_strokes=max_strokes, render_mode=render_mode,

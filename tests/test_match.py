@@ -207,4 +207,4 @@ def test_pettingzoo_is_loaded_only_when_asked_for_and_its_lack_is_explained():
         "except ImportError as error: print(error)\n"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=120)
-    assert done.stdout.strip() == 'match_env needs PettingZoo; install it with: pip install "snooker-env[multi]"'
+    assert done.stdout.strip() == 'match_env needs PettingZoo; install it, in a clone of the repository, with: pip install -e ".[multi]"'
