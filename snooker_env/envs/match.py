@@ -55,7 +55,8 @@ class MatchEnv(AECEnv):
     ## States
     ``get_state`` and ``set_state`` save and restore everything as JSON types; ``reset(options={"state": ...})`` starts from a state. It
     holds the random numbers too, so that playing on from it again repeats the errors of ``noise``. With a seed, ``reset(seed=...,
-    options={"state": ...})``, table and frame are those of the state and the random numbers those of the seed.
+    options={"state": ...})``, table and frame are those of the state and the random numbers those of the seed. From a state of a frame that
+    has ended both players are terminated, or truncated, at once.
     """
 
     metadata = {"name": "snooker_match_v0", "render_modes": list(MODES), "is_parallelizable": False, "render_fps": FPS}  # noqa: RUF012
@@ -104,7 +105,7 @@ class MatchEnv(AECEnv):
             raise refuse("options", options, 'must be None or {"state": ...}')
         given = None
         if options and "state" in options:
-            given = self.table.checked(options["state"], self.np_random, to_play=True)
+            given = self.table.checked(options["state"], self.np_random)
         if seed is not None:
             self.np_random, _ = seeding.np_random(seed)
         if given is not None:
