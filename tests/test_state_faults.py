@@ -185,7 +185,7 @@ def changed(state, **parts):
         *way, last = path.split("__")
         part = state
         for key in way:
-            part = part[key]
+            part = part[int(key) if key.isdigit() else key]
         part[int(last) if last.isdigit() else last] = value
     return state
 
@@ -279,6 +279,13 @@ def test_the_highest_break_is_within_the_observation_space():
         highest, more = (state | {"ball_on": int(ball_on), "points": points} for points in (most, most + 1))
         env.reset(options={"state": highest})
         refused(partial(env.set_state, more), "state.points", str(most + 1), f"must be at most {most}")
+
+
+def test_a_ball_off_the_table_is_not_endlessly_far_away():
+    env = SnookerEnv(layout="random:3")
+    env.reset(seed=1)
+    state = plain(env.get_state())
+    refused(lambda: env.set_state(changed(state, positions__9__1=1e300)), "state.positions[9]", "1e+300", "must be within 1000 m")
 
 
 def test_a_state_with_nothing_left_to_play_is_for_looking_only(frame_states):
