@@ -159,7 +159,8 @@ def stale(path):
 
 def load_model(state, algo, envs):
     """The agent of a checkpoint, its tables and random generators as they were."""
-    model = algorithm(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu")
+    model = algorithm(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu", seed=None)  # it would seed the tables anew
+    model.seed = state["settings"]["seed"]
     if state["replay"] is not None:
         model.replay_buffer = state["replay"]
     numpy_state, torch_state, model.action_space = state["random"]

@@ -3,12 +3,13 @@
 
 def match_env(
     *, layout="break_off", aim="absolute", observation="flat", noise="none", reward="points", elevation=False, placement=True,
-    decision=True, miss="off", physics="paper", table="match", fidelity="standard", max_strokes=None, render_mode=None,
+    decision=True, miss="off", physics="paper", table="match", fidelity="standard", max_strokes=1000, render_mode=None,
 ):  # fmt: skip
     """A frame of snooker between "player_0" and "player_1": a PettingZoo AEC environment (``snooker_env.envs.match.MatchEnv``).
 
     The arguments are those of ``Snooker-v0`` with ``task="frame"``; placement in the D and the decision after a foul are part of the action
-    unless switched off. max_strokes: truncate after so many strokes of both players together, None for never.
+    unless switched off. max_strokes: the referee stops the frame, both players are truncated, after so many strokes of both together; None
+    for never.
 
     Raises ImportError without PettingZoo, ValueError on a bad argument.
     """

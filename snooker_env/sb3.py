@@ -35,7 +35,10 @@ class SnookerVecEnv(VecEnv):
         self._start = time.time()
 
     def reset(self):
-        """New visits on all tables, with the seeds and options set before."""
+        """New visits on all tables, with the seeds and options set before: ``set_options([{"state": ...}, ...])`` starts from states.
+
+        These hold their random numbers; with ``seed`` called too, those of the seeds take their place.
+        """
         options = None
         if any(self._options):
             if not all(set(own) == {"state"} for own in self._options):

@@ -48,6 +48,8 @@ ENV = [
     case(make(task="frame", opponent="missing.zip"), "opponent", "'missing.zip'", "must be a model saved by Stable-Baselines3"),
     *[case(make(task="frame", miss=w), "miss", repr(w), "must be one of 'off', 'clear_path'", f"miss={w!r}") for w in ("on", None, True)],
     *[case(make(task="frame", reward=w), "reward", repr(w), "must be one of 'points', 'win'") for w in ("pots", "wins")],
+    *[case(make(task="frame", max_strokes=w), "max_strokes", repr(w), "must be an integer in [1,", f"strokes={w}") for w in (0, "9", True)],
+    case(make(max_strokes=None), "max_strokes", "None", 'must be 1000 with task="visit"', "visit-max_strokes"),
     case(make(reward="win"), "reward", "'win'", "must be one of 'points', 'points_and_fouls', 'pots'", "visit-win"),
     case(make(table="loose"), "table", "'loose'", "must be one of 'match', 'tight'", "env-table"),
     case(make(table=3), "table", "3", '"match", "tight"', "env-table=3"),

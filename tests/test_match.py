@@ -163,7 +163,8 @@ def test_each_player_sees_his_own_side():
 
 def test_a_saved_match_plays_on_bit_for_bit():
     env = sn.match_env(aim="target", noise="club", miss="clear_path")
-    list(random_play(env, 2, 40))
+    list(random_play(env, 2, 10))
+    assert not any(env.terminations.values())
     other, text = sn.match_env(aim="target", noise="club", miss="clear_path"), json.dumps(env.get_state())
     other.reset(options={"state": json.loads(text)})
     for k in range(30):
@@ -173,6 +174,33 @@ def test_a_saved_match_plays_on_bit_for_bit():
         env.step(action), other.step(action)
         assert json.dumps(env.get_state()) == json.dumps(other.get_state()) and env.agent_selection == other.agent_selection
         assert env.rewards == other.rewards
+
+
+@pytest.mark.parametrize(("limit", "why"), [(1000, "terminations"), (1, "truncations")])
+def test_a_state_of_a_frame_that_has_ended_ends_at_once(limit, why):
+    env, other = (sn.match_env(aim="target", layout="random:1", max_strokes=limit) for _ in range(2))
+    for _ in random_play(env, 1, 1000):
+        if any(env.truncations.values()):
+            break
+    other.reset(options={"state": json.loads(json.dumps(env.get_state()))})
+    assert getattr(env, why) == getattr(other, why) == {"player_0": True, "player_1": True}
+    assert other.observe("player_0").tobytes() == env.observe("player_0").tobytes()
+    for player in other.agent_iter():
+        assert any(other.last()[2:4]) and player in other.possible_agents
+        other.step(None)
+    assert not other.agents
+
+
+def test_a_state_repeats_its_errors_and_a_seed_draws_others():
+    env = sn.match_env(aim="target", noise="professional", layout="random:6")
+    env.reset(seed=2)
+    state, ends = json.loads(json.dumps(env.get_state())), []
+    for seed in (None, None, *range(50), 7):
+        env.reset(seed=seed, options={"state": state})
+        assert {key for key, value in env.get_state().items() if value != state[key]} == (set() if seed is None else {"rng"})
+        env.step(np.zeros(7, np.float32))
+        ends.append(env.table.positions.tobytes())
+    assert ends[0] == ends[1] and len(set(ends)) == 51 and ends[-1] == ends[2 + 7]
 
 
 @pytest.mark.parametrize(

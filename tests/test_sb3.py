@@ -98,6 +98,22 @@ def test_states_are_saved_and_restored():
         env.reset()
 
 
+def test_a_seed_draws_new_errors_from_a_state():
+    env = SnookerVecEnv(5, noise="professional")
+    env.seed(1)
+    env.reset()
+    (state,) = env.env_method("get_state", indices=[2])
+    ends = []
+    for seed in (None, 8, 8, 9, None):
+        if seed is not None:
+            env.seed(seed)
+        env.set_options({"state": state})
+        env.reset()
+        ends.append([row.tobytes() for row in env.step(np.zeros((5, 4), np.float32))[0]])
+    assert len(set(ends[0])) == 1 and ends[0] == ends[4]  # the seeds are for one reset only
+    assert len(set(ends[1])) == 5 and ends[1] == ends[2] and ends[3][:4] == ends[1][1:]
+
+
 def test_attributes():
     env = SnookerVecEnv(2)
     assert env.get_attr("num_envs") == [2, 2] and env.has_attr("shooter") and not env.has_attr("no_such")

@@ -42,16 +42,54 @@ def test_a_saved_state_plays_on_bit_for_bit(arguments):
     assert env.ball_on == BallOn.ANY_COLOUR and env.points > 0
     last = observations.observe(env.observation, env.positions, env.on_table, env.ball_on, env.on, env.in_hand, env.points)
     want = shots(env)
-    for how in ("set_state", "reset", "elsewhere", "seeded"):
+    for how in ("set_state", "reset", "elsewhere"):
         other = env if how in ("set_state", "reset") else SnookerEnv(aim="target", noise="club", layout="random:6", **arguments)
         if how == "set_state":
             other.set_state(json.loads(text))
         else:
-            obs, info = other.reset(options={"state": json.loads(text)}, seed=77 if how == "seeded" else None)
+            obs, info = other.reset(options={"state": json.loads(text)})
             assert data_equivalence(obs, last, exact=True)
             assert info["break"] == other.points and info["ball_on"] == BallOn.ANY_COLOUR and info["points"] == 0.0
         assert json.dumps(other.get_state()) == text
         assert shots(other) == want
+
+
+def ends_from(env, state, seeds):
+    """Where one and the same stroke from a state leads, for each seed."""
+    ends = []
+    for seed in seeds:
+        env.reset(seed=seed, options={"state": state})
+        assert env.positions.tolist() == state["positions"] and env.on_table.tolist() == state["on_table"]
+        ends.append(env.step(np.zeros(env.action_space.shape))[0].tobytes())
+    return ends
+
+
+@pytest.mark.parametrize(
+    "arguments", [{}, {"task": "frame"}, {"task": "frame", "opponent": "ghost_ball", "miss": "clear_path"}], ids=["visit", "alone", "frame"]
+)
+def test_a_state_repeats_its_errors_and_a_seed_draws_others(arguments):
+    env = SnookerEnv(noise="professional", layout="random:6", **arguments)
+    env.reset(seed=3)
+    state = json.loads(json.dumps(env.get_state()))
+    assert len(set(ends_from(env, state, [None] * 20))) == 1
+    ends = ends_from(env, state, range(300))
+    assert len(set(ends)) == 300
+    assert ends_from(env, state, [7, 299, 7]) == [ends[7], ends[299], ends[7]]
+    assert ends_from(SnookerEnv(noise="professional", layout="random:6", **arguments), state, [7]) == [ends[7]]
+    env.reset(seed=7, options={"state": state})
+    kept = env.get_state()
+    assert {key for key in state if kept[key] != state[key]} == ({"rng"} if arguments else {"rng", "stream"})
+    fresh = SnookerEnv(noise="professional", layout="random:6", **arguments)
+    fresh.reset(seed=7)
+    assert arguments or kept["stream"] == [fresh.get_state()["stream"][0], 0]  # the key that a visit of that seed has
+
+
+def test_after_a_seed_the_tables_to_come_are_the_seeds_too():
+    env, other = SnookerEnv(), SnookerEnv()
+    state = env.reset(seed=3) and env.get_state()
+    for one in (env, other):
+        one.reset(seed=5, options={"state": state})
+    assert env.reset()[0].tobytes() == other.reset()[0].tobytes() and env.get_state() == other.get_state()
 
 
 def test_a_finished_visit_can_be_saved_too():

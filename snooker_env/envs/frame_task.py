@@ -7,7 +7,7 @@ the balls lie, without a free ball.
 
 from dataclasses import replace
 
-from .._check import choice
+from .._check import choice, refuse
 from ..game.layouts import layout
 from . import observations
 from .frame_table import FrameTable
@@ -20,8 +20,8 @@ AGENT = 0
 class FrameTask:
     """A frame of the agent against ``opponent``, on ``table``, a ``FrameTable``."""
 
-    def __init__(self, shooter, *, opponent, miss, reward, observation):
-        self.table = FrameTable(shooter, miss=miss)
+    def __init__(self, shooter, *, opponent, miss, reward, observation, max_strokes):
+        self.table = FrameTable(shooter, miss=miss, max_strokes=max_strokes)
         self.opponent = opponent_of(opponent, observation, shooter.actions)
         self.reward = FRAME_REWARDS[choice("reward", reward, FRAME_REWARDS)]
         self.observation = observation
@@ -32,13 +32,13 @@ class FrameTask:
         """A new frame, its table dealt by a ``Plan``. Who breaks is drawn from ``rng`` (alone it is the agent); an opponent who breaks has
         played when this returns.
 
-        A frame that the opponent wins at its first visit is dealt again: each episode holds a stroke of the agent.
+        A frame that ends within the opponent's first visit is dealt again: each episode holds a stroke of the agent.
         """
         while True:
             breaker = AGENT if self.opponent is None else int(rng.integers(2))
             self.table.start(*layout(plan, rng), breaker=breaker, in_hand=plan.in_hand)
             self._until_agent(rng, watch)
-            if not self.table.over:
+            if not self.table.ended:
                 return
 
     def step(self, action, rng, watch):
@@ -61,11 +61,25 @@ class FrameTask:
                     table.choose("play_again")
                 table.frame = replace(table.frame, striker=AGENT, break_points=0)
                 continue
+            if table.stopped:  # after this very stroke, in the middle of a visit too
+                return
             played = self.opponent.play(table, self._opponents_view, rng, watch is not None)
             if played is not None:
                 self.opponent_strokes += 1
                 if watch is not None:
                     watch(played.shot)
+
+    def checked(self, state, generator, *, to_play=False):
+        """The ``FrameState`` of a dict; ValueError if it is not sound, or if it is ``to_play`` and there is no more stroke to play."""
+        sound = self.table.checked(state, generator, to_play=to_play)
+        if sound.frame.striker != AGENT and not self.table.ends_at(sound.frame, sound.strokes):
+            raise refuse("state.frame.striker", sound.frame.striker, f"must be {AGENT}, the agent, as always between two steps")
+        return sound
+
+    def take(self, sound):
+        """Take over a ``FrameState``."""
+        self.table.take(sound)
+        self.opponent_strokes = 0
 
     def _opponents_view(self):
         return observations.observe_frame(self.observation, self.table, 1 - AGENT)
@@ -79,7 +93,8 @@ class FrameTask:
         frame = self.table.frame
         return {
             "score": float(frame.scores[AGENT]), "opponent_score": float(frame.scores[1 - AGENT]),
-            "opponent_strokes": self.opponent_strokes, "winner": -1 if frame.winner is None else frame.winner,
+            "strokes": self.table.strokes, "opponent_strokes": self.opponent_strokes,
+            "winner": -1 if frame.winner is None else frame.winner,
             "choice": frame.phase == "choice", "free_ball": frame.free_ball, "needs_snookers": frame.needs_snookers(AGENT),
         }  # fmt: skip
 

@@ -6,11 +6,11 @@ from gymnasium import spaces
 from gymnasium.utils import seeding
 from pettingzoo import AECEnv
 
-from .._check import choice, integer
+from .._check import choice, refuse
 from ..game.layouts import layout as deal
 from . import observations
 from .bed import fitted
-from .frame_table import FrameTable
+from .frame_table import MAX_STROKES, FrameTable
 from .frame_task import frame_text
 from .pictures import FPS, MODES, Pictures
 from .rewards import FRAME_REWARDS
@@ -43,38 +43,49 @@ class MatchEnv(AECEnv):
     ``"win"``: +1 and -1 when the frame ends.
 
     ## Start and end
-    Who breaks off is drawn from the seed. Both players terminate when the frame ends by the rules; both are truncated after
-    ``max_strokes`` strokes. No ball leaves the table, the physics is planar.
+    Who breaks off is drawn from the seed. Both players terminate when the frame ends by the rules. Both are truncated when they have played
+    ``max_strokes`` strokes together (1000 unless told otherwise, None for never): the referee stops a frame that goes nowhere, with no
+    winner. No ball leaves the table, the physics is planar.
 
     ## Infos
     For both players, always the same keys: ``points``, ``penalty`` (of the last stroke), ``fouls`` (bits of
-    ``snooker_env.game.ruling.Foul``), ``score``, ``opponent_score``, ``break``, ``choice`` (a decision is open), ``free_ball``,
-    ``winner`` (-1, 0 or 1). ``get_state`` and ``set_state`` save and restore everything as JSON types.
+    ``snooker_env.game.ruling.Foul``), ``score``, ``opponent_score``, ``strokes`` (of both so far), ``break``, ``choice`` (a decision is
+    open), ``free_ball``, ``winner`` (-1, 0 or 1).
+
+    ## States
+    ``get_state`` and ``set_state`` save and restore everything as JSON types; ``reset(options={"state": ...})`` starts from a state. It
+    holds the random numbers too, so that playing on from it again repeats the errors of ``noise``. With a seed, ``reset(seed=...,
+    options={"state": ...})``, table and frame are those of the state and the random numbers those of the seed. From a state of a frame that
+    has ended both players are terminated, or truncated, at once.
     """
 
     metadata = {"name": "snooker_match_v0", "render_modes": list(MODES), "is_parallelizable": False, "render_fps": FPS}  # noqa: RUF012
 
     def __init__(
         self, *, layout="break_off", aim="absolute", observation="flat", noise="none", reward="points", elevation=False, placement=True,
-        decision=True, miss="off", physics="paper", table="match", fidelity="standard", max_strokes=None, render_mode=None,
+        decision=True, miss="off", physics="paper", table="match", fidelity="standard", max_strokes=MAX_STROKES, render_mode=None,
     ):  # fmt: skip
         super().__init__()
         shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity)
         self._plan = fitted(layout, shooter.table)
         self.layout, self.observation = layout, observation
         self.reward = FRAME_REWARDS[choice("reward", reward, FRAME_REWARDS)]
-        self.max_strokes = None if max_strokes is None else integer("max_strokes", max_strokes, 1, 10**9)
         if render_mode is not None:
             choice("render_mode", render_mode, MODES)
         self.render_mode = render_mode
-        self.table = FrameTable(shooter, miss=miss)
+        self.table = FrameTable(shooter, miss=miss, max_strokes=max_strokes)
         self.possible_agents = list(PLAYERS)
         self.agents = []
         self.observation_spaces = {name: observations.space(observation, frame=True) for name in PLAYERS}
         self.action_spaces = {name: spaces.Box(-1.0, 1.0, (shooter.actions.size,), np.float32) for name in PLAYERS}
         self.np_random, _ = seeding.np_random()
-        self.strokes, self._last_played = 0, None
+        self._last_played = None
         self._pictures = Pictures(shooter.table, render_mode)
+
+    @property
+    def strokes(self):
+        """How many strokes both players have played."""
+        return self.table.strokes
 
     def observation_space(self, agent):
         """The same object each time."""
@@ -90,12 +101,17 @@ class MatchEnv(AECEnv):
 
     def reset(self, seed=None, options=None):
         """A new frame. options: None or {"state": a state of ``get_state``}; other keys are not read, PettingZoo's own test gives some."""
+        if options is not None and not isinstance(options, dict):
+            raise refuse("options", options, 'must be None or {"state": ...}')
+        given = None
+        if options and "state" in options:
+            given = self.table.checked(options["state"], self.np_random)
         if seed is not None:
             self.np_random, _ = seeding.np_random(seed)
-        self._last_played, self.strokes = None, 0
-        if options and "state" in options:
-            self.set_state(options["state"])
+        if given is not None:
+            self._take(given, noise=seed is None)
         else:
+            self._last_played = None
             breaker = int(self.np_random.integers(2))
             self.table.start(*deal(self._plan, self.np_random), breaker=breaker, in_hand=self._plan.in_hand)
             self._begin()
@@ -112,7 +128,7 @@ class MatchEnv(AECEnv):
     def _account(self):
         over = self.table.over
         self.terminations = dict.fromkeys(PLAYERS, over)
-        self.truncations = dict.fromkeys(PLAYERS, not over and self.strokes == self.max_strokes)
+        self.truncations = dict.fromkeys(PLAYERS, self.table.stopped)
         self.infos = {name: self._info(k) for k, name in enumerate(PLAYERS)}
         self.agent_selection = PLAYERS[self.table.frame.striker]
 
@@ -127,7 +143,6 @@ class MatchEnv(AECEnv):
         a = self.table.shooter.actions.check(action)
         before = self.table.frame
         self._last_played = self.table.act(a, self.np_random, path=self.render_mode is not None)
-        self.strokes += self._last_played is not None
         self._cumulative_rewards[name] = 0.0
         self.rewards = {player: self.reward(before, self.table.frame, k) for k, player in enumerate(PLAYERS)}
         self._account()
@@ -141,21 +156,26 @@ class MatchEnv(AECEnv):
             "points": 0.0 if played is None else float(played.verdict.points),
             "penalty": 0 if played is None else int(played.verdict.penalty),
             "fouls": 0 if played is None else int(played.verdict.fouls),
-            "score": float(frame.scores[player]), "opponent_score": float(frame.scores[1 - player]), "break": float(frame.break_points),
+            "score": float(frame.scores[player]), "opponent_score": float(frame.scores[1 - player]),
+            "strokes": self.strokes, "break": float(frame.break_points),
             "choice": frame.phase == "choice", "free_ball": frame.free_ball, "winner": -1 if frame.winner is None else frame.winner,
         }  # fmt: skip
 
     def get_state(self):
         """The whole state as JSON types: table, frame, strokes and random generator."""
-        return self.table.get_state() | {"strokes": self.strokes, "rng": self.np_random.bit_generator.state}
+        return self.table.get_state() | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state):
-        """Take over a state from ``get_state``; the next stroke plays on identically. Rewards not yet collected are zero."""
-        for key in ("strokes", "rng"):
-            choice("state key", key, tuple(state))
-        self.table.set_state(state)
-        self.strokes = integer("state.strokes", state["strokes"], 0, 10**9)
-        self.np_random.bit_generator.state = state["rng"]
+        """Take over a state from ``get_state``; the next stroke plays on identically. Rewards not yet collected are zero.
+
+        ValueError if it is not sound, and then nothing has changed.
+        """
+        self._take(self.table.checked(state, self.np_random), noise=True)
+
+    def _take(self, sound, *, noise):
+        self.table.take(sound)
+        if noise:
+            self.np_random.bit_generator.state = sound.rng
         self._last_played = None
         self._begin()
 

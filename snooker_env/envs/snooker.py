@@ -10,24 +10,25 @@ from ..game.balls import REDS_MASK, BallOn, balls_on
 from . import observations
 from .bed import fitted
 from .choices import Choices
+from .frame_table import MAX_STROKES
 from .frame_task import FrameTask
 from .pictures import FPS, MODES, Pictures
 from .rewards import REWARDS
 from .shooting import mask, shooter_of
-from .state import FRAME_KEYS, check_keys, check_rng, checked
+from .state import checked
 from .visit import BALL_ON, IN_HAND, OVER, POINTS, Returned, Rules, Visits, Work
 
 TASKS = ("visit", "frame")
-FRAME_ONLY = {"opponent": "none", "miss": "off", "decision": False}
+FRAME_ONLY = {"opponent": "none", "miss": "off", "decision": False, "max_strokes": MAX_STROKES}
 """Arguments that mean something in the frame task only, and the values that they must have in a visit."""
 LAYOUTS = {"visit": "opened", "frame": "break_off"}
 """What layout="default" is in each task."""
 
 
-def visit_only(reward, opponent, miss, decision):
-    """Raise ValueError unless these arguments make sense in a visit."""
+def visit_only(reward, **frame_only):
+    """Raise ValueError unless these arguments make sense in a visit; ``frame_only``: those that ``FRAME_ONLY`` names."""
     choice("reward", reward, REWARDS)
-    for name, value in (("opponent", opponent), ("miss", miss), ("decision", decision)):
+    for name, value in frame_only.items():
         if value != FRAME_ONLY[name]:
             raise refuse(name, value, f'must be {FRAME_ONLY[name]!r} with task="visit"; it belongs to task="frame"')
 
@@ -80,7 +81,9 @@ class SnookerEnv(gymnasium.Env):
 
     ## Episode end
     Terminated by the first stroke that pots nothing, by a foul, or by a clearance; in a frame by its end under the rules, nobody concedes.
-    Never truncated by itself (``gymnasium.make(..., max_episode_steps=N)`` does). No ball leaves the table: the physics is planar.
+    A frame that goes nowhere (fouls in turn, "play again") is stopped by the referee: truncated, with no winner, at once after the last of
+    ``max_strokes`` strokes of both players together, in the middle of a visit too. A visit is never truncated by itself
+    (``gymnasium.make(..., max_episode_steps=N)`` does). No ball leaves the table: the physics is planar.
 
     ## Arguments
     All are JSON types (but a callable opponent), so that ``EnvSpec.to_json`` round-trips.
@@ -90,6 +93,7 @@ class SnookerEnv(gymnasium.Env):
     | task | "visit" | build a break until the first miss or foul; "frame": see Description |
     | layout | "default" | see Starting state |
     | opponent, miss, decision | "none", "off", False | of a frame only; miss: "off" or "clear_path" (``snooker_env.game.frame``) |
+    | max_strokes | 1000 | of a frame only: see Episode end; None: it is never stopped |
     | action | "box" | or "discrete": one number means a pot, speed, side and top, the aim solved; ``snooker_env.envs.choices`` |
     | aim | "absolute" | or "target" |
     | observation | "flat" | or "balls" |
@@ -105,8 +109,14 @@ class SnookerEnv(gymnasium.Env):
     Always the same keys: ``points``, ``break``, ``seconds`` (float; the shot's duration), ``foul`` (bool), ``penalty``, ``pots``,
     ``fouls`` (bits of ``snooker_env.game.ruling.Foul``), ``first_ball`` (-1: none), ``ball_on`` (what was on, a ``BallOn``),
     ``events`` (int). In a frame they tell of the agent's own stroke, and there are ``score``, ``opponent_score`` (float),
-    ``opponent_strokes``, ``winner`` (-1, 0 the agent, 1), ``choice``, ``free_ball``, ``needs_snookers``.
-    ``reset(options={"state": env.unwrapped.get_state()})`` starts from a saved state.
+    ``strokes`` (of both players so far), ``opponent_strokes`` (of this step), ``winner`` (-1, 0 the agent, 1), ``choice``, ``free_ball``,
+    ``needs_snookers``.
+
+    ## States
+    ``state = env.unwrapped.get_state()`` is everything between two shots as JSON types, ``reset(options={"state": state})`` starts from it.
+    It holds the random numbers too: played on again, the same actions meet the same errors of ``noise`` (and of an opponent). With a seed,
+    ``reset(seed=..., options={"state": state})``, table and game are those of the state and the random numbers those of the seed: other
+    seeds, other errors. A state that is not sound is refused, with nothing changed.
 
     ## Version history
     v0: first version.
@@ -122,7 +132,7 @@ class SnookerEnv(gymnasium.Env):
     def __init__(
         self, *, task="visit", layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points",
         elevation=False, placement=False, physics="paper", table="match", fidelity="standard", render_mode=None, opponent="none",
-        miss="off", decision=False,
+        miss="off", decision=False, max_strokes=MAX_STROKES,
     ):  # fmt: skip
         whole = choice("task", task, TASKS) == "frame"
         layout = LAYOUTS[task] if isinstance(layout, str) and layout == "default" else layout
@@ -141,9 +151,11 @@ class SnookerEnv(gymnasium.Env):
         if whole and action == "discrete":
             raise refuse("action", action, 'must be "box" with task="frame"')
         if whole:
-            self.frames = FrameTask(self.shooter, opponent=opponent, miss=miss, reward=reward, observation=observation)
+            self.frames = FrameTask(
+                self.shooter, opponent=opponent, miss=miss, reward=reward, observation=observation, max_strokes=max_strokes
+            )
         else:
-            visit_only(reward, opponent, miss, decision)
+            visit_only(reward, opponent=opponent, miss=miss, decision=decision, max_strokes=max_strokes)
             self.visits = Visits(Rules(self.shooter, self._plan, reward), 1)
             self._work, self._seeded = Work(1, path=render_mode is not None), False
         if render_mode is not None:
@@ -182,8 +194,8 @@ class SnookerEnv(gymnasium.Env):
 
     @property
     def over(self):
-        """Whether the visit or frame has ended, or not yet begun."""
-        return self._unbegun or self.frames.table.over if self.visits is None else bool(self.visits.game[0, OVER])
+        """Whether the visit or frame has ended, stopped by the referee too, or not yet begun."""
+        return self._unbegun or self.frames.table.ended if self.visits is None else bool(self.visits.game[0, OVER])
 
     @property
     def on(self):
@@ -192,46 +204,49 @@ class SnookerEnv(gymnasium.Env):
 
     def get_state(self):
         """The whole state as JSON types: table, game and random numbers. ``set_state`` brings it back exactly."""
-        rng = {"rng": self.np_random.bit_generator.state}
-        if self.visits is not None:
-            return self.visits.get_state(0) | rng
-        return rng | {
-            "positions": self.positions.tolist(), "on_table": self.on_table.tolist(), "ball_on": int(self.ball_on),
-            "in_hand": self.in_hand, "points": self.points, "over": self.over, "frame": self.frames.table.frame.to_dict(),
-        }  # fmt: skip
+        table = self.frames.table.get_state() if self.visits is None else self.visits.get_state(0)
+        return table | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state):
-        """Take over a state from ``get_state``; the next shot plays on identically. ValueError if it is not sound."""
+        """Take over a state from ``get_state``; the next shot plays on identically. ValueError if it is not sound, with nothing changed."""
+        self._take(self._checked(state), seed=None)
+
+    def _checked(self, state, *, to_play=False):
+        """The ``State`` or ``FrameState`` that it is; ValueError if it is not sound, or if it is ``to_play`` and there is no shot left."""
         if self.visits is None:
-            check_keys(state, FRAME_KEYS)
-            check_rng(state["rng"], self.np_random)
-            self.frames.table.set_state(state)
+            return self.frames.checked(state, self.np_random, to_play=to_play)
+        return checked(state, self.table, self.physics.R, self.np_random, to_play=to_play)
+
+    def _take(self, sound, *, seed):
+        """Take over a sound state; with a seed the random numbers are not the state's but those of ``np_random``."""
+        if seed is None:
+            self.np_random.bit_generator.state = sound.rng
+        if self.visits is None:
+            self.frames.take(sound)
             self._unbegun = False
-        else:
-            self.visits.set_state(0, checked(state, self.table, self.physics.R, self.np_random))
-            self._seeded = True
-        self.np_random.bit_generator.state = state["rng"]
+            return
+        self.visits.set_state(0, sound)
+        if seed is not None:
+            self.visits.seed(0, self.np_random)
+        self._seeded = True
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
     def reset(self, *, seed=None, options=None):
-        """A new visit or frame. options: None or {"state": a state of ``get_state``}."""
-        super().reset(seed=seed)
+        """A new visit or frame. options: None or {"state": a state of ``get_state``}; with a seed too, see States."""
         if options is not None and not isinstance(options, dict):
             raise refuse("options", options, 'must be None or {"state": ...}')
         for key in options or {}:
             choice("options", key, ("state",))
+        sound = self._checked(options["state"], to_play=True) if options else None
+        super().reset(seed=seed)
+        if sound is not None:
+            self._take(sound, seed=seed)
         self.last_shot = None
-        fresh = True
-        if options and "state" in options:
-            self.set_state(options["state"])
-            if self.over:
-                raise refuse("state.over", True, "must be False: there is no shot to play from this state")
-            fresh = False
         if self.visits is None:
-            observation, info = self._reset_frame(fresh)
+            observation, info = self._reset_frame(sound is None)
         else:
-            observation, info = self._reset_visit(fresh, seed)
+            observation, info = self._reset_visit(sound is None, seed)
         if self.render_mode == "human":
             self._show()
         return observation, info
@@ -276,7 +291,8 @@ class SnookerEnv(gymnasium.Env):
         reward, played = self.frames.step(a, self.np_random, self._watch if self.render_mode is not None else None)
         if played is not None and self.render_mode is None:
             self.last_shot = played.shot
-        return self.frames.observe(), reward, self.over, False, self._frame_info(played)
+        table = self.frames.table
+        return self.frames.observe(), reward, table.over, table.stopped, self._frame_info(played)
 
     def _watch(self, shot):
         """Called after each stroke of a frame, of either player, when there is something to see."""

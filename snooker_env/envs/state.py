@@ -1,15 +1,24 @@
-"""Is a saved state sound? Checks every part of what ``SnookerEnv.get_state`` returned before any of it is taken over."""
+"""Is a saved state sound? Checks every part of what ``get_state`` gave, of a visit and of a frame, before any of it is taken over."""
 
-from typing import NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._check import array, flags, integer, refuse, truth
-from ..game.balls import CUE, N_BALLS, REDS_MASK, BallOn, balls_on
+from .._check import array, flags, integer, refuse, refuse_what, truth
+from ..game.balls import CUE, CUE_BIT, N_BALLS, REDS_MASK, BallOn, balls_on, next_on
+from ..game.frame import MOST_BREAK, Frame, points_available
+from ..game.in_hand import within_d
+from .shooting import mask
+
+MOST = 2**53 - 1
+"""The highest score and the most strokes of a saved frame: a float, as observations and infos give them, still holds every integer."""
+FAR = 1000.0
+"""A ball off the table counts for nothing, but its coordinates are within this [m], so that nothing overflows."""
 
 
 class State(NamedTuple):
-    """A sound state: what ``SnookerEnv`` is made of between two shots."""
+    """A sound state of a visit: what ``SnookerEnv`` is made of between two shots."""
 
     positions: np.ndarray
     on_table: np.ndarray
@@ -22,34 +31,67 @@ class State(NamedTuple):
     rng: dict
 
 
-KEYS = State._fields
-FRAME_KEYS = (*(key for key in KEYS if key != "stream"), "frame")
-"""In a frame everything is drawn from the environment's own generator, "rng"."""
+class FrameState(NamedTuple):
+    """A sound state of a frame, in ``SnookerEnv`` or a match."""
+
+    frame: Frame
+    positions: np.ndarray
+    on_table: np.ndarray
+    strokes: int
+    rng: Any = None
+    """Everything is drawn from the environment's own generator; None if the table was saved alone."""
 
 
 def check_keys(state, keys):
-    """Raise ValueError unless ``state`` is a dict with these keys."""
+    """Raise ValueError unless ``state`` is a dict with exactly these keys."""
     if not isinstance(state, dict):
         raise refuse("state", state, "must be a state of get_state(), a dict")
     if missing := sorted(set(keys) - set(state)):
         raise refuse("state", sorted(state, key=str), f"must be a state of get_state(); missing {missing}")
+    if unknown := [key for key in state if key not in keys]:
+        raise refuse("state", unknown, f"must be a state of get_state() with the keys {list(keys)} only")
 
 
-def checked_layout(state, table, R):
-    """The arrays positions (22, 2) and on_table (22,) of a state; ValueError unless they are a sound layout."""
-    positions = array("state.positions", state["positions"], (N_BALLS, 2))
-    on_table = flags("state.on_table", state["on_table"], (N_BALLS,))
-    table.check(positions, R, "state.positions", on_table)
-    return positions, on_table
+def checked_layout(names, positions, on_table, table, R):
+    """The arrays positions (22, 2) and on_table (22,); ValueError, by one of the two ``names``, unless they are a sound layout."""
+    field = names[0]
+    places, present = array(field, positions, (N_BALLS, 2)), flags(names[1], on_table, (N_BALLS,))
+    for i, place in enumerate(positions):
+        if any(isinstance(x, bool | np.bool_) for x in place):  # numpy reads them as 0 and 1
+            raise refuse(f"{field}[{i}]", list(place), "must be two real numbers")
+    if len(far := np.flatnonzero(np.abs(places).max(axis=1) > FAR)):
+        raise refuse(f"{field}[{far[0]}]", places[far[0]].tolist(), f"must be within {FAR:g} m, also off the table")
+    table.check(places, R, field, present)
+    return places, present
+
+
+def check_in_hand(field, in_hand, name, positions):
+    """Raise ValueError if a cue ball in hand does not lie in the D, where it is to be seen until it is placed."""
+    if in_hand and not within_d(*positions[CUE]):
+        x, y = positions[CUE].tolist()
+        raise refuse(field, in_hand, f"must be False with the cue ball at {name}[{CUE}] = ({x:g}, {y:g}), outside the D")
+
+
+def _check_like(field, value, known):
+    """Raise ValueError unless ``value`` is built like ``known``: dicts with the same keys, and in them values of the same types."""
+    if not isinstance(known, dict):
+        if type(value) is not type(known):
+            raise refuse(field, value, f"must be of type {type(known).__name__}")
+        return
+    if not isinstance(value, dict) or set(value) != set(known):
+        raise refuse(field, value, f"must be a dict with the keys {sorted(known)}")
+    for key in known:
+        _check_like(f"{field}.{key}", value[key], known[key])
 
 
 def check_rng(rng, generator):
     """Raise ValueError unless ``rng`` is a state that the numpy ``generator`` could take over; the generator is left as it is."""
     trial = type(generator.bit_generator)()
+    _check_like("state.rng", rng, trial.state)
     try:
         trial.state = rng
-    except (TypeError, ValueError, KeyError):
-        raise refuse("state.rng", rng, f"must be the state of a {type(trial).__name__} generator") from None
+    except (TypeError, ValueError, OverflowError) as error:
+        raise refuse("state.rng", rng, f"must be the state of a {type(trial).__name__} generator ({error})") from None
 
 
 def check_stream(stream):
@@ -59,25 +101,80 @@ def check_stream(stream):
     return [integer(f"state.stream[{k}]", word, 0, 2**64 - 1) for k, word in enumerate(stream)]
 
 
-def checked(state, table, R, generator):
-    """The ``State`` that a dict describes; ValueError names the first part that is wrong.
+def checked(state, table, R, generator, *, to_play=False):
+    """The ``State`` that a dict describes; ValueError names the first part that is wrong, or says that there is no shot ``to_play``.
 
     ``generator``: the numpy Generator that is to take over the part "rng"; it is left as it is.
     """
-    check_keys(state, KEYS)
-    if unknown := [key for key in state if key not in KEYS]:
-        raise refuse("state", unknown, f"must be a state of get_state() with the keys {list(KEYS)} only")
-    positions, on_table = checked_layout(state, table, R)
+    check_keys(state, State._fields)
+    positions, on_table = checked_layout(("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
     ball_on = BallOn(integer("state.ball_on", state["ball_on"], BallOn.NOTHING, BallOn.BLACK))
-    mask = int(on_table @ (1 << np.arange(N_BALLS)))
+    balls = mask(on_table)
     if not over:  # then a shot is to be played from here
+        lowest = next_on(balls)
         if not on_table[CUE]:
             raise refuse("state.on_table", on_table.tolist(), "must hold the cue ball while the visit goes on")
-        if not balls_on(ball_on, mask):
-            raise refuse("state.ball_on", ball_on.name, "must name balls of which one is on the table")
-        if ball_on > BallOn.RED and mask & REDS_MASK:
-            raise refuse("state.ball_on", ball_on.name, "must be RED or ANY_COLOUR while reds are on the table")
+        if not balls_on(ball_on, balls):
+            raise refuse("state.ball_on", ball_on.name, "must name balls of which one is on the table (state.on_table)")
+        if ball_on > BallOn.RED and balls & REDS_MASK:
+            raise refuse("state.ball_on", ball_on.name, "must be RED or ANY_COLOUR while reds are on the table (state.on_table)")
+        if ball_on not in (BallOn.ANY_COLOUR, lowest):
+            raise refuse("state.ball_on", ball_on.name, f"must be ANY_COLOUR or {BallOn(lowest).name}, the lowest of state.on_table")
+        check_in_hand("state.in_hand", in_hand, "state.positions", positions)
     check_rng(state["rng"], generator)
-    points, stream = integer("state.points", state["points"], 0, 155), check_stream(state["stream"])
+    points, stream = integer("state.points", state["points"], 0, MOST_BREAK), check_stream(state["stream"])
+    more = points_available(balls, ball_on)
+    if points + more > MOST_BREAK:
+        raise refuse("state.points", points, f"must be at most {MOST_BREAK - more}: state.on_table and state.ball_on offer {more} more")
+    if over and to_play:
+        raise refuse("state.over", True, "must be False: there is no shot to play from this state")
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"])
+
+
+def checked_frame(state, miss, table, R, generator=None):
+    """The ``FrameState`` that a dict describes, played by the rule ``miss``; ValueError names the first part that is wrong.
+
+    ``generator``: the numpy Generator that is to take over the part "rng", left as it is; None: there is no such part.
+    """
+    keys = FrameState._fields if generator is not None else FrameState._fields[:-1]
+    check_keys(state, keys)
+    positions, on_table = checked_layout(("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R)
+    frame = Frame.from_dict(state["frame"], "state.frame")
+    strokes = integer("state.strokes", state["strokes"], 0, MOST)
+    for k, points in enumerate(frame.scores):
+        integer(f"state.frame.scores[{k}]", points, 0, MOST)
+    if frame.miss != miss:
+        raise refuse("state.frame.miss", frame.miss, f"must be {miss!r}, as this environment plays")
+    if frame.phase == "lot":
+        raise refuse("state.frame.phase", frame.phase, "must not be between two steps: the lot is drawn in the step of the stroke before")
+    if frame.phase != "over":
+        if mask(on_table) != frame.on_table | CUE_BIT:
+            raise refuse("state.on_table", on_table.tolist(), "must hold the cue ball and the balls of state.frame.on_table, no others")
+        check_in_hand("state.frame.in_hand", frame.in_hand, "state.positions", positions)
+    if frame.saved is not None:
+        frame = replace(frame, saved=_checked_saved(frame, table, R))
+    if generator is not None:
+        check_rng(state["rng"], generator)
+    return FrameState(frame, positions, on_table, strokes, state.get("rng"))
+
+
+def _checked_saved(frame, table, R):
+    """The position to which a frame may return, its layout checked as that of the state itself."""
+    saved, field = frame.saved, "state.frame.saved.layout"
+    if saved.layout is None and not frame.miss_called:
+        return saved
+    if frame.miss == "off":
+        raise refuse_what(field, "a layout", 'must be None with miss = "off": no position is ever replaced')
+    if not isinstance(saved.layout, tuple) or len(saved.layout) != 2:
+        raise refuse(field, saved.layout, "must be positions and on_table, as they were before the foul")
+    positions, on_table = checked_layout((f"{field}[0]", f"{field}[1]"), *saved.layout, table, R)
+    if mask(on_table) != saved.on_table | CUE_BIT:
+        raise refuse(f"{field}[1]", on_table.tolist(), "must hold the cue ball and the balls of state.frame.saved.on_table, no others")
+    check_in_hand("state.frame.saved.in_hand", saved.in_hand, f"{field}[0]", positions)
+    return replace(saved, layout=layout_of(positions, on_table))
+
+
+def layout_of(positions, on_table):
+    """The layout as ``Saved`` keeps it: what JSON can hold, and unchanging."""
+    return tuple(map(tuple, positions.tolist())), tuple(on_table.tolist())

@@ -18,6 +18,7 @@ from ..game.balls import BallOn
 from . import observations
 from .bed import fitted
 from .choices import Choices
+from .frame_table import MAX_STROKES
 from .pictures import Pictures
 from .shooting import shooter_of
 from .snooker import LAYOUTS, SnookerEnv, visit_only
@@ -46,7 +47,8 @@ class SnookerVectorEnv(VectorEnv):
     they lie, without paths; a window ("human") shows one environment only.
 
     ``reset(seed=...)`` takes an int, a list or None as ``SyncVectorEnv`` does; options: "reset_mask" (bool array: only those tables),
-    "state" (of ``SnookerEnv.get_state``, for all of them) or "states" (of ``get_state``: a list of one each).
+    "state" (of ``SnookerEnv.get_state``, for all of them) or "states" (of ``get_state``: a list of one each). A state holds its random
+    numbers, so that all tables given one state meet the same errors of ``noise``; with a seed too, table k draws them from seed + k.
     """
 
     metadata = SnookerEnv.metadata
@@ -54,7 +56,7 @@ class SnookerVectorEnv(VectorEnv):
     def __init__(
         self, num_envs=1, *, max_episode_steps=None, render_mode=None, autoreset_mode=AutoresetMode.NEXT_STEP, threads=None, task="visit",
         layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points", elevation=False, placement=False,
-        physics="paper", table="match", fidelity="standard", opponent="none", miss="off", decision=False,
+        physics="paper", table="match", fidelity="standard", opponent="none", miss="off", decision=False, max_strokes=MAX_STROKES,
     ):  # fmt: skip
         if task == "frame":
             raise refuse("task", task, 'must be "visit" here; for whole frames use vectorization_mode="sync" or "async"')
@@ -68,7 +70,7 @@ class SnookerVectorEnv(VectorEnv):
         layout = LAYOUTS["visit"] if isinstance(layout, str) and layout == "default" else layout
         shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action)
         plan = fitted(layout, shooter.table)
-        visit_only(reward, opponent, miss, decision)
+        visit_only(reward, opponent=opponent, miss=miss, decision=decision, max_strokes=max_strokes)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode, self.observation, self.shooter = render_mode, observation, shooter
         self.single_action_space = shooter.actions.space
@@ -94,22 +96,20 @@ class SnookerVectorEnv(VectorEnv):
         for key in options:
             choice("options", key, ("reset_mask", "state", "states"))
         seeds, wanted = self._seeds(seed), self._mask(options)
-        states = self._states(options, seeds)
+        states = self._states(options)
         if not (wanted | self._begun).all():
             raise gymnasium.error.ResetNeeded(f"table {int(np.argmin(wanted | self._begun))} has no visit yet: reset all tables first")
         tables = np.flatnonzero(wanted).tolist()
-        fresh = wanted.copy()
-        if states is None:
-            for k in tables:
-                if seeds[k] is not None or self._generators[k] is None:
-                    self._seed_generator(k, seeds[k])
-                if seeds[k] is not None or not self._keyed[k]:
-                    self.visits.seed(k, self._generators[k])
-                    self._keyed[k] = True
-        else:
-            for k in tables:
-                self._set_state(k, states[k])
-            fresh[:] = False
+        made = {k: seeding.np_random(seeds[k]) for k in tables if seeds[k] is not None or self._generators[k] is None}
+        for k, own in made.items():
+            self._generators[k], self._generator_seeds[k] = own
+        for k in tables:
+            if states is not None:
+                self._set_state(k, states[k], seeded=seeds[k] is not None)
+            if seeds[k] is not None or not self._keyed[k]:
+                self.visits.seed(k, self._generators[k])
+                self._keyed[k] = True
+        fresh = wanted if states is None else np.zeros(self.num_envs, np.bool_)
         self._begun |= wanted
         self._done[wanted] = False
         out = Returned(self.num_envs)
@@ -190,10 +190,9 @@ class SnookerVectorEnv(VectorEnv):
         """The state of each table, as ``SnookerEnv.get_state`` gives it; strokes towards ``max_episode_steps`` are not part of it."""
         return [self.visits.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)]
 
-    def _set_state(self, k, state):
-        if self._generators[k] is None:
-            self._seed_generator(k, None)
-        self._generators[k].bit_generator.state, self._generator_seeds[k] = state.rng, -1
+    def _set_state(self, k, state, *, seeded):
+        if not seeded:
+            self._generators[k].bit_generator.state, self._generator_seeds[k] = state.rng, -1
         self.visits.set_state(k, state)
         self._keyed[k] = True
 
@@ -219,22 +218,18 @@ class SnookerVectorEnv(VectorEnv):
             raise refuse('options["reset_mask"]', mask, f"must be a bool array of shape ({self.num_envs},), not all False")
         return mask.copy()
 
-    def _states(self, options, seeds):
+    def _states(self, options):
         """The ``State`` of each table, checked, or None."""
         if "state" in options:
-            states = [options["state"]] * self.num_envs
+            states, each = [options["state"]], self.num_envs
         elif "states" in options:
-            states = options["states"]
+            states, each = options["states"], 1
             if not isinstance(states, list | tuple) or len(states) != self.num_envs:
                 raise refuse_what('options["states"]', type(states).__name__, f"must be a list of {self.num_envs} states")
         else:
             return None
         generator = self.np_random[0]
-        sound = [checked(state, self.shooter.table, self.shooter.physics.R, generator) for state in states]
-        for state in sound:
-            if state.over:
-                raise refuse("state.over", True, "must be False: there is no shot to play from this state")
-        return sound
+        return [checked(state, self.shooter.table, self.shooter.physics.R, generator, to_play=True) for state in states] * each
 
     def _play(self, actions, waiting, out, same_step):
         """Share the tables out among the threads, a chunk at a time."""

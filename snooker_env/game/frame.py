@@ -18,15 +18,18 @@ balls that fall in unprovoked or are moved by others; fouls before the stroke on
 is not drawn here but passed in.
 """
 
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, fields, replace
 
-from .._check import choice, integer, refuse
+from .._check import choice, integer, refuse, refuse_what, truth
 from .balls import ALL_MASK, BLACK, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of, next_on
-from .referee import FULL_TABLE, Situation, judge
+from .referee import FULL_TABLE, MOST_POINTS, Situation, judge
 from .ruling import Foul, Outcome
 
 PHASES = ("stroke", "choice", "lot", "over")
 MISS_RULES = ("off", "clear_path")
+MOST_BREAK = 155
+"""The highest break: a free ball and the colour after it, then 147. What a break has and what the table still offers are never more."""
 
 
 def points_available(on_table, ball_on):
@@ -45,6 +48,12 @@ class Saved:
     free_ball: bool
     layout: tuple | None = None
     """The caller's own record of where the balls lay, anything that JSON can hold; it is kept and handed back, not read."""
+
+    def __post_init__(self):
+        _set(self, "on_table", _object_balls(self.on_table))
+        for name in ("in_hand", "free_ball"):
+            _set(self, name, truth(name, getattr(self, name)))
+        _set(self, "ball_on", Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball).ball_on)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,20 +91,59 @@ class Frame:
     def __post_init__(self):
         choice("phase", self.phase, PHASES)
         choice("miss", self.miss, MISS_RULES)
-        for name, low, high in (("striker", 0, 1), ("breaker", 0, 1), ("on_table", 0, ALL_MASK), ("break_points", 0, 155)):
-            integer(name, getattr(self, name), low, high)
+        for name, high in (("striker", 1), ("breaker", 1), ("break_points", MOST_BREAK), ("failures", 2)):
+            _set(self, name, integer(name, getattr(self, name), 0, high))
+        for name in ("in_hand", "free_ball", "respotted_black", "miss_called", "warned"):
+            _set(self, name, truth(name, getattr(self, name)))
         if not isinstance(self.scores, tuple) or len(self.scores) != 2:
             raise refuse("scores", self.scores, "must be a tuple of two integers")
-        for points in self.scores:
-            integer("scores", points, 0, 10_000)
-        integer("failures", self.failures, 0, 10_000)
+        _set(self, "scores", tuple(integer(f"scores[{k}]", points, 0, MOST_POINTS) for k, points in enumerate(self.scores)))
+        _set(self, "on_table", _object_balls(self.on_table))
+        if self.saved is not None and not isinstance(self.saved, Saved):
+            raise refuse("saved", self.saved, "must be a Saved or None")
         if (self.winner is None) == (self.phase == "over"):
             raise refuse("winner", self.winner, 'must be 0 or 1 in phase "over", else None')
-        if self.winner is not None:
-            integer("winner", self.winner, 0, 1)
         if self.phase == "over":
+            _set(self, "winner", integer("winner", self.winner, 0, 1))
+            _set(self, "ball_on", BallOn(integer("ball_on", self.ball_on, BallOn.NOTHING, BallOn.BLACK)))
+        else:
+            _set(self, "ball_on", self.situation.ball_on)  # the situation checks it against the table
+
+    def _faults(self):
+        """What the fields have against each other, as the rules have it: (is it so?, the field, what is allowed)."""
+        stroke, after_foul, missing = self.phase == "stroke", self.phase == "choice", self.miss != "off"
+        if self.phase == "over":
+            for name, value in _SETTLED.items():
+                yield getattr(self, name) != value, name, f'must be {value!r} in phase "over"'
             return
-        object.__setattr__(self, "ball_on", self.situation.ball_on)  # the situation checks it against the table
+        lowest, left = next_on(self.on_table), MOST_BREAK - self.available
+        yield not stroke and self.ball_on != lowest, "ball_on", f'must be {lowest}, the lowest on_table, but in phase "stroke"'
+        yield self.ball_on not in (BallOn.ANY_COLOUR, lowest), "ball_on", f"must be 0 (any colour) or {lowest}, the lowest on_table"
+        yield self.break_points > left, "break_points", f"must be at most {left}: on_table and ball_on offer {self.available} more"
+        new = self.free_ball or not stroke
+        yield new and self.break_points != 0, "break_points", 'must be 0 but in phase "stroke", and with free_ball'
+        level = self.on_table == 1 << BLACK and self.scores[0] == self.scores[1]
+        yield self.respotted_black and not level, "respotted_black", "must be False but with scores level and only the black on_table"
+        yield self.phase == "lot" and not self.respotted_black, "phase", 'must not be "lot" without respotted_black'
+        called = after_foul and missing and self.saved is not None
+        yield self.miss_called and not called, "miss_called", 'must be False but in phase "choice" with a miss rule and saved'
+        counting = missing and self.saved is not None and (stroke or self.miss_called)
+        yield self.failures > 0 and not counting, "failures", 'must be 0 but with a miss rule, saved, and miss_called or phase "stroke"'
+        told = stroke and self.failures == 2
+        yield self.warned != told, "warned", f'must be {told}: True in phase "stroke" with two failures, else False'
+        if self.saved is not None:
+            yield not (after_foul or (stroke and missing)), "saved", 'must be None but in phase "choice", and in "stroke" with a miss rule'
+            gone = self.saved.on_table ^ self.on_table
+            lost = gone & ~REDS_MASK or gone & self.on_table
+            yield after_foul and lost, "saved", "must have the on_table of after the foul, and besides at most reds"
+            for name in _REPLACED:
+                other = getattr(self.saved, name) != getattr(self, name)
+                yield stroke and other, "saved", f'must have the {name} of now: in phase "stroke" it has just been restored'
+
+    def _check_fit(self):
+        for wrong, name, allowed in self._faults():
+            if wrong:
+                raise refuse_what(name, "a position" if name == "saved" else repr(getattr(self, name)), allowed)
 
     @classmethod
     def start(cls, *, breaker=0, miss="off", on_table=FULL_TABLE):
@@ -124,8 +172,7 @@ class Frame:
             raise refuse("phase", self.phase, f"must be {phase!r} to {act}")
 
     def _over(self, winner, **changes):
-        settled = {"phase": "over", "winner": winner, "ball_on": BallOn.NOTHING, "free_ball": False, "miss_called": False, "saved": None}
-        return replace(self, **settled | changes)
+        return replace(self, phase="over", winner=winner, **_SETTLED | changes)
 
     def play(self, stroke, *, clear_path=False, full_ball_path=False, layout=None):
         """One stroke: the next frame and the referee's ``Verdict``.
@@ -194,7 +241,7 @@ class Frame:
         if what == "play_again":
             return replace(again, failures=0, saved=None)
         assert self.saved is not None  # a miss is never called without it
-        before = {name: getattr(self.saved, name) for name in ("on_table", "ball_on", "in_hand", "free_ball")}
+        before = {name: getattr(self.saved, name) for name in _REPLACED}
         return replace(again, warned=self.failures >= 2, **before)
 
     def draw(self, first):
@@ -233,16 +280,58 @@ class Frame:
         return plain
 
     @classmethod
-    def from_dict(cls, plain):
-        """The frame that ``to_dict`` gave, also after a round trip through JSON. Unknown or missing fields raise ``ValueError``."""
-        names = [field.name for field in fields(cls)]
-        if not isinstance(plain, dict) or sorted(plain) != sorted(names):
-            raise refuse("frame", plain, "must have exactly the fields " + ", ".join(names))
-        saved = plain["saved"]
+    def from_dict(cls, plain, field="frame"):
+        """The frame that ``to_dict`` gave, also after a round trip through JSON.
+
+        ValueError, which names the part of ``field`` that is wrong, also where parts do not fit together by the rules.
+        """
+        _check_fields(field, plain, cls)
+        saved, scores = plain["saved"], plain["scores"]
         if saved is not None:
-            layout = _tuples(saved["layout"])
-            saved = Saved(**saved | {"ball_on": BallOn(saved["ball_on"]), "layout": layout})
-        return cls(**plain | {"scores": tuple(plain["scores"]), "ball_on": BallOn(plain["ball_on"]), "saved": saved})
+            _check_fields(f"{field}.saved", saved, Saved)
+            with _within(f"{field}.saved"):
+                saved = Saved(**saved | {"layout": _tuples(saved["layout"])})
+        with _within(field):
+            frame = cls(**plain | {"scores": tuple(scores) if isinstance(scores, list) else scores, "saved": saved})
+            frame._check_fit()
+        return frame
+
+
+_SETTLED = {
+    "ball_on": BallOn.NOTHING, "free_ball": False, "miss_called": False, "failures": 0, "warned": False, "saved": None,
+}  # fmt: skip
+"""What is void once a frame is over."""
+
+_REPLACED = ("on_table", "ball_on", "in_hand", "free_ball")
+"""What comes back with a position that is replaced."""
+
+
+def _set(frozen, name, value):
+    object.__setattr__(frozen, name, value)
+
+
+def _object_balls(mask):
+    if integer("on_table", mask, 0, ALL_MASK) & CUE_BIT:
+        raise refuse("on_table", mask, "must name object balls only")
+    return int(mask)
+
+
+def _check_fields(field, plain, kind):
+    names = [part.name for part in fields(kind)]
+    if not isinstance(plain, dict):
+        raise refuse(field, plain, "must be a dict with the fields " + ", ".join(names))
+    if set(plain) != set(names):
+        found = f"a dict that lacks {[n for n in names if n not in plain]} and has besides {[n for n in plain if n not in names]}"
+        raise refuse_what(field, found, "must have exactly the fields " + ", ".join(names))
+
+
+@contextmanager
+def _within(field):
+    """A complaint about a field says what it is a part of."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"{field}.{error}") from None
 
 
 def _tuples(value):

@@ -14,10 +14,13 @@ ROUNDING = 1e-12
 """A point on a line of the D is within it, to this [m]."""
 
 
-@kernel
-def in_d(x, y):
+def within_d(x, y):
     """Is (x, y) on or within the lines of the D?"""
     return y <= BAULK_Y + ROUNDING and np.hypot(x, y - BAULK_Y) <= D_RADIUS + ROUNDING
+
+
+in_d = kernel(within_d)
+"""The same for kernels."""
 
 
 @kernel

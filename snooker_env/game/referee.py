@@ -10,6 +10,9 @@ from .ruling import AUTO, Flag, Foul, Outcome, VisitEnd, ruling
 FULL_TABLE = ALL_MASK & ~CUE_BIT
 """The mask of all 21 object balls."""
 
+MOST_POINTS = 2**60
+"""A score that no play reaches, and a lead that the kernel's integers of 64 bits still hold."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
@@ -27,13 +30,13 @@ class Situation:
     def __post_init__(self):
         integer("on_table", self.on_table, 0, ALL_MASK)
         object.__setattr__(self, "ball_on", BallOn(integer("ball_on", self.ball_on, BallOn.ANY_COLOUR, BallOn.BLACK)))
-        integer("lead", self.lead, -10_000, 10_000)
+        integer("lead", self.lead, -MOST_POINTS, MOST_POINTS)
         if not balls_on(self.ball_on, self.on_table & ~CUE_BIT):
-            raise refuse("ball_on", self.ball_on.name, "must name balls of which one is on the table")
+            raise refuse("ball_on", self.ball_on.name, "must name balls of which one is on the table (on_table)")
         if self.ball_on > BallOn.RED and self.on_table & REDS_MASK:
-            raise refuse("ball_on", self.ball_on.name, "must be RED or ANY_COLOUR while reds are on the table")
+            raise refuse("ball_on", self.ball_on.name, "must be RED or ANY_COLOUR while reds are on the table (on_table)")
         if self.free_ball and self.ball_on == BallOn.ANY_COLOUR:
-            raise refuse("free_ball", self.free_ball, "must be False when any colour is on")
+            raise refuse("free_ball", self.free_ball, "must be False when any colour is on (ball_on)")
 
 
 @dataclass(frozen=True, kw_only=True)

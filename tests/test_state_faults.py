@@ -1,0 +1,331 @@
+"""Is every fault of a saved state refused by its name, with nothing changed? Every field of every kind of state, spoilt in every way."""
+
+import copy
+import json
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.envs.frame_table import FrameTable
+from snooker_env.envs.shooting import shooter_of
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
+from snooker_env.game.frame import Frame
+from snooker_env.game.referee import Stroke
+from tests.mutations import at, frozen, kind_of, mutations, names_it
+from tests.refusals import refused
+from tests.tables import PLACES, frame_env, frame_state
+
+NAN, INF = float("nan"), float("inf")
+FRAME = {"opponent": "random", "miss": "clear_path", "noise": "club", "layout": "random:3", "aim": "target"}
+WANTED = {
+    "in_hand": lambda f: f.in_hand and f.phase == "stroke",
+    "a break": lambda f: f.break_points > 0 and f.ball_on == BallOn.ANY_COLOUR,
+    "a choice": lambda f: f.phase == "choice" and not f.miss_called,
+    "a miss": lambda f: f.miss_called and f.failures,
+    "replaced": lambda f: f.phase == "stroke" and f.saved is not None,
+    "a free ball": lambda f: f.free_ball,
+}
+"""Frames to be in the middle of, at the agent's turn."""
+
+
+def plain(state):
+    return json.loads(json.dumps(state))
+
+
+@pytest.fixture(scope="module")
+def frame_states():
+    """A state of every kind that is ``WANTED``, found in random play, and one of a re-spotted black."""
+    env, found, rng = frame_env(**FRAME | {"layout": "break_off"}), {}, np.random.default_rng(0)
+    for seed in range(60):
+        env.reset(seed=seed)
+        for _ in range(60):
+            if env.over or len(found) == len(WANTED):
+                break
+            for name, wanted in WANTED.items():
+                if name not in found and wanted(env.frames.table.frame):
+                    found[name] = plain(env.get_state())
+            env.step(rng.uniform(-1, 1, 7))
+    assert len(found) == len(WANTED), set(WANTED) - set(found)
+    places = {CUE: (0.1, -1.2), BLACK: SPOTS[BLACK]}
+    frame = {"ball_on": BallOn.BLACK, "in_hand": True, "respotted_black": True, "scores": (64, 64)}
+    return found | {"a re-spotted black": plain(frame_state(env, places, frame).get_state())}
+
+
+def must_be_refused(path, value, old, root):
+    """Whether something of that type must be refused there, whatever its value."""
+    if path[-1] == "layout" and root == "frame":  # which is the caller's own
+        return False
+    if path[-1] in ("saved", "layout") and value is None:
+        return False
+    return kind_of(value) != kind_of(old) and not (kind_of(old) == "number" and kind_of(value) == "integer")
+
+
+def attack(state, load, saved, root="state", play=lambda: None):
+    """Load every mutation: it is refused by name with nothing changed, or it is played. Counts (refused, taken)."""
+    counts = [0, 0]
+    load(state)
+    good = frozen(saved())
+    for path, value, wrong in mutations(state):
+        try:
+            load(wrong)
+        except Exception as error:
+            assert type(error) is ValueError, (path, value, repr(error))
+            assert names_it(str(error), root, path), (path, value, str(error))
+            assert frozen(saved()) == good, (path, value)
+            counts[0] += 1
+            continue
+        assert path and not must_be_refused(path, value, at(state, path), root), (path, value)
+        frozen(saved())
+        play()
+        counts[1] += 1
+        load(state)
+        assert frozen(saved()) == good
+    return counts
+
+
+def player(env, strokes=2):
+    """Plays a few strokes and looks at what is seen of them."""
+
+    def play():
+        assert env.observation_space.contains(env._last_seen)
+        for k in range(strokes):
+            if env.over:
+                return
+            observation, reward, *_, info = env.step(np.random.default_rng(k).uniform(-1, 1, env.action_space.shape))
+            assert env.observation_space.contains(observation) and np.isfinite([reward, info["break"]]).all()
+
+    return play
+
+
+def loader(env, seed):
+    """Loads a state by reset, with a seed or without, and notes what is seen."""
+
+    def load(state):
+        env._last_seen = env.reset(seed=seed, options={"state": state})[0]
+
+    return load
+
+
+@pytest.mark.parametrize("layout", ["random:3", "break_off", "colours"])
+def test_every_fault_of_a_visit(layout):
+    env = SnookerEnv(layout=layout, noise="club", placement=layout == "break_off")
+    env.reset(seed=3)
+    refusals, taken = attack(plain(env.get_state()), loader(env, None), env.get_state, play=player(env))
+    assert refusals > 500 and taken > 30
+
+
+def test_every_fault_of_a_visit_in_the_vector_environment():
+    env = SnookerVectorEnv(2, layout="random:3", noise="club")
+    env.reset(seed=3)
+    sound = plain(env.get_state()[1])
+    for how in (lambda state: {"state": state}, lambda state: {"states": [sound, state]}):
+        refusals, taken = attack(sound, lambda state, how=how: env.reset(options=how(state)), env.get_state)
+        assert refusals > 500 and taken > 30
+
+
+@pytest.mark.parametrize("name", [*WANTED, "a re-spotted black"])
+def test_every_fault_of_a_frame(name, frame_states):
+    env = frame_env(**FRAME)
+    refusals, taken = attack(frame_states[name], loader(env, None), env.get_state, play=player(env, 1))
+    assert refusals > 800 and taken > 50
+
+
+@pytest.mark.parametrize("name", ["in_hand", "a miss", "replaced"])
+def test_every_fault_of_a_match(name, frame_states):
+    pytest.importorskip("pettingzoo")
+    env = sn.match_env(**{key: FRAME[key] for key in ("miss", "noise", "layout", "aim")})
+    env.reset(seed=1)
+
+    def play():
+        spaces = env.observation_spaces
+        assert all(spaces[player].contains(env.observe(player)) for player in env.possible_agents)
+        if not any((env.terminations | env.truncations).values()):
+            env.step(np.zeros(7, np.float32))
+            assert all(spaces[player].contains(env.observe(player)) for player in env.possible_agents)
+
+    def whole():
+        return [env.get_state(), env.agent_selection, env.rewards, env.infos, env.terminations, env.truncations]
+
+    refusals, taken = attack(frame_states[name], env.set_state, whole, play=play)
+    assert refusals > 800 and taken > 50
+
+
+@pytest.mark.parametrize("name", [*WANTED, "a re-spotted black"])
+def test_every_fault_of_a_frame_alone(name, frame_states):
+    state = frame_states[name]["frame"]
+    kept = []
+
+    def load(plain):
+        kept[:] = [Frame.from_dict(plain)]
+
+    def play():
+        frame = kept[0]
+        if frame.phase == "choice":
+            frame = frame.choose("play")
+        if frame.phase == "stroke":
+            frame.play(Stroke())
+
+    if state["saved"] is not None:
+        state = state | {"saved": state["saved"] | {"layout": None}}  # which is for the environment to read
+    refusals, taken = attack(state, load, lambda: 0, "frame", play)
+    assert refusals > 300 and taken > 15
+
+
+# One by one: what the issue named, and what must fit
+
+
+def changed(state, **parts):
+    state = copy.deepcopy(state)
+    for path, value in parts.items():
+        *way, last = path.split("__")
+        part = state
+        for key in way:
+            part = part[int(key) if key.isdigit() else key]
+        part[int(last) if last.isdigit() else last] = value
+    return state
+
+
+MISS = [
+    ({"frame__striker": 1}, "state.frame.striker", "1", "must be 0, the agent"),
+    ({"frame__saved__layout": None}, "state.frame.saved.layout", "None", "must be positions and on_table"),
+    ({"frame__saved__layout": [[[5, 5]] * 22, [True] * 22]}, "state.frame.saved.layout[0][0]", "(5.0, 5.0)", "must be on the table"),
+    ({"frame__saved__layout": [[[0, 0]] * 22, [True] * 22]}, "state.frame.saved.layout[0]", "balls 0 and 1", "overlap"),
+    ({"frame__saved__on_table": 1 << BLACK, "frame__saved__ball_on": 7}, "state.frame.saved", "a position", "must have the on_table"),
+    ({"frame__saved__in_hand": 1}, "state.frame.saved.in_hand", "1", "must be True or False"),
+    ({"frame__saved": 3}, "state.frame.saved", "3", "must be a dict with the fields"),
+    ({"frame__saved": {}}, "state.frame.saved", "on_table", "must have exactly the fields"),
+    ({"frame__respotted_black": NAN}, "state.frame.respotted_black", "nan", "must be True or False"),
+    ({"frame__phase": "lot"}, "state.frame.phase", "lot", "must"),
+    ({"frame__scores": 3}, "state.frame.scores", "3", "must be a tuple of two integers"),
+    ({"frame__scores": [0, 2**53]}, "state.frame.scores[1]", "9007199254740992", "must be an integer in [0, 9007199254740991]"),
+    ({"frame__scores": [0, 1, 2]}, "state.frame.scores", "(0, 1, 2)", "must be a tuple of two integers"),
+    ({"frame__failures": 3}, "state.frame.failures", "3", "must be an integer in [0, 2]"),
+    ({"frame__break_points": 20}, "state.frame.break_points", "20", "must be"),
+    ({"frame__warned": True}, "state.frame.warned", "True", "must be False"),
+    ({"rng__state__state": 2**128}, "state.rng", "340282366920938463463374607431768211456", "must be the state of a PCG64"),
+    ({"rng__state__inc": 1.0}, "state.rng.state.inc", "1.0", "must be of type int"),
+    ({"strokes": -1}, "state.strokes", "-1", "must be an integer"),
+    ({"strokes": 1000}, "state.strokes", "1000", "must be below max_strokes = 1000: there is no shot left"),
+    ({"ball_on": 1}, "state", "'ball_on'", "must be a state of get_state() with the keys ['frame', 'positions', 'on_table', 'strokes'"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("parts", "field", "value", "allowed"), MISS)
+def test_faults_of_a_frame_in_which_a_miss_was_called(parts, field, value, allowed, frame_states):
+    env = frame_env(**FRAME)
+    env.reset(seed=1)
+    before = frozen(env.get_state())
+    state = changed(frame_states["a miss"], **parts)
+    refused(lambda: env.reset(seed=8, options={"state": state}), field, value, allowed)
+    assert frozen(env.get_state()) == before and env.np_random_seed == 1
+
+
+def test_the_position_to_which_a_frame_returns_is_always_on_the_table(frame_states):
+    """The saved layout, moved ball by ball: refused, or the balls lie there after "replace"."""
+    env = sn.match_env(**{key: FRAME[key] for key in ("miss", "noise", "layout", "aim")})
+    env.reset(seed=1)
+    state, rng, moved = frame_states["a miss"], np.random.default_rng(5), 0
+    for _ in range(200):
+        new, ball = copy.deepcopy(state), int(rng.integers(22))
+        new["frame"]["saved"]["layout"][0][ball] = rng.uniform(-2, 2, 2).tolist()
+        try:
+            env.set_state(new)
+        except ValueError as error:
+            assert str(error).startswith("state.frame.saved.")
+            continue
+        env.table.choose("replace")
+        env.table.shooter.table.check(env.table.positions, sn.Physics.preset("paper").R, on_table=env.table.on_table)
+        moved += 1
+    assert 20 < moved < 180
+
+
+def test_a_layout_is_kept_by_the_rule_of_the_miss_only():
+    table = FrameTable(shooter_of("target", False, True, True, "none", "paper", "match", "standard"))
+    table.start(SPOTS.copy(), np.ones(22, bool), breaker=0, in_hand=True)
+    table.play((1.0, 0.0, 0.0, -np.pi / 2, 0.0), np.random.default_rng(0))
+    state = plain(table.get_state())
+    assert state["frame"]["phase"] == "choice" and state["frame"]["saved"]["layout"] is None
+    table.set_state(state)
+    state["frame"]["saved"]["layout"] = [state["positions"], state["on_table"]]
+    refused(lambda: table.set_state(state), "state.frame.saved.layout", "a layout", 'must be None with miss = "off"')
+
+
+@pytest.mark.parametrize(
+    ("places", "frame", "field"),
+    [
+        (PLACES, {"in_hand": True}, "state.frame.in_hand"),
+        ({CUE: (0, 0), BLUE: (0.5, 0.5), PINK: SPOTS[PINK]}, {"ball_on": BallOn.PINK}, "state.frame.ball_on"),
+        ({CUE: (0, 0), PINK: SPOTS[PINK]}, {"ball_on": BallOn.PINK, "break_points": 150}, "state.frame.break_points"),
+        ({CUE: (0, 0), BLACK: SPOTS[BLACK]}, {"ball_on": BallOn.BLACK, "respotted_black": True, "scores": (7, 8)}, "state.frame.respotted"),
+        (PLACES, {"free_ball": True, "break_points": 3}, "state.frame.break_points"),
+    ],
+)
+def test_what_the_rules_exclude_is_refused(places, frame, field):
+    with pytest.raises(ValueError, match=field):
+        frame_state(frame_env(), places, frame)
+
+
+def test_the_highest_break_is_within_the_observation_space():
+    """A free ball and the colour after it, then 147: no state offers more, and that one is taken."""
+    env = SnookerEnv()
+    env.reset(seed=1)
+    state = env.get_state()
+    for ball_on, most in ((BallOn.RED, 8), (BallOn.ANY_COLOUR, 1)):
+        highest, more = (state | {"ball_on": int(ball_on), "points": points} for points in (most, most + 1))
+        env.reset(options={"state": highest})
+        refused(partial(env.set_state, more), "state.points", str(most + 1), f"must be at most {most}")
+
+
+def test_a_ball_off_the_table_is_not_endlessly_far_away():
+    env = SnookerEnv(layout="random:3")
+    env.reset(seed=1)
+    state = plain(env.get_state())
+    refused(lambda: env.set_state(changed(state, positions__9__1=1e300)), "state.positions[9]", "1e+300", "must be within 1000 m")
+
+
+def test_a_state_with_nothing_left_to_play_is_for_looking_only(frame_states):
+    over = Frame.from_dict(frame_states["a break"]["frame"]).concede(0).to_dict()
+    env = frame_env(**FRAME)
+    env.reset(seed=1)
+    for state, field in ((frame_states["a break"] | {"frame": over}, "phase"), (frame_states["in_hand"] | {"strokes": 1000}, "strokes")):
+        before = frozen(env.get_state())
+        with pytest.raises(ValueError, match=f"{field} = .*no shot"):
+            env.reset(options={"state": state})
+        assert frozen(env.get_state()) == before
+        env.set_state(state)
+        assert env.over and frozen(env.get_state()) == frozen(state)
+
+
+def test_a_match_takes_nothing_from_a_state_whose_end_is_wrong(frame_states):
+    env = sn.match_env(miss="clear_path")
+    env.reset(seed=4)
+    before = frozen(env.get_state())
+    for wrong in ({"rng": {}}, {"strokes": None}, {"rng": frame_states["in_hand"]["rng"] | {"has_uint32": 2**40}}):
+        with pytest.raises(ValueError, match=r"^state\."):
+            env.set_state(frame_states["in_hand"] | wrong)
+        with pytest.raises(ValueError, match=r"^state\."):
+            env.reset(seed=9, options={"state": frame_states["in_hand"] | wrong})
+        assert frozen(env.get_state()) == before
+    refused(lambda: env.reset(options=[1]), "options", "[1]", "must be None")
+
+
+def test_fields_of_a_frame_are_checked_when_it_is_made():
+    for wrong in (
+        {"in_hand": 1},
+        {"free_ball": None},
+        {"warned": "no"},
+        {"failures": True},
+        {"on_table": 3},
+        {"winner": True, "phase": "over"},
+    ):
+        with pytest.raises(ValueError, match=" = "):
+            Frame(**wrong)
+    frame = Frame(striker=np.int64(1), in_hand=np.bool_(False), scores=(np.int64(3), 4))
+    assert json.dumps(frame.to_dict()) and frame == Frame(striker=1, in_hand=False, scores=(3, 4))
+    with pytest.raises(ValueError, match="saved = 3"):
+        replace(frame, saved=3)
