@@ -7,9 +7,10 @@
 
 A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; a pickle, and loading one runs what it holds: --resume only your own),
 ``model.zip`` (for ``python -m agents.evaluate`` and --start, which run nothing of it, and for ``PPO.load`` of ``stable_baselines3``, which
-unpickles), ``results.json`` (every figure) and ``tb/`` (``tensorboard --logdir runs``). What
-an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how its visits are judged in ``agents/visits.py``, what
-is said of them in ``agents/lesson.py``; here follow, top to bottom: settings, checkpoints, the run.
+unpickles), ``results.json`` (every figure) and ``tb/`` (``tensorboard --logdir runs``).
+
+What an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how its visits are judged in ``agents/visits.py``,
+what is said of them in ``agents/lesson.py``; here follow, top to bottom: settings, checkpoints, the run.
 """
 
 import argparse

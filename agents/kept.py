@@ -11,8 +11,6 @@ import zipfile
 from dataclasses import dataclass
 from typing import Any
 
-import torch
-
 from snooker_env._check import choice, integer, number, refuse
 from snooker_env.envs.saved import PLAIN, by_train, entries, part
 from snooker_env.envs.vector import SnookerVectorEnv
@@ -82,7 +80,7 @@ class _MismatchError(Exception):
 
 
 def read(path, field):
-    """The ``Trained`` agent in a file; None if train.py did not make it. Raises ValueError, naming ``field``."""
+    """The ``Trained`` agent in a file; None if train.py did not make it. Raises ValueError, naming ``field``; ImportError without torch."""
     try:
         found = entries(path)
         if not by_train(found):
@@ -97,6 +95,8 @@ def read(path, field):
         return Trained(_network(path, told, seen), **told)
     except _MismatchError:
         raise refuse(field, str(path), f"must be a model of today's {told['recipe']}: this one is older, train it again") from None
+    except ImportError:
+        raise
     except Exception as error:  # whatever zip and torch make of weights that are something else
         why = f"its {WEIGHTS} must hold weights and nothing else: {type(error).__name__}"
         raise refuse(field, str(path), f"must be a model that train.py saved ({why})") from None
@@ -104,11 +104,15 @@ def read(path, field):
 
 def _network(path, told, seen):
     """Today's network with the weights of a file."""
+    import torch
+
     try:
         recipe = Recipe.of(told["recipe"], env_kwargs=told["env_options"])
         tables = SnookerVectorEnv(1, **told["env_options"])
         with torch.random.fork_rng(devices=[]):  # the first weights are drawn, and forgotten
             network = recipe.new_network(view_of(told["view"]).space, tables.single_action_space)
+    except ImportError:
+        raise
     except Exception:  # options or parts that are no more
         raise _MismatchError from None
     if network.observation_space.shape != (seen,):
@@ -125,6 +129,8 @@ def _network(path, told, seen):
 
 def _weights(path, most):
     """The tensors of a file, by name, without running anything; ``_MismatchError`` if they take more than ``most`` bytes."""
+    import torch
+
     try:
         file = io.BytesIO(part(path, WEIGHTS, most))
     except ValueError:
@@ -142,6 +148,8 @@ def _forms(weights):
 
 def packed(trained):
     """A ``Trained`` agent as the bytes of a zip that holds ``model.json`` and ``policy.pth`` alone; the same each time."""
+    import torch
+
     told = {key: getattr(trained, key) for key in KEPT} | {"seen": trained.policy.observation_space.shape[0]}
     weights, file = io.BytesIO(), io.BytesIO()
     torch.save(dict(trained.policy.state_dict()), weights)

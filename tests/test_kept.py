@@ -1,9 +1,13 @@
 """Is a model's file read without running anything of it, and is whatever is wrong in it refused with one clear sentence?"""
 
+import importlib
 import io
 import json
 import re
+import subprocess
+import sys
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +23,8 @@ from agents.models import load_player, load_weights
 from agents.recipes import Recipe, names
 from agents.tables import training_tables
 from tests.bombs import bombed, rezipped, told
+
+ROOT = Path(__file__).resolve().parents[1]
 
 
 def made(name, file):
@@ -198,3 +204,18 @@ def test_a_model_of_another_maker_is_told_apart(tmp_path):
     assert read(tmp_path / "sac.zip", "agent") is None
     with pytest.raises(ValueError, match=r"^agent = '.*sac.zip': must be a model that train.py saved$"):
         load_player(tmp_path / "sac.zip")
+
+
+def test_a_missing_library_is_not_called_an_old_model(mask, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setitem(sys.modules, "torch", None)
+        with pytest.raises(ImportError, match="torch"):
+            load_player(mask)
+    monkeypatch.setattr("agents.recipes.policy", lambda name: importlib.import_module("no_such_library"))
+    with pytest.raises(ImportError, match="no_such_library"):
+        load_player(mask)
+
+
+def test_whoever_plays_no_model_waits_for_no_torch():
+    code = "import sys, agents.evaluate; sys.exit('torch' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT).returncode == 0
