@@ -2,7 +2,8 @@
 
     python -m agents.publish runs/ppo_foresight-0 --limits "what it cannot do"
 
-writes ``agents/pretrained/AGENT.zip`` and ``AGENT.json``; ``python -m agents.evaluate --agent AGENT`` plays it.
+writes ``agents/pretrained/AGENT.zip`` and ``AGENT.json``; ``python -m agents.evaluate --agent AGENT`` plays it. The zip holds figures as
+JSON and weights, no pickled code as a run's own model.zip does, so that nobody needs to trust it (agents/kept.py).
 """
 
 import argparse
@@ -12,7 +13,8 @@ from pathlib import Path
 
 from snooker_env._check import refuse
 
-from .models import PRETRAINED, load_player, write_atomic
+from .kept import packed
+from .models import PRETRAINED, load_trained, write_atomic
 from .players import NAMES
 
 AS_IT_STANDS = {"layout": [""], "noise": [""], "fidelity": ["", "standard"], "physics": [""], "start": [""], "set": [[]]}
@@ -20,15 +22,14 @@ AS_IT_STANDS = {"layout": [""], "noise": [""], "fidelity": ["", "standard"], "ph
 
 
 def results_of(run):
-    """Every figure of a finished run and its model, once both are sound: (dict, bytes). Raises ValueError."""
+    """Every figure of a finished run and its ``Trained`` agent, once both are sound. Raises ValueError."""
     try:
         found = json.loads((run / "results.json").read_text())
         card_of(found, "")
         name_of(found, "any")
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         raise refuse("run", str(run), "must be the folder of a finished run, with a whole results.json") from None
-    load_player(run, "run")
-    return found, (run / "model.zip").read_bytes()
+    return found, load_trained(run, "run")
 
 
 def card_of(found, limits):
@@ -62,13 +63,13 @@ def publish(run, name, limits, replace=False):
     """Write the model and its card; (path without ending, card). Raises ValueError before anything is written."""
     if not limits.strip():
         raise refuse("limits", limits, "must say what a user should know that it cannot do")
-    found, model = results_of(run)
+    found, trained = results_of(run)
     path = PRETRAINED / name_of(found, name)
     card, files = card_of(found, limits), [path.with_name(path.name + end) for end in (".zip", ".json")]
     if not replace and any(file.exists() for file in files):
         raise refuse("name", path.name, "must be new: there is such a model; --replace overwrites it")
     PRETRAINED.mkdir(exist_ok=True)
-    for file, data in zip(files, (model, (json.dumps(card, indent=1) + "\n").encode()), strict=True):
+    for file, data in zip(files, (packed(trained), (json.dumps(card, indent=1) + "\n").encode()), strict=True):
         write_atomic(file, data)
     return path, card
 

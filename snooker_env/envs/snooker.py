@@ -5,7 +5,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from .._check import choice, refuse
+from .._check import choice, refuse, truth
 from ..game.balls import REDS_MASK, BallOn, balls_on
 from . import observations
 from .bed import fitted
@@ -19,7 +19,7 @@ from .state import checked
 from .visit import BALL_ON, IN_HAND, OVER, POINTS, Returned, Rules, Visits, Work
 
 TASKS = ("visit", "frame")
-FRAME_ONLY = {"opponent": "none", "miss": "off", "decision": False, "max_strokes": MAX_STROKES}
+FRAME_ONLY = {"opponent": "none", "trust": False, "miss": "off", "decision": False, "max_strokes": MAX_STROKES}
 """Arguments that mean something in the frame task only, and the values that they must have in a visit."""
 LAYOUTS = {"visit": "opened", "frame": "break_off"}
 """What layout="default" is in each task."""
@@ -45,7 +45,8 @@ class SnookerEnv(gymnasium.Env):
     that the opponent plays after it. Who breaks is drawn from the seed. ``opponent="none"``: the agent plays alone; what it misses or
     fouls it plays on from itself, penalties go to the other score. ``"random"``: uniform actions. ``"ghost_ball"``: the plain geometric
     player. ``opponent(observation, rng) -> action``: any callable, asked in this environment's spaces from its own side of the table.
-    A path to a ``.zip``: a model of Stable-Baselines3 or sb3-contrib, trained on either task with these options.
+    A path to a ``.zip``: a model of Stable-Baselines3 or sb3-contrib, trained on either task with these options. Such a file holds pickled
+    Python code, which runs when it is loaded, and so needs ``trust=True``; a model that does not fit is refused before any of it runs.
 
     ## Action space
     ``Box(-1, 1, (4,), float32)``: cue speed, side spin, top/back spin, aim; see ``snooker_env.envs.actions.Actions`` for every component
@@ -94,6 +95,7 @@ class SnookerEnv(gymnasium.Env):
     | layout | "default" | see Starting state |
     | opponent, miss, decision | "none", "off", False | of a frame only; miss: "off" or "clear_path" (``snooker_env.game.frame``) |
     | max_strokes | 1000 | of a frame only: see Episode end; None: it is never stopped |
+    | trust | False | of a frame only; may the code in an opponent's ``.zip`` run? |
     | action | "box" | or "discrete": one number means a pot, speed, side and top, the aim solved; ``snooker_env.envs.choices`` |
     | aim | "absolute" | or "target" |
     | observation | "flat" | or "balls" |
@@ -132,7 +134,7 @@ class SnookerEnv(gymnasium.Env):
     def __init__(
         self, *, task="visit", layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points",
         elevation=False, placement=False, physics="paper", table="match", fidelity="standard", render_mode=None, opponent="none",
-        miss="off", decision=False, max_strokes=MAX_STROKES,
+        miss="off", decision=False, max_strokes=MAX_STROKES, trust=False,
     ):  # fmt: skip
         whole = choice("task", task, TASKS) == "frame"
         layout = LAYOUTS[task] if isinstance(layout, str) and layout == "default" else layout
@@ -152,10 +154,10 @@ class SnookerEnv(gymnasium.Env):
             raise refuse("action", action, 'must be "box" with task="frame"')
         if whole:
             self.frames = FrameTask(
-                self.shooter, opponent=opponent, miss=miss, reward=reward, observation=observation, max_strokes=max_strokes
+                self.shooter, opponent=opponent, trust=trust, miss=miss, reward=reward, observation=observation, max_strokes=max_strokes
             )
         else:
-            visit_only(reward, opponent=opponent, miss=miss, decision=decision, max_strokes=max_strokes)
+            visit_only(reward, opponent=opponent, trust=truth("trust", trust), miss=miss, decision=decision, max_strokes=max_strokes)
             self.visits = Visits(Rules(self.shooter, self._plan, reward), 1)
             self._work, self._seeded = Work(1, path=render_mode is not None), False
         if render_mode is not None:

@@ -13,7 +13,7 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from .._check import choice, integer, refuse, refuse_what
+from .._check import choice, integer, refuse, refuse_what, truth
 from ..game.balls import BallOn
 from . import observations
 from .bed import fitted
@@ -57,6 +57,7 @@ class SnookerVectorEnv(VectorEnv):
         self, num_envs=1, *, max_episode_steps=None, render_mode=None, autoreset_mode=AutoresetMode.NEXT_STEP, threads=None, task="visit",
         layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points", elevation=False, placement=False,
         physics="paper", table="match", fidelity="standard", opponent="none", miss="off", decision=False, max_strokes=MAX_STROKES,
+        trust=False,
     ):  # fmt: skip
         if task == "frame":
             raise refuse("task", task, 'must be "visit" here; for whole frames use vectorization_mode="sync" or "async"')
@@ -70,7 +71,7 @@ class SnookerVectorEnv(VectorEnv):
         layout = LAYOUTS["visit"] if isinstance(layout, str) and layout == "default" else layout
         shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action)
         plan = fitted(layout, shooter.table)
-        visit_only(reward, opponent=opponent, miss=miss, decision=decision, max_strokes=max_strokes)
+        visit_only(reward, opponent=opponent, trust=truth("trust", trust), miss=miss, decision=decision, max_strokes=max_strokes)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode, self.observation, self.shooter = render_mode, observation, shooter
         self.single_action_space = shooter.actions.space
