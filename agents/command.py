@@ -1,0 +1,74 @@
+"""How does a command of this project begin and end? It can write to any terminal, and what stops it from outside is told in one line.
+
+Only the standard library is imported here: what is missing must be told before it is needed.
+"""
+
+import errno
+import functools
+import io
+import sys
+
+EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render"}
+"""Which extra of pyproject.toml brings a package that is not in [train]."""
+OUR_OWN = ("agents", "snooker_env", "train", "benchmarks")
+DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
+"""What the system says of a disk that takes no more."""
+
+
+def missing(name, error):
+    """The end of the command ``name`` for an ``ImportError``. A name that is not in a module of our own is no missing package."""
+    package = (error.name or str(error)).partition(".")[0]
+    if package in OUR_OWN:
+        raise error
+    extra = EXTRAS.get(package, "train")
+    return SystemExit(f'{name}: {package} is missing; in a clone of the repository:  pip install -e ".[{extra}]"')
+
+
+class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import torch
+    """Around the imports of the command ``name``: one line if a package is missing."""
+
+    def __init__(self, name):
+        self._name = name
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace) -> None:
+        if isinstance(error, ImportError):
+            raise missing(self._name, error) from None
+
+
+def any_terminal():
+    """Let what a terminal has no letters for come out as "?", not as a UnicodeEncodeError."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper) and stream.errors in ("strict", "surrogateescape"):
+            stream.reconfigure(errors="replace")
+
+
+def of_disk(error):
+    """What a full or failing disk did, in words; any other ``OSError`` is raised again."""
+    if error.errno not in DISK:
+        raise error
+    return f"{error.filename or 'a file'} cannot be written: {error.strerror}"
+
+
+def command(name):
+    """A decorator for ``main(argv)`` of the command ``name``: what comes from outside ends it with one line and an exit code not 0."""
+
+    def made(main):
+        @functools.wraps(main)
+        def run(argv=None):
+            any_terminal()
+            try:
+                return main(argv)
+            except ImportError as error:
+                raise missing(name, error) from None
+            except OSError as error:
+                raise SystemExit(f"{name}: {of_disk(error)}") from None
+            except KeyboardInterrupt:
+                print(f"{name}: interrupted, nothing was written", file=sys.stderr)
+                return 130
+
+        return run
+
+    return made
