@@ -261,7 +261,7 @@ def main(argv=None):
             print(f"Interrupted. {kept(out)}", file=sys.stderr)
             return 130
         except OSError as error:
-            raise SystemExit(f"train.py: {of_disk(error)}. {kept(out)}") from None
+            raise SystemExit(f"train.py: {of_disk(error, str(out / 'tb'))}. {kept(out)}") from None
     return 0
 
 

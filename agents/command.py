@@ -7,6 +7,7 @@ import errno
 import functools
 import io
 import sys
+import threading
 
 EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render"}
 """Which extra of pyproject.toml brings a package that is not in [train]."""
@@ -45,11 +46,17 @@ def any_terminal():
             stream.reconfigure(errors="replace")
 
 
-def of_disk(error):
-    """What a full or failing disk did, in words; any other ``OSError`` is raised again."""
+def of_disk(error, file="the output"):
+    """What a full or failing disk did, in words; any other ``OSError`` is raised again. ``file``: which, if the error does not say."""
     if error.errno not in DISK:
         raise error
-    return f"{error.filename or 'a file'} cannot be written: {error.strerror}"
+    return f"{error.filename or file} cannot be written: {error.strerror}"
+
+
+def _of_thread(uncaught):
+    """TensorBoard writes in a thread, which ends with a traceback when the disk is full; the same error comes again in the main thread."""
+    if not isinstance(uncaught.exc_value, OSError) or uncaught.exc_value.errno not in DISK:
+        threading.__excepthook__(uncaught)
 
 
 def command(name):
@@ -59,6 +66,7 @@ def command(name):
         @functools.wraps(main)
         def run(argv=None):
             any_terminal()
+            before, threading.excepthook = threading.excepthook, _of_thread
             try:
                 return main(argv)
             except ImportError as error:
@@ -66,8 +74,10 @@ def command(name):
             except OSError as error:
                 raise SystemExit(f"{name}: {of_disk(error)}") from None
             except KeyboardInterrupt:
-                print(f"{name}: interrupted, nothing was written", file=sys.stderr)
+                print(f"{name}: interrupted", file=sys.stderr)
                 return 130
+            finally:
+                threading.excepthook = before
 
         return run
 
