@@ -229,7 +229,7 @@ def judge(out, settings, recipe, model, keeper, imitation):
     steps, seconds = model.num_timesteps, keeper.seconds_before
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
     write_atomic(out / "model.zip", zipped(model))
-    figures = evaluate(recipe, model, settings.eval_visits, settings.seed)
+    figures = evaluate(recipe, model, settings.eval_visits)
     learned = lesson(settings.agent, steps, model.imitated, figures, model.start)
     results = {
         "command": command_of(settings), "settings": asdict(settings), "steps": steps, "seconds": seconds,

@@ -14,7 +14,7 @@ import pytest
 
 import train
 from agents import keeper, lesson, models, visits
-from agents.players import GhostBall
+from agents.players import GhostBall, Random, player_of
 
 ROOT = Path(__file__).resolve().parents[1]
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
@@ -257,15 +257,23 @@ def test_evaluation_plays_in_the_world_trained_in(finished, monkeypatch):
     monkeypatch.setattr(lesson, "play", watched)
     settings = train.Settings(agent="ppo_mask")
     model = models.load_player(finished / "ppo_mask").model
-    lesson.evaluate(train.recipe_of(settings), model, 2, 0)
+    lesson.evaluate(train.recipe_of(settings), model, 2)
     world = {"noise": "club", "table": "tight", "physics": {"preset": "paper", "mu_bb": "marlow"}, "fidelity": "fast"}
     given = str({"action": "discrete", "layout": "line_up", "reward": "pots", **world})
-    lesson.evaluate(train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model, 2, 0)
+    lesson.evaluate(train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model, 2)
     bare = train.recipe_of(train.Settings(agent="ppo_mask", set=("env_kwargs={'action': 'discrete'}",)))
-    lesson.evaluate(bare, model, 2, 0)
+    lesson.evaluate(bare, model, 2)
     worlds = [{"noise": "professional"}] * 3 + [world] * 3 + [{"noise": "none"}] * 3
     assert [options for _, options in played] == [{"first_seed": visits.tables_of("held_out", 2)} | one for one in worlds]
     assert all(own == {"action": "discrete"} for own, _ in played)
+
+
+def test_random_play_is_the_same_for_every_agent(finished):
+    """It is that of agents.evaluate, not any action of the agent's own."""
+    of_each = [results(finished / agent)["evaluation"] for agent in AGENTS]
+    for name in ("random", "ghost_ball"):
+        assert all(figures[name] == of_each[0][name] for figures in of_each)
+    assert of_each[0]["random"] == visits.summary(visits.play(player_of("random"), 4))
 
 
 def test_agents_with_longer_actions_are_judged(tmp_path):
@@ -357,7 +365,7 @@ def test_whole_rollouts_are_announced_and_a_finished_run_says_so(tmp_path, capsy
 )
 def test_it_learns(tmp_path, agent, steps, least):
     assert run(tmp_path / "run", "--agent", agent, "--steps", steps, "--envs", "64", "--eval-visits", "300") == 0
-    players = results(tmp_path / "run")["evaluation"]
-    gain = players["trained"]["points_a_visit"] - players["random"]["points_a_visit"]
-    assert gain > least and gain > 3 * players["trained"]["points_a_visit_se"]
-    assert "learned nothing" not in results(tmp_path / "run")["learned"]
+    trained = results(tmp_path / "run")["evaluation"]["trained"]
+    chance = visits.summary(visits.play(Random(models.load_player(tmp_path / "run").options), 300))  # any action of its own
+    gain = trained["points_a_visit"] - chance["points_a_visit"]
+    assert gain > least and gain > 3 * trained["points_a_visit_se"]
