@@ -26,7 +26,7 @@ def missing(name, error):
 
 
 class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import torch
-    """Around the imports of the command ``name``: one line if a package is missing."""
+    """Around the imports of the command ``name``: one line if a package is missing, no traceback after Ctrl-C."""
 
     def __init__(self, name):
         self._name = name
@@ -37,6 +37,8 @@ class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import tor
     def __exit__(self, kind, error, trace) -> None:
         if isinstance(error, ImportError):
             raise missing(self._name, error) from None
+        if isinstance(error, KeyboardInterrupt):
+            raise SystemExit(130) from None
 
 
 def any_terminal():

@@ -112,6 +112,9 @@ def test_ctrl_c_is_one_line(capsys):
         raise KeyboardInterrupt
 
     assert main() == 130 and capsys.readouterr().err == "agents.x: interrupted\n"
+    with pytest.raises(SystemExit) as stop, command.needs("agents.x"):
+        raise KeyboardInterrupt
+    assert stop.value.code == 130
 
 
 def test_only_a_full_disk_is_told_without_a_traceback():
