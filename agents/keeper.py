@@ -101,7 +101,11 @@ class Keeper(BaseCallback):
 
 
 LEAST, SHARE = 30.0, 0.01
-"""Seconds of teaching that a kill may lose, and what share of its time saves may take: where they are slow they come less often."""
+"""Seconds of teaching that a kill may lose, and what share of its time saves may take: where they are slow they come less often.
+
+Of every position taught 3.3 kB are kept (of agents that look ahead): the default's 10,000 make a checkpoint of 35 MB, written in half a
+second; ``imitate.KEPT`` positions, the most, 170 MB.
+"""
 
 
 def taught(teaching, out, settings, model, stop, progress):
