@@ -7,49 +7,48 @@
 
 A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; a pickle, and loading one runs what it holds: --resume only your own),
 ``model.zip`` (for ``python -m agents.evaluate`` and --start, which run nothing of it, and for ``PPO.load`` of ``stable_baselines3``, which
-unpickles), ``results.json`` (every figure) and ``tb/`` (``tensorboard --logdir runs``).
+unpickles), ``results.json`` (every figure), ``tb/`` (``tensorboard --logdir runs``) and, while the run goes on, ``train.lock``: no two of
+them share a folder (``agents/lock.py``).
 
-What an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how its visits are judged in ``agents/visits.py``,
-what is said of them in ``agents/lesson.py``; here follow, top to bottom: settings, checkpoints, the run.
+What an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how it is taught first in ``agents/imitate.py``, how
+its visits are judged in ``agents/visits.py``, what is said of them in ``agents/lesson.py``, what is kept in ``agents/run_folder.py`` and
+``agents/keeper.py``; here follow, top to bottom: settings, the run.
 """
 
 import argparse
 import importlib.metadata
-import io
 import json
 import os
-import pickle
 import platform
 import shlex
-import signal
 import sys
 import tempfile
 import time
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any
 
-import numpy as np
+from agents.command import command, needs, of_disk
 
-import snooker_env
-from snooker_env._check import refuse
-from snooker_env.envs.vector import processors
-from snooker_env.game.opened import HELD_OUT
-
-try:
-    import rich.progress
-    import tensorboard  # noqa: F401 - stable_baselines3 would miss it only after the tables are set up
+with needs("train.py"):
+    import sb3_contrib  # noqa: F401 - agents.recipes would miss it only later
+    import tensorboard  # noqa: F401 - and stable_baselines3 this one
     import torch
-    from stable_baselines3.common.callbacks import BaseCallback
 
+    import snooker_env
     from agents.commit import commit
+    from agents.files import write_atomic
+    from agents.imitate import Teaching
+    from agents.keeper import Keeper, Stop, goal_of, rollout_of, taught
     from agents.lesson import evaluate, lesson, show
-    from agents.models import load_weights, write_atomic, write_model, zipped
-    from agents.recipes import Recipe, algorithm, names
+    from agents.models import load_weights, zipped
+    from agents.recipes import Recipe, names
+    from agents.run_folder import claimed, go_on, kept, load_model, read_checkpoint
     from agents.tables import training_tables
     from agents.world import world
-except ImportError as error:
-    raise SystemExit(f'train.py: {error.name} is missing; train.py needs:  pip install "snooker-env[train]"') from None
+    from snooker_env._check import refuse
+    from snooker_env.envs.vector import processors
+    from snooker_env.game.opened import HELD_OUT
 
 # settings ------------------------------------------------------------------------------------------------------------------------
 
@@ -64,7 +63,7 @@ class Settings:
     """What makes a run the run it is."""
 
     agent: str = option("ppo_foresight", "what learns, and how: a file of agents/hyperparams", choices=tuple(names()))
-    steps: int = option(0, "shots in all; 0: as many as the recipe says")
+    steps: int = option(0, "shots in all, rounded up to whole rollouts, as is said at the start; 0: as many as the recipe says")
     envs: int = option(0, "tables played side by side; 0: as many as the recipe says")
     parallel: str = option("auto", "threads for the tables: auto is one a processor; the same shots come out", choices=("auto", "one"))
     seed: int = option(0, "of tables, weights and exploration")
@@ -127,118 +126,6 @@ def recipe_of(settings):
     return recipe
 
 
-def imitate(model, tables, states, settings, progress):
-    """Let the search teach the agent; the curve. It is not checkpointed: a run stopped here begins anew."""
-    from agents.imitate import teach
-
-    threads = 1 if settings.parallel == "one" else processors()
-    bar = rich.progress.Progress(disable=not progress)
-    task = bar.add_task(f"{settings.agent} learns from the search", total=states)
-    with bar:
-        curve = teach(model, tables, states, settings.seed, threads, lambda done, loss: bar.update(task, completed=done))
-    model.imitated = curve[-1]["states"]
-    return curve
-
-
-# checkpoints ---------------------------------------------------------------------------------------------------------------------
-
-
-def save_checkpoint(path, settings, model, seconds, curve, imitation):
-    """All that training and its curve depend on, tables and random generators included: a resumed run equals an uninterrupted one."""
-    state = {
-        "settings": asdict(settings), "seconds": seconds, "curve": curve, "imitation": imitation, "model": zipped(model),
-        "replay": getattr(model, "replay_buffer", None), "tables": model.get_env().env_method("get_state"),
-        "running": model.get_env().running,
-        "random": (np.random.get_state(), torch.get_rng_state(), model.action_space),  # noqa: NPY002 - SB3 draws from the global one
-    }  # fmt: skip
-    write_atomic(path, pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL))
-
-
-def stale(path):
-    """The complaint about a checkpoint that cannot be used."""
-    return refuse("resume", str(path), "must be a whole checkpoint of today's train.py: this one is broken or older, start the run anew")
-
-
-def load_model(state, algo, envs):
-    """The agent of a checkpoint, its tables and random generators as they were."""
-    model = algorithm(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu", seed=None)  # it would seed the tables anew
-    model.seed = state["settings"]["seed"]
-    if state["replay"] is not None:
-        model.replay_buffer = state["replay"]
-    numpy_state, torch_state, model.action_space = state["random"]
-    np.random.set_state(numpy_state)  # noqa: NPY002
-    torch.set_rng_state(torch_state)
-    envs.set_options([{"state": table} for table in state["tables"]])  # for the reset with which learn() begins
-    return model
-
-
-def goal_of(model, steps):
-    """Shots played when training to ``steps`` ends: it goes by whole rollouts."""
-    off_policy = hasattr(model, "train_freq")  # their n_steps is that of n-step returns
-    rollout = model.n_envs * (model.train_freq.frequency if off_policy else model.n_steps)
-    return model.num_timesteps + rollout * -(-max(0, steps - model.num_timesteps) // rollout)
-
-
-class Keeper(BaseCallback):
-    """Keeps the run: progress bar, learning curve, checkpoints, and an orderly stop after SIGINT or SIGTERM."""
-
-    def __init__(self, path, settings, seconds, curve, imitation, running, progress):
-        super().__init__()
-        self.imitation, self.running = imitation, running
-        self.path, self.settings, self.seconds_before, self.curve = path, settings, seconds, curve
-        self.bar = rich.progress.Progress(
-            "[progress.description]{task.description}", rich.progress.BarColumn(), rich.progress.MofNCompleteColumn(),
-            rich.progress.TimeElapsedColumn(), rich.progress.TextColumn("left"), rich.progress.TimeRemainingColumn(), disable=not progress,
-        )  # fmt: skip
-        self.signal, self.stop, self.saved = None, False, None
-
-    def on_signal(self, number, frame):
-        """Only note it: the save comes when the running update is done. A second signal acts at once."""
-        self.signal = number
-        signal.signal(number, signal.SIG_DFL if number != signal.SIGINT else signal.default_int_handler)
-        self.bar.console.print(f"\n{signal.Signals(number).name}: saving after this update ... (once more stops at once, without a save)")
-
-    @property
-    def seconds(self):
-        """Training time, with that before a resume."""
-        return self.seconds_before + time.perf_counter() - self.started
-
-    def _on_training_start(self):
-        self.started = time.perf_counter()
-        if self.running is not None:  # the reset with which learn() began took them for new visits
-            tables: Any = self.training_env
-            tables.running = self.running
-        self.bar.start()
-        total = goal_of(self.model, self.settings.steps)
-        self.task = self.bar.add_task(self.settings.agent, total=total, completed=self.num_timesteps)
-
-    def _on_rollout_start(self):
-        # here, and only here, everything played so far has been learned from: a checkpoint loses nothing
-        recent = [visit["r"] for visit in self.model.ep_info_buffer or ()]
-        due = self.num_timesteps >= len(self.curve) * self.settings.steps // 20
-        if recent and due and self.num_timesteps > (self.curve[-1]["steps"] if self.curve else -1):  # a resume comes here a second time
-            self.curve.append({"steps": self.num_timesteps, "points": round(float(np.mean(recent)), 3)})
-        if recent:
-            self.bar.update(self.task, description=f"{self.settings.agent} {np.mean(recent):.2f} points a visit")
-        self.stop = self.signal is not None
-        if self.stop or self.saved is None or self.num_timesteps - self.saved >= self.settings.checkpoint_every:
-            self.save()
-
-    def _on_step(self):
-        self.bar.update(self.task, completed=self.num_timesteps)
-        return not self.stop  # SB3 can stop only here; the one shot played since the save is played again after a resume
-
-    def _on_training_end(self):
-        self.seconds_before, self.started = self.seconds, time.perf_counter()
-        if not self.stop:
-            self.save()
-
-    def save(self):
-        """Write the checkpoint."""
-        save_checkpoint(self.path, self.settings, self.model, self.seconds, self.curve, self.imitation)
-        self.saved = self.num_timesteps
-
-
 # the run -------------------------------------------------------------------------------------------------------------------------
 
 
@@ -263,57 +150,38 @@ def command_of(settings):
     return shlex.join(words)
 
 
-def refuse_full(parser, out):
-    """End with a message if the folder holds another run, or anything."""
-    held = sorted(p.name for p in out.iterdir() if p.name not in ("tb", "checkpoint.pkl.tmp")) if out.is_dir() else []
-    if held:
-        parser.error(f"{out} is not empty (it holds {', '.join(held[:3])}): --resume goes on with it, --out names another")
-
-
 def open_run(parser, given, out, resume):
     """(settings, checkpoint or None) of a folder and the options given."""
-    checkpoint = out / "checkpoint.pkl"
     if not resume:
-        if out.exists() and not out.is_dir():
-            raise refuse("out", str(out), "must be a folder, new or empty")
         return Settings(**given), None
-    if not checkpoint.is_file():
-        parser.error(f"{out} holds no checkpoint: start the run without --resume")
-    try:
-        state = pickle.loads(checkpoint.read_bytes())
-        was = asdict(Settings(**state["settings"]))
-        if not state.keys() >= {"model", "tables", "random", "replay", "running", "imitation", "curve", "seconds"}:
-            raise KeyError
-    except Exception:  # whatever pickle makes of a file that is something else
-        raise stale(checkpoint) from None
+    state, was = read_checkpoint(out, Settings)
     for name, value in given.items():
-        if value != was[name] and name not in FREE_ON_RESUME:
-            parser.error(f"--{name.replace('_', '-')} is {value!r} but the run in {out} has {was[name]!r}: give the same or leave it out")
-    return Settings(**{**was, **given}), state
+        if value != getattr(was, name) and name not in FREE_ON_RESUME:
+            before = f"the run in {out} has {getattr(was, name)!r}"
+            parser.error(f"--{name.replace('_', '-')} is {value!r} but {before}: give the same or leave it out")
+    return replace(was, **given), state
 
 
-# the whole -----------------------------------------------------------------------------------------------------------------------
+def prepared(parser, given, out, resume, ending):
+    """(settings, recipe, checkpoint or None, tables, model): whatever can be wrong is found here, before anything is compiled or played.
 
-
-def prepared(parser, given, out, resume):
-    """(settings, recipe, checkpoint or None, tables, model): whatever can be wrong is found here, before anything is compiled or played."""
+    ``ending`` gives back the folder and the tables.
+    """
     try:
+        if resume:
+            ending.enter_context(claimed(out, resume))
         settings, state = open_run(parser, given, out, resume)
         recipe = recipe_of(settings)
         settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs, imitate=recipe.imitation)
         tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, view=recipe.view, **recipe.env_kwargs)
-        if not resume:
-            refuse_full(parser, out)  # another folder is no use as long as an option is wrong
+        ending.callback(tables.close)
         if state:
-            try:
-                model = load_model(state, recipe.algo, tables)
-            except Exception:  # of an older network, or with a part missing
-                raise stale(out / "checkpoint.pkl") from None
+            model = load_model(out, state, recipe.algo, tables)
         else:
             model = recipe.new_model(tables, settings.seed)
             if settings.start:
                 load_weights(model, Path(settings.start))
-        out.mkdir(parents=True, exist_ok=True)
+            ending.enter_context(claimed(out, resume))  # last: a folder is no use as long as an option is wrong
         tempfile.TemporaryFile(dir=out).close()
     except ValueError as error:
         parser.error(str(error))
@@ -322,47 +190,48 @@ def prepared(parser, given, out, resume):
     return settings, recipe, state, tables, model
 
 
-def main(argv=None):
-    """Train, evaluate, save. Exit code 0, or 128 + the signal that stopped it."""
-    parser, given, rest = parse(argv)
-    out = rest.out
-    torch.set_num_threads(1)  # a network this small gains nothing from more, and the tables need the processors
-    torch.distributions.Distribution.set_default_validate_args(False)  # checks of every number, a twentieth of the time
-    settings, recipe, state, tables, model = prepared(parser, given, out, rest.resume)
-    try:
-        print("Compiling ...", flush=True)
-        snooker_env.warmup()
-        began, imitation = time.perf_counter(), state["imitation"] if state else []
-        if recipe.imitation and not state:
-            imitation = imitate(model, tables, recipe.imitation, settings, not rest.no_progress)
-        model.tensorboard_log = str(out / "tb")
-        kept = state or {"seconds": time.perf_counter() - began, "curve": [], "running": None}
-        keeper = Keeper(
-            out / "checkpoint.pkl", settings, kept["seconds"], kept["curve"], imitation, kept["running"], not rest.no_progress
-        )  # fmt: skip
-        before = {number: signal.signal(number, keeper.on_signal) for number in (signal.SIGINT, signal.SIGTERM)}
-        print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {goal_of(model, settings.steps):,} shots played", flush=True)
+def train(out, settings, recipe, state, tables, model, progress):
+    """Teach and train to the end or to a signal: (the ``Keeper``, or None if it was stopped before, the curve of imitation, the signal)."""
+    threads, began, imitation = 1 if settings.parallel == "one" else processors(), time.perf_counter(), state["imitation"] if state else []
+    teaching = state["teaching"] if state else None
+    model.tensorboard_log = str(out / "tb")
+    with Stop() as stop:
+        if teaching or (recipe.imitation and not state):
+            lessons = Teaching(model, tables, recipe.imitation, settings.seed, threads, teaching)
+            of_all = f"{lessons.done:,} of {lessons.states:,} positions"
+            print(f"{settings.agent} in {out}: taught by the search, {of_all}", flush=True)
+            if not taught(lessons, out, settings, model, stop, progress):
+                print(f"Saved at {lessons.done:,} of {lessons.states:,} positions. {go_on(out)}")
+                return None, lessons.curve, stop.signal
+            imitation = lessons.curve
+            seconds, curve, running = lessons.seconds, [], None
+        elif state:
+            seconds, curve, running = (state[name] for name in ("seconds", "curve", "running"))
+        else:
+            seconds, curve, running = time.perf_counter() - began, [], None
+        keeper = Keeper(out, settings, seconds, curve, imitation, running, stop, progress)
+        goal, asked = goal_of(model, settings.steps), settings.steps
+        whole = f" ({asked:,} were asked for: whole rollouts of {rollout_of(model):,})" if goal > asked > model.num_timesteps else ""
+        print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {goal:,} shots played{whole}", flush=True)
         if model.num_timesteps >= settings.steps:
             print("Nothing is left to train.", flush=True)
         else:
+            fresh = state is None or teaching is not None
             try:
-                model.learn(settings.steps - model.num_timesteps, keeper, tb_log_name=settings.agent, reset_num_timesteps=state is None)
+                model.learn(settings.steps - model.num_timesteps, keeper, tb_log_name=settings.agent, reset_num_timesteps=fresh)
             finally:
                 keeper.bar.stop()  # gives the terminal its cursor back, whatever happened
-        for number, handler in before.items():
-            signal.signal(number, handler)
-    finally:
-        tables.close()
-    if keeper.signal:
-        print(
-            f"Saved at {keeper.saved or model.num_timesteps:,} shots. Go on with:  python train.py --resume --out {shlex.quote(str(out))}"
-        )
-        return 128 + keeper.signal
+        if stop.signal:
+            print(f"Saved at {keeper.saved or model.num_timesteps:,} shots. {go_on(out)}")
+        return keeper, imitation, stop.signal
 
+
+def judge(out, settings, recipe, model, keeper, imitation):
+    """Play held-out visits, write the model and every figure, say what was learned."""
     steps, seconds = model.num_timesteps, keeper.seconds_before
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
-    write_model(model, out / "model.zip")
-    figures = evaluate(recipe, model, settings.eval_visits, settings.seed)
+    write_atomic(out / "model.zip", zipped(model))
+    figures = evaluate(recipe, model, settings.eval_visits)
     learned = lesson(settings.agent, steps, model.imitated, figures, model.start)
     results = {
         "command": command_of(settings), "settings": asdict(settings), "steps": steps, "seconds": seconds,
@@ -372,11 +241,31 @@ def main(argv=None):
     write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
     show(figures)
     print(f"{learned}\nFigures: {out / 'results.json'}   curves: tensorboard --logdir {out / 'tb'}")
+
+
+@command("train.py")
+def main(argv=None):
+    """Train, evaluate, save. Exit code 0, or 128 + the signal that stopped it."""
+    parser, given, rest = parse(argv)
+    out = rest.out
+    torch.set_num_threads(1)  # a network this small gains nothing from more, and the tables need the processors
+    torch.distributions.Distribution.set_default_validate_args(False)  # checks of every number, a twentieth of the time
+    with ExitStack() as ending:
+        settings, recipe, state, tables, model = prepared(parser, given, out, rest.resume, ending)
+        try:
+            print("Compiling ...", flush=True)
+            snooker_env.warmup()
+            keeper, imitation, stopped = train(out, settings, recipe, state, tables, model, not rest.no_progress)
+            if stopped:
+                return 128 + stopped
+            judge(out, settings, recipe, model, keeper, imitation)
+        except KeyboardInterrupt:
+            print(f"Interrupted. {kept(out)}", file=sys.stderr)
+            return 130
+        except OSError as error:
+            raise SystemExit(f"train.py: {of_disk(error, str(out / 'tb'))}. {kept(out)}") from None
     return 0
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except KeyboardInterrupt:
-        sys.exit("Interrupted. A run that was saved goes on with --resume, another begins anew.")
+    sys.exit(main())

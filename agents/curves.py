@@ -13,18 +13,21 @@ import json
 import sys
 from pathlib import Path
 
-import matplotlib as mpl
-import numpy as np
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from .command import command, needs
 
-from snooker_env._check import choice, refuse
+with needs("agents.curves"):
+    import matplotlib as mpl
+    import numpy as np
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from .contestants import Agent
-from .destinations import formats
-from .evaluate import writable
+    from snooker_env._check import choice, refuse
 
-mpl.use("Agg")
-import matplotlib.pyplot as plt
+    from .contestants import Agent
+    from .destinations import formats
+    from .files import save_figure, writable
+
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
 
 PICTURE = Path(__file__).parent / "pictures" / "curves.png"
 LEVELS = ("trained", "ghost_ball")
@@ -80,10 +83,11 @@ def draw(agents, file):
     sides[0].set_ylabel("points a visit")
     sides[0].legend(frameon=False, fontsize=9)
     figure.suptitle("Lines: in training, exploring. Discs and ghost_ball: held-out visits, at the end, playing the best", fontsize=11)
-    figure.savefig(file, dpi=110)
+    save_figure(figure, file, dpi=110)
     plt.close(figure)
 
 
+@command("agents.curves")
 def main(argv=None):
     """Check, draw. Exit code 0."""
     p = argparse.ArgumentParser("python -m agents.curves", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)

@@ -16,6 +16,7 @@ from snooker_env.game.balls import HALF_LENGTH, HALF_WIDTH, BallOn
 from snooker_env.physics.table import Table
 from snooker_env.render.scene import BAULK_LINE, COLOURS, CUSHION, D_ARC, RAIL, SPOT_MARKS, outline
 
+from .files import save_figure
 from .report import main_condition
 
 mpl.use("Agg")
@@ -77,7 +78,7 @@ def draw(report, strokes, file):
     edge = 1 - (names + 2.4) / width
     figure.text(edge, 0.908, "All strokes of these visits", fontsize=10)
     figure.text(edge, 0.873, "easy: its line may err by 4 mrad; lines: 95 % intervals", fontsize=8, va="center", color="#555555")
-    figure.savefig(file, dpi=110)
+    save_figure(figure, file, dpi=110)
     plt.close(figure)
 
 

@@ -26,135 +26,38 @@ import os
 import platform
 import shlex
 import sys
-import tempfile
-import zlib
-from dataclasses import dataclass
+from importlib import import_module
 from itertools import product
 from pathlib import Path
 
-import numpy as np
+from .command import command, needs, of_disk
 
-import snooker_env
-from snooker_env._check import choice, integer, refuse
-from snooker_env.envs.noise import Noise
-from snooker_env.game.balls import BallOn
-from snooker_env.game.layouts import POT_WINDOWS, plan_of
-from snooker_env.physics.contact import parse_fidelity
+with needs("agents.evaluate"):
+    import numpy as np
 
-from .commit import commit
-from .contestants import Agent, options_of
-from .models import pretrained
-from .players import NAMES
-from .report import AXES, main_condition, markdown, show
-from .statistics import RESAMPLES, Resamples, interval, iqm
-from .visits import CENTURY, HELD_OUT_SEED, MAXIMUM, Strokes, play, tables_of
-from .world import world
+    import snooker_env
+    from snooker_env._check import choice, integer, refuse
+    from snooker_env.envs.noise import Noise
+    from snooker_env.game.layouts import plan_of
+    from snooker_env.physics.contact import parse_fidelity
+
+    from .commit import commit
+    from .contestants import Agent, options_of
+    from .figures import Played, counts
+    from .files import writable, write_atomic
+    from .models import pretrained
+    from .players import NAMES, is_player
+    from .report import AXES, main_condition, markdown, show
+    from .statistics import RESAMPLES
+    from .visits import HELD_OUT_SEED, play, tables_of
+    from .world import world
 
 PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
 """Visits on each layout."""
 NOISES = ("none", "professional", "amateur", "club")
 REFERENCE = "ghost_ball"
-EASY = POT_WINDOWS["easy"][0]
-HIGH = 6
-"""Pink and black are colours of high value."""
 PICTURE = Path(__file__).parent / "pictures" / "destinations.png"
-
-
-# figures -------------------------------------------------------------------------------------------------------------------------
-
-FIGURES = {
-    "points_a_visit": ("points", "visits"),
-    "pots_a_visit": ("pots", "visits"),
-    "fouls_a_visit": ("fouls", "visits"),
-    "centuries": ("centuries", "visits"),
-    "maximums": ("maximums", "visits"),
-    "clearances": ("clearances", "visits"),
-    "pot_rate": ("pots", "strokes"),
-    "next_pot_after_a_pot": ("followed", "goes_on"),
-    "easy_pot_left_by_a_pot": ("easy", "goes_on"),
-    "colour_value": ("colour_points", "colours"),
-    "high_colours": ("high", "colours"),
-    "high_colour_after_a_red": ("high_after_red", "reds"),
-}
-"""Each is a ratio of two sums over visits, see ``counts``."""
-SCORES = ("points", "pots")
-"""Of these there are inter-quartile means and ratios to other agents, too."""
-
-
-def counts(s: Strokes):
-    """What is counted in each visit: name -> (visits,)."""
-    next_points = np.append(s.points, 0.0)[s.following]  # of the stroke after; 0 after the last
-    red = s.made & (s.ball_on == BallOn.RED)
-    colour = s.made & s.colour
-    entries = {
-        "points": s.points, "pots": s.made, "strokes": np.ones(len(s.points)), "fouls": s.foul, "goes_on": s.goes_on,
-        "followed": s.goes_on & (next_points > 0), "easy": s.goes_on & (s.tolerance >= EASY), "colours": colour,
-        "colour_points": colour * s.points, "high": colour & (s.points >= HIGH), "reds": red, "high_after_red": red & (next_points >= HIGH),
-        "clearances": s.clears,
-    }  # fmt: skip
-    sums = {name: s.a_visit(values) for name, values in entries.items()}
-    breaks = {"centuries": sums["points"] >= CENTURY, "maximums": sums["points"] >= MAXIMUM}
-    return sums | {"visits": np.ones(s.visits)} | {name: made.astype(float) for name, made in breaks.items()}
-
-
-def figure(value, samples):
-    """A figure with its interval; None where there is none."""
-    low, high = interval(samples)
-    return {"value": _number(value), "low": _number(low), "high": _number(high)}
-
-
-def _number(x):
-    return float(x) if np.isfinite(x) else None
-
-
-def _quotient(above, below):
-    return above / below if below else float("nan")
-
-
-@dataclass
-class Played:
-    """What one agent did under one condition: the counts of every run and visit, name -> (runs, visits)."""
-
-    agent: Agent
-    counted: dict
-    strokes: list
-    """The ``Strokes`` of every run."""
-    resamples: int
-
-    @property
-    def _samples(self):
-        runs, visits = self.counted["points"].shape
-        return Resamples(runs, visits, self.resamples, zlib.crc32(self.agent.label.encode()))
-
-    def figures(self):
-        """All figures of this agent alone."""
-        samples, c = self._samples, self.counted
-        found = {
-            name: figure(_quotient(c[a].sum(), c[b].sum()), samples.ratios(c[a], c[b])) for name, (a, b) in FIGURES.items()
-        }  # fmt: skip
-        for name in SCORES:
-            found[f"{name}_a_visit_iqm"] = figure(iqm(c[name]), samples.iqms(c[name]))
-        return found
-
-    def ratios(self, other):
-        """This agent's scores over another's on the same tables."""
-        mine, its, found = self._samples, other._samples, {}
-        for name in SCORES:
-            a, b = self.counted[name], other.counted[name]
-            above, below = mine.sums(a) / mine.sums(np.ones_like(a)), its.sums(b) / its.sums(np.ones_like(b))
-            drawn = np.divide(above, below, out=np.full(len(above), np.nan), where=below != 0)
-            found[f"{name}_a_visit"] = figure(_quotient(a.mean(), b.mean()), drawn)
-        return found
-
-    def result(self, others):
-        """Everything for the JSON file; ``others``: whom to compare with."""
-        strokes = sum(len(s.points) for s in self.strokes)
-        return {
-            "figures": self.figures(), "ratios": {other.agent.label: self.ratios(other) for other in others},
-            "longest_break": int(self.counted["points"].max()),
-            "by_run": {f"{name}_a_visit": self.counted[name].mean(axis=1).tolist() for name in SCORES},
-            "strokes": strokes, "ms_a_decision": 1e3 * sum(s.thinking for s in self.strokes) / strokes,
-        }  # fmt: skip
+FOR_MODELS = ("torch", "stable_baselines3", "sb3_contrib")
 
 
 def play_agent(agent, condition, seeds, budget, resamples):
@@ -164,9 +67,6 @@ def play_agent(agent, condition, seeds, budget, resamples):
     runs = [play(agent.player(k, budget), len(seeds), first_seed=seeds, physics=physics, **options) for k in range(len(agent.runs))]
     each = [counts(strokes) for strokes in runs]
     return Played(agent, {name: np.stack([one[name] for one in each]) for name in each[0]}, runs, resamples)
-
-
-# the command ---------------------------------------------------------------------------------------------------------------------
 
 
 def provenance():
@@ -241,6 +141,9 @@ def checked(args):
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
+    if not all(is_player(run) for agent in agents for run in agent.runs):
+        for package in FOR_MODELS:  # here: whoever reads a model takes what is missing for a broken file
+            import_module(package)
     for agent in agents:
         agent.trained()  # reads its models
     if options and not any(agent.foreign for agent in agents):
@@ -250,53 +153,45 @@ def checked(args):
     return agents, list(dict.fromkeys(args.against)), {name: tables_of(name, visits) for name, visits in sizes.items()}
 
 
-def writable(name, file):
-    """Make the folders of an output, and raise ValueError if it could not be written there. Asked by trying: access bits lie for root."""
-    if file is None:
-        return
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        with file.open("a") if file.exists() else tempfile.TemporaryFile(dir=file.parent):
-            pass
-    except OSError as error:
-        raise refuse(name, str(file), f"must be a file that can be written ({error.strerror})") from None
+def evaluate(report, agents, seeds, tick, shown):
+    """Play everything that the report's protocol says and add the results to it, a whole condition at a time.
 
-
-def evaluate(report, agents, seeds, tick):
-    """Play everything that the report's protocol says and add the results to it; returns the strokes of the main condition, by label."""
-    p, shown = report["protocol"], {}
+    ``shown`` becomes the strokes of the main condition, by label.
+    """
+    p = report["protocol"]
     for layout, *at in product(seeds, *(p[axis] for axis in AXES)):
         condition = {"layout": layout, **dict(zip(AXES, at, strict=True))}
         played = {}
         for agent in agents:
             played[agent.label] = play_agent(agent, condition, seeds[layout], p["search_budget"], p["resamples"])
             tick()
-        others = [played[label] for label in p["against"]]
+        others, rows = [played[label] for label in p["against"]], []
         for one in played.values():
             about = {"agent": one.agent.label, **condition, "visits": len(seeds[layout]), "runs": len(one.agent.runs)}
-            report["results"].append(about | one.result([other for other in others if other is not one]))
+            rows.append(about | one.result([other for other in others if other is not one]))
+        report["results"] += rows
         if condition == main_condition(report):
-            shown = {label: one.strokes for label, one in played.items()}
-    return shown
+            shown |= {label: one.strokes for label, one in played.items()}
 
 
+def spared(file):
+    """Where incomplete figures go: ``file``, or beside it if it is there already, for it may be whole."""
+    return file.with_name(f"{file.stem}.incomplete{file.suffix}") if file and file.exists() else file
+
+
+@command("agents.evaluate")
 def main(argv=None):
-    """Check, play, tell. Exit code 0."""
+    """Check, play, tell. Exit code 0; 130 if it was interrupted: what was complete is kept."""
     p = parser()
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_args(argv)
-    try:
-        from rich.console import Console
-        from rich.progress import Progress
+    from rich.console import Console
+    from rich.progress import Progress
 
-        if args.picture:
-            from .destinations import draw, formats  # now: not to miss matplotlib only after all was played
-    except ImportError as error:
-        raise SystemExit(
-            f'agents.evaluate: {error.name} is missing: pip install "snooker-env[train]" and, for --picture, "[test]"'
-        ) from None
     try:
         if args.picture:
+            from .destinations import formats  # now: not to miss matplotlib only after all was played
+
             choice("picture", args.picture.suffix, formats())
         agents, references, seeds = checked(args)
     except ValueError as error:
@@ -316,27 +211,56 @@ def main(argv=None):
         ],
         "results": [],
     }  # fmt: skip
+    conditions, shown = len(seeds) * int(np.prod([len(report["protocol"][axis]) for axis in AXES])), {}
     with Progress(console=Console(stderr=True), transient=True) as bar:
-        rounds = len(seeds) * len(agents) * int(np.prod([len(report["protocol"][axis]) for axis in AXES]))
-        task = bar.add_task("visits", total=rounds)
-        shown = evaluate(report, agents, seeds, lambda: bar.advance(task))
-    if args.json:  # first: what comes after cannot lose the figures
-        write(args.json, json.dumps(report, indent=1))
+        task = bar.add_task("visits", total=conditions * len(agents))
+        try:
+            evaluate(report, agents, seeds, lambda: bar.advance(task), shown)
+        except KeyboardInterrupt:
+            complete = len(report["results"]) // len(agents)
+            report["incomplete"] = f"interrupted when {complete} of {conditions} conditions were complete; the others are lost"
+    if "incomplete" in report:
+        print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
+        if not report["results"]:
+            return 130
+    tell(report, shown, args)
+    return 130 if "incomplete" in report else 0
+
+
+def tell(report, shown, args):
+    """Print the tables and write what was asked for. A file that cannot be written is told at the end: none loses the others."""
+    files, failed = {name: getattr(args, name) for name in ("json", "markdown", "picture")}, []
+    if "incomplete" in report:
+        files = {name: spared(file) for name, file in files.items()}
+    if not shown:
+        files["picture"] = None
+
+    def text(file):
+        picture = files["picture"] and Path(os.path.relpath(files["picture"], file.parent)).as_posix()
+        write_atomic(file, (markdown(report, picture) + "\n").encode())
+
+    def picture(file):
+        from .destinations import draw
+
+        draw(report, shown, file)
+
+    def written(name, write):
+        try:
+            if files[name]:
+                write(files[name])
+        except OSError as error:
+            failed.append(of_disk(error, files[name]))
+            files[name] = None
+
+    written("json", lambda file: write_atomic(file, (json.dumps(report, indent=1) + "\n").encode()))  # first: the rest cannot lose it
     show(report)
-    if args.markdown:
-        picture = args.picture and Path(os.path.relpath(args.picture, args.markdown.parent)).as_posix()
-        write(args.markdown, markdown(report, picture))
-    if args.picture:
-        draw(report, shown, args.picture)
-    for name in ("json", "markdown", "picture"):
-        if getattr(args, name):
-            print(f"{name}: {getattr(args, name)}")
-    return 0
-
-
-def write(file, text):
-    """Write a text file."""
-    file.write_text(text + "\n", encoding="utf-8")
+    written("markdown", text)
+    written("picture", picture)
+    for name, file in files.items():
+        if file:
+            print(f"{name}: {file}")
+    if failed:
+        raise SystemExit(f"agents.evaluate: {'; '.join(failed)}")
 
 
 if __name__ == "__main__":

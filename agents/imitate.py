@@ -10,6 +10,7 @@ played by the pupil, so it is taught where it will be (DAgger, Ross et al. 2011)
 """
 
 import time
+from collections import deque
 
 import numpy as np
 import torch
@@ -61,31 +62,58 @@ def to_try(scores, masks, rng):
     return picks, np.take_along_axis(masks, picks, axis=1)
 
 
-def teach(model, venv, states, seed, threads, say=lambda done, loss: None):
-    """Teach ``model.policy`` on that many positions; returns the curve, a dict a twentieth. With gamma 0 only points count."""
-    rng, tables, policy = np.random.default_rng(seed), venv.unwrapped.tables, model.policy
-    teacher, optimizer = Teacher(tables, threads, rng, ahead=model.gamma > 0), torch.optim.Adam(policy.parameters(), RATE)
-    n, done, losses, curve, kept, began = venv.num_envs, 0, [], [], [], time.perf_counter()
-    venv.seed(seed)
-    seen = venv.reset()
-    while done < states:
-        for group in optimizer.param_groups:
-            group["lr"] = RATE * (1.0 - done / states) + 1e-5
-        masks = np.array(venv.env_method("action_masks"))
+class Teaching:
+    """``model.policy`` being taught on that many ``states``, positions of visits that it plays itself; with gamma 0 only points count.
+
+    ``before``: of ``get_state``, when the model and its tables are as they were then: it goes on bit for bit as if it had not stopped.
+    """
+
+    def __init__(self, model, venv, states, seed, threads, before=None):
+        self._model, self._venv, self.states, self._rng = model, venv, states, np.random.default_rng(seed)
+        self._teacher = Teacher(venv.unwrapped.tables, threads, self._rng, ahead=model.gamma > 0)
+        self._optimizer = torch.optim.Adam(model.policy.parameters(), RATE)
+        self.done, self.curve, self._kept, self._losses, self._seconds = 0, [], [], deque(maxlen=200), 0.0
+        if before is None:
+            venv.seed(seed)
+        else:
+            self._rng.bit_generator.state = before["rng"]
+            self._optimizer.load_state_dict(before["optimizer"])
+            self.done, self.curve, self._kept, self._seconds = (before[name] for name in ("done", "curve", "kept", "seconds"))
+            self._losses.extend(before["losses"])
+        self._seen = venv.reset()
+        self._began = time.perf_counter()
+
+    @property
+    def seconds(self):
+        """Time of teaching so far."""
+        return self._seconds + time.perf_counter() - self._began
+
+    def get_state(self):
+        """What teaching depends on, beside the model, its tables and its random generators; the positions kept are most of it."""
+        return {
+            "done": self.done, "curve": self.curve, "kept": self._kept, "losses": list(self._losses), "seconds": self.seconds,
+            "rng": self._rng.bit_generator.state, "optimizer": self._optimizer.state_dict(),
+        }  # fmt: skip
+
+    def round(self):
+        """The present position of every table; a twentieth of all makes an entry of ``curve``."""
+        policy, n = self._model.policy, self._venv.num_envs
+        for group in self._optimizer.param_groups:
+            group["lr"] = RATE * (1.0 - self.done / self.states) + 1e-5
+        masks = np.array(self._venv.env_method("action_masks"))
         with torch.no_grad():
-            scores = policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
-        picks, there = to_try(scores, masks, rng)
-        kept.append((seen, masks, picks, there, teacher.worth(picks, there)))
-        del kept[: -max(1, KEPT // n)]
+            scores = policy.get_distribution(torch.as_tensor(self._seen), masks).distribution.logits.numpy()
+        picks, there = to_try(scores, masks, self._rng)
+        self._kept.append((self._seen, masks, picks, there, self._teacher.worth(picks, there)))
+        del self._kept[: -max(1, KEPT // n)]
         for _ in range(max(1, n // PER_UPDATE)):
-            losses.append(_fit(policy, optimizer, [kept[i] for i in rng.integers(len(kept), size=max(1, BATCH // n))]))
-        seen, _, _, _ = venv.step(np.where(masks, scores, -np.inf).argmax(1))
-        done += n
-        if done * 20 // states > len(curve):
-            seconds, loss = time.perf_counter() - began, float(np.mean(losses[-200:]))
-            curve.append({"states": done, "seconds": round(seconds, 1), "loss": round(loss, 3)})
-            say(done, loss)
-    return curve
+            rounds = self._rng.integers(len(self._kept), size=max(1, BATCH // n))
+            self._losses.append(_fit(policy, self._optimizer, [self._kept[i] for i in rounds]))
+        self._seen, _, _, _ = self._venv.step(np.where(masks, scores, -np.inf).argmax(1))
+        self.done += n
+        if self.done * 20 // self.states > len(self.curve):
+            loss = float(np.mean(self._losses))
+            self.curve.append({"states": self.done, "seconds": round(self.seconds, 1), "loss": round(loss, 3)})
 
 
 def _fit(policy, optimizer, rounds):

@@ -14,13 +14,14 @@ from .tables import view_of
 from .visits import play, summary, tables_of
 
 
-def evaluate(recipe, model, visits, seed):
+def evaluate(recipe, model, visits):
     """Figures of held-out visits in the world trained in, the same tables for each: the agent, the plain geometric player, random play.
 
-    They are the first tables of ``agents.evaluate``. Raises ValueError if there are not so many.
+    They are the first tables of ``agents.evaluate``, and "random" is its player of that name whatever the agent: a stroke drawn from the
+    discrete choices, so at a pot that is there. Raises ValueError if there are not so many tables.
     """
     options = player_options(recipe.env_kwargs)
-    players = {"trained": Model(model, options, view_of(recipe.view)), "ghost_ball": GhostBall(), "random": Random(options, seed)}
+    players = {"trained": Model(model, options, view_of(recipe.view)), "ghost_ball": GhostBall(), "random": Random()}
     told: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in WORLD}
     seeds = tables_of("held_out", visits)
     return {name: summary(play(player, visits, first_seed=seeds, **told)) for name, player in players.items()}
@@ -44,8 +45,8 @@ def lesson(agent, steps, taught, figures, start=None):
         begun = f", on top of what {start['model']} had learned in {start['shots']:,},"
     said, widest = f"In {steps:,} shots{begun} {agent} learned", "the widest pot played softly every time"
     if not better(trained, random):
-        less = ", it plays worse than at random" if better(random, trained) else f" that {trained['visits']} visits can show"
-        return f"{said} nothing{less}: {made(trained)} against {made(random)} of random play."
+        less = "worse than" if better(random, trained) else f"no better, as far as {trained['visits']} visits can show, than"
+        return f"{said} to play {less} random strokes at the pots there are: {made(trained)} against {made(random)}."
     if better(ghost, trained):
         return f"{said} to pot, but less than {widest}: {made(trained)} against {made(ghost)}."
     if not better(trained, ghost):
@@ -69,4 +70,6 @@ def show(figures):
         cells += ["-" if f[key] is None else f"{100 * f[key]:.1f} %" for key in ("pot_rate", "next_pot_after_a_pot")]
         cells.append(str(f["longest_break"]))
         table.add_row(name.replace("_", " "), *cells)
-    rich.console.Console().print(table)
+    console = rich.console.Console()
+    console.print(table)
+    console.print("ghost ball: the widest pot, always softly. random: a random stroke at one of the pots there are, whatever the agent.")

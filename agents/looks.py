@@ -7,12 +7,17 @@ another. They are the same for all positions and strokes, so strokes differ by t
 Errors of variance 1 would lie further out and, five being few, see more misses than there are.
 """
 
+import argparse
+import sys
 from statistics import NormalDist
 
-import numpy as np
+from .command import command, needs
 
-from snooker_env._jit import entry
-from snooker_env.envs.noise import Noise, executed
+with needs("agents.looks"):
+    import numpy as np
+
+    from snooker_env._jit import entry
+    from snooker_env.envs.noise import Noise, executed
 
 LOOKS = (354, 1840, 979, 2326, 3875)
 """Keys of the streams."""
@@ -66,12 +71,17 @@ def find(k, keys=5_000, starts=20, seed=0):
     return best, least, float(np.median(unevenness(errors[rng.integers(keys, size=(1000, k))])))
 
 
-def main():
-    """Find them and print them."""
+@command("agents.looks")
+def main(argv=None):
+    """Find them and print them: seconds. Exit code 0."""
+    argparse.ArgumentParser("python -m agents.looks", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args(
+        argv
+    )
     best, least, median = find(len(LOOKS))
     print(f"LOOKS = {tuple(map(int, best))}: unevenness {least:.3f}, of a set drawn at random {median:.2f} (median)")
     print(errors_of(best).round(2))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

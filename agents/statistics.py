@@ -6,7 +6,8 @@ bootstrap of crossed factors [Owen, The pigeonhole bootstrap, 2007]. Of R > 1 ru
 (R - 1) / R of what it is [Rao & Wu 1988]. With one run only the visits are drawn: such an interval says nothing about other seeds.
 
 Intervals are percentiles. Where luck within a visit matters most they are too wide (of 5 runs up to 1.5 times, never too narrow by it);
-where nothing but the seeds differs, 5 of them are few and the 95 % interval covers 85 % (tests/test_evaluate.py measures both).
+where nothing but the seeds differs, 5 of them are few and the 95 % interval covers 85 % (tests/test_statistics.py measures both).
+A bootstrap cannot say how rare a thing is that was never seen, or always: that bound is ``unseen``.
 """
 
 from functools import lru_cache
@@ -73,3 +74,13 @@ def interval(samples, level=0.95):
     """
     low, high = np.quantile(samples, [(1 - level) / 2, (1 + level) / 2])
     return (float(low), float(high)) if np.ptp(samples) > 0 else (float("nan"), float("nan"))
+
+
+def unseen(n, level=0.95):
+    """The largest share of a thing that ``n`` independent trials without one leave possible, nearly 3 / n: exact, one-sided
+    [Clopper & Pearson 1934].
+
+    Runs that have all met the same ``n`` tables and luck count once, not ``n`` times each: of tables and luck that is never too bold, of
+    other training seeds it says nothing.
+    """
+    return 1.0 - (1.0 - level) ** (1.0 / n)

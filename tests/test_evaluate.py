@@ -1,6 +1,7 @@
-"""Are the figures of ``agents.evaluate`` as sure as they say, and does its command do and refuse what it should?"""
+"""Does ``agents.evaluate`` play, tell and keep what it is asked to, and refuse what it should, whatever stops it?"""
 
 import json
+import os
 import re
 import shutil
 import zipfile
@@ -8,104 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy import stats
 
-from agents import evaluate, report
+from agents import evaluate, figures, report
 from agents.recipes import Recipe
-from agents.statistics import Resamples, interval, iqm
 from agents.tables import training_tables
 from agents.world import text_of, world
 from snooker_env.physics.parameters import Physics
-
-# statistics ----------------------------------------------------------------------------------------------------------------------
-
-
-def test_iqm_is_scipys_trimmed_mean():
-    rng = np.random.default_rng(0)
-    for n in (4, 8, 400):
-        for values in (rng.normal(size=n), rng.integers(0, 6, n).astype(float)):
-            assert iqm(values) == pytest.approx(stats.trim_mean(values, 0.25))
-    assert iqm([1, 2, 10]) == pytest.approx((0.25 * 1 + 2 + 0.25 * 10) / 1.5)  # edges count with the part that is inside
-    assert iqm([3.0]) == 3.0
-
-
-def test_samples_are_those_of_a_plain_bootstrap():
-    """Sums, ratios and inter-quartile means against the matrix drawn row by row."""
-    rng = np.random.default_rng(1)
-    x, y = rng.integers(0, 9, (3, 40)).astype(float), rng.integers(1, 5, (3, 40)).astype(float)
-    samples = Resamples(3, 40, 50, seed=2)
-    sums, ratios, iqms = samples.sums(x), samples.ratios(x, y), samples.iqms(x)
-    for k in range(50):
-        runs = np.repeat(np.arange(3), samples._runs[k].astype(int))
-        tables = np.repeat(np.arange(40), samples._visits[k].astype(int))
-        assert len(runs) == 2 and len(tables) == 40
-        drawn = x[np.ix_(runs, tables)]
-        assert sums[k] == pytest.approx(drawn.sum())
-        assert ratios[k] == pytest.approx(drawn.sum() / y[np.ix_(runs, tables)].sum())
-        assert iqms[k] == pytest.approx(stats.trim_mean(drawn.ravel(), 0.25))
-
-
-def test_one_runs_interval_is_scipys():
-    x = np.random.default_rng(3).exponential(size=(1, 300))
-    ours = interval(Resamples(1, 300, 9000).sums(x) / 300)
-    its = stats.bootstrap((x[0],), np.mean, n_resamples=9000, method="percentile", rng=np.random.default_rng(0)).confidence_interval
-    assert ours == pytest.approx(tuple(its), abs=0.01)
-
-
-def test_an_interval_without_news_is_none():
-    assert all(np.isnan(interval(np.zeros(100))))
-    assert all(np.isnan(interval(np.append(np.arange(99.0), np.nan))))
-    assert np.isnan(Resamples(1, 5, 100).ratios(np.ones((1, 5)), np.zeros((1, 5)))).all()
-
-
-def coverage(runs, spreads, of_iqm=False, trials=300, tables=200):
-    """How often the interval holds the true mean 0, scores being sums of normal parts: the run's, the table's, the visit's own."""
-    rng, hits = np.random.default_rng(4), 0
-    of_run, of_table, own = spreads
-    samples = Resamples(runs, tables, 400)
-    for _ in range(trials):
-        x = rng.normal(0, of_run, (runs, 1)) + rng.normal(0, of_table, (1, tables)) + rng.normal(0, own, (runs, tables))
-        low, high = interval(samples.iqms(x.round(1)) if of_iqm else samples.sums(x))
-        hits += low <= 0 <= high
-    return hits / trials
-
-
-@pytest.mark.parametrize(
-    ("runs", "spreads", "least", "most"),
-    [
-        (1, (0, 0.3, 1), 0.91, 0.98),  # only visits differ: as it says
-        (5, (0.1, 0.3, 1), 0.92, 1.0),  # all three of a size, as in play: rather too wide
-        (5, (0, 0, 1), 0.97, 1.0),  # luck alone: too wide
-        (5, (1, 0, 0.01), 0.8, 0.92),  # nothing but seeds: five are few
-    ],
-)
-def test_coverage_is_what_the_docstring_says(runs, spreads, least, most):
-    assert least <= coverage(runs, spreads) <= most
-
-
-def test_coverage_of_the_inter_quartile_mean():
-    assert 0.9 <= coverage(1, (0, 0.3, 1), of_iqm=True, trials=200, tables=100) <= 0.99
-
-
-def played(label, points):
-    """A ``Played`` with these points (runs, visits) and nothing else."""
-    return evaluate.Played(evaluate.Agent(label, ("x",) * len(points)), {"points": points, "pots": points}, [], 1000)
-
-
-def test_paired_ratio():
-    rng = np.random.default_rng(5)
-    base = rng.exponential(10.0, (1, 400))
-    exact = played("twice", 2 * base).ratios(played("base", base))["points_a_visit"]
-    assert exact["value"] == pytest.approx(2) and (exact["low"], exact["high"]) in ((None, None), pytest.approx((2, 2)))
-    near = played("near", 2 * base + rng.normal(0, 1, base.shape)).ratios(played("base", base))["points_a_visit"]
-    apart = played("apart", 2 * rng.permuted(base, axis=1)).ratios(played("base", base))["points_a_visit"]
-    assert near["low"] < 2 < near["high"] and near["high"] - near["low"] < 0.1 * (apart["high"] - apart["low"])
-    # the delta method for independent ones: the relative variances add
-    spread = base.std() / base.mean() / np.sqrt(400)
-    assert apart["high"] - apart["low"] == pytest.approx(2 * 3.92 * np.sqrt(2) * spread, rel=0.2)
-
-
-# the command ---------------------------------------------------------------------------------------------------------------------
 
 QUICK = ["--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"]
 
@@ -140,10 +49,10 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     assert len(found["results"]) == 3 * 2 * 2
     for row in found["results"]:
         assert set(row) == {
-            "agent", "layout", "noise", "fidelity", "physics", "visits", "runs", "figures", "ratios", "longest_break", "by_run", "strokes",
-            "ms_a_decision",
+            "agent", "layout", "noise", "fidelity", "physics", "visits", "runs", "figures", "ratios", "counted", "longest_break", "by_run",
+            "strokes", "ms_a_decision",
         }  # fmt: skip
-        assert set(row["figures"]) == {*evaluate.FIGURES, "points_a_visit_iqm", "pots_a_visit_iqm"}
+        assert set(row["figures"]) == {*figures.FIGURES, "points_a_visit_iqm", "pots_a_visit_iqm"}
         assert set(row["ratios"]) == {"ghost_ball", "random"} - {row["agent"]}
         assert len(row["by_run"]["points_a_visit"]) == row["runs"] == (2 if row["agent"] == "model" else 1)
         for f in [*row["figures"].values(), *(r for ratio in row["ratios"].values() for r in ratio.values())]:
@@ -300,6 +209,78 @@ def test_a_picture_that_fails_loses_no_figures(tmp_path, monkeypatch):
     with pytest.raises(RuntimeError, match="no ink"):
         evaluate.main(["--agent", "random", *QUICK, *outputs])
     assert json.loads((tmp_path / "r.json").read_text())["results"] and (tmp_path / "r.md").read_text()
+
+
+ALL = ("held_out", "colours")
+
+
+def outputs(folder):
+    return ["--json", str(folder / "r.json"), "--markdown", str(folder / "r.md"), "--picture", str(folder / "p.png")]
+
+
+def interrupted_at(monkeypatch, call):
+    """Ctrl-C when ``play_agent`` is called for the so-manyth time."""
+    original, calls = evaluate.play_agent, []
+
+    def play_agent(*arguments):
+        calls.append(1)
+        if len(calls) == call:
+            raise KeyboardInterrupt
+        return original(*arguments)
+
+    monkeypatch.setattr(evaluate, "play_agent", play_agent)
+
+
+def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
+    """And spares a file that is there already."""
+    (tmp_path / "r.md").write_text("whole")
+    interrupted_at(monkeypatch, 4)
+    assert evaluate.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
+    told = capsys.readouterr()
+    lost = "interrupted when 1 of 2 conditions were complete; the others are lost"
+    assert told.err.strip() == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(told.out.split())
+    found = json.loads((tmp_path / "r.json").read_text())
+    assert found["incomplete"] == lost and [(r["layout"], r["agent"]) for r in found["results"]] == [
+        ("held_out", "random"), ("held_out", "ghost_ball")
+    ]  # fmt: skip
+    assert (tmp_path / "r.md").read_text() == "whole" and f"INCOMPLETE: {lost}." in (tmp_path / "r.incomplete.md").read_text()
+    assert f"json: {tmp_path / 'r.json'}" in told.out and f"markdown: {tmp_path / 'r.incomplete.md'}" in told.out
+    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "r.incomplete.md", "p.png"}
+
+
+def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatch, capsys):
+    interrupted_at(monkeypatch, 2)
+    assert evaluate.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
+    told = capsys.readouterr()
+    assert told.err.strip() == "agents.evaluate: interrupted when 0 of 2 conditions were complete; the others are lost" and not told.out
+    assert not list(tmp_path.iterdir())
+
+
+def test_ctrl_c_before_play_is_one_line(monkeypatch, capsys):
+    def stop():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(evaluate.snooker_env, "warmup", stop)
+    assert evaluate.main(["--agent", "random", *QUICK]) == 130
+    assert capsys.readouterr().err == "agents.evaluate: interrupted\n"
+
+
+@pytest.mark.parametrize("full", ["r.json", "r.md", "p.png"])
+def test_a_full_disk_loses_one_file_only(tmp_path, monkeypatch, capsys, full):
+    original = os.replace
+
+    def replace(source, target):
+        if Path(target).name == full:
+            raise OSError(28, "No space left on device")
+        original(source, target)
+
+    monkeypatch.setattr(os, "replace", replace)
+    with pytest.raises(SystemExit) as stop:
+        evaluate.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
+    assert stop.value.code == f"agents.evaluate: {tmp_path / full} cannot be written: No space left on device"
+    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "p.png"} - {full}
+    told = capsys.readouterr().out
+    assert "points a visit" in told and str(tmp_path / full) not in told
 
 
 def test_a_world_is_named_as_it_was_called():

@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from agents import imitate
-from agents.imitate import Teacher, teach, to_try
+from agents.imitate import Teacher, Teaching, to_try
 from agents.lookahead import Position, prospects_of, spread_of
 from agents.recipes import Recipe
 from agents.tables import training_tables
@@ -89,7 +89,9 @@ def test_teaching_is_reproducible_on_any_number_of_threads():
     for threads in (1, 2):
         venv = tables(8)
         model = Recipe.of("ppo_mask").new_model(venv, 5)
-        curve = teach(model, venv, 64, 5, threads)
-        assert curve[-1]["states"] == 64
+        teaching = Teaching(model, venv, 64, 5, threads)
+        while teaching.done < 64:
+            teaching.round()
+        assert teaching.curve[-1]["states"] == 64
         found.append(torch.cat([p.detach().flatten() for p in model.policy.parameters()]))
     assert torch.equal(*found)

@@ -1,0 +1,128 @@
+"""What is kept of a run while it goes on? Checkpoints, the learning curve, and an orderly stop; ``Keeper`` is SB3's callback for it."""
+
+import signal
+import time
+from typing import Any
+
+import numpy as np
+import rich
+import rich.progress
+from stable_baselines3.common.callbacks import BaseCallback
+
+from .run_folder import save_checkpoint
+
+POINTS_OF_THE_CURVE = 20
+
+
+class Stop:
+    """While it lasts SIGINT and SIGTERM are only noted: the save comes when the running update is done. A second one acts at once."""
+
+    def __init__(self):
+        self.signal = None
+
+    def __enter__(self):
+        self._before = {number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)}
+        return self
+
+    def __exit__(self, *error) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _note(self, number, frame):
+        self.signal = number
+        signal.signal(number, signal.SIG_DFL if number != signal.SIGINT else signal.default_int_handler)
+        name = signal.Signals(number).name
+        rich.get_console().print(f"\n{name}: saving after this update ... (once more stops at once, without a save)")
+
+
+def rollout_of(model):
+    """Shots of all tables between two updates: training goes by whole ones."""
+    off_policy = hasattr(model, "train_freq")  # their n_steps is that of n-step returns
+    return model.n_envs * (model.train_freq.frequency if off_policy else model.n_steps)
+
+
+def goal_of(model, steps):
+    """Shots played when training to ``steps`` ends."""
+    return model.num_timesteps + rollout_of(model) * -(-max(0, steps - model.num_timesteps) // rollout_of(model))
+
+
+class Keeper(BaseCallback):
+    """Keeps the run: progress bar, learning curve, checkpoints, and an orderly stop."""
+
+    def __init__(self, out, settings, seconds, curve, imitation, running, stop, progress):
+        super().__init__()
+        self.imitation, self.running, self.stop = imitation, running, stop
+        self.out, self.settings, self.seconds_before, self.curve = out, settings, seconds, curve
+        self.bar = rich.progress.Progress(
+            "[progress.description]{task.description}", rich.progress.BarColumn(), rich.progress.MofNCompleteColumn(),
+            rich.progress.TimeElapsedColumn(), rich.progress.TextColumn("left"), rich.progress.TimeRemainingColumn(), disable=not progress,
+        )  # fmt: skip
+        self.saved, self.stopping = None, False
+
+    @property
+    def seconds(self):
+        """Training time, with that before a resume."""
+        return self.seconds_before + time.perf_counter() - self.started
+
+    def _on_training_start(self):
+        self.started = time.perf_counter()
+        if self.running is not None:  # the reset with which learn() began took them for new visits
+            tables: Any = self.training_env
+            tables.running = self.running
+        self.bar.start()
+        total = goal_of(self.model, self.settings.steps)
+        self.task = self.bar.add_task(self.settings.agent, total=total, completed=self.num_timesteps)
+
+    def _on_rollout_start(self):
+        # here, and only here, everything played so far has been learned from: a checkpoint loses nothing
+        recent = [visit["r"] for visit in self.model.ep_info_buffer or ()]
+        due = self.num_timesteps >= len(self.curve) * self.settings.steps // POINTS_OF_THE_CURVE
+        if recent and due and self.num_timesteps > (self.curve[-1]["steps"] if self.curve else -1):  # a resume comes here a second time
+            self.curve.append({"steps": self.num_timesteps, "points": round(float(np.mean(recent)), 3)})
+        if recent:
+            self.bar.update(self.task, description=f"{self.settings.agent} {np.mean(recent):.2f} points a visit")
+        self.stopping = self.stop.signal is not None
+        if self.stopping or self.saved is None or self.num_timesteps - self.saved >= self.settings.checkpoint_every:
+            self.save()
+
+    def _on_step(self):
+        self.bar.update(self.task, completed=self.num_timesteps)
+        return not self.stopping  # SB3 can stop only here; the one shot played since the save is played again after a resume
+
+    def _on_training_end(self):
+        self.seconds_before, self.started = self.seconds, time.perf_counter()
+        if not self.stopping:
+            self.save()
+
+    def save(self):
+        """Write the checkpoint."""
+        save_checkpoint(self.out, self.settings, self.model, self.seconds, self.curve, self.imitation)
+        self.saved = self.num_timesteps
+
+
+LEAST, SHARE = 30.0, 0.01
+"""Seconds of teaching that a kill may lose, and what share of its time saves may take: where they are slow they come less often.
+
+Of every position taught 3.3 kB are kept (of agents that look ahead): the default's 10,000 make a checkpoint of 35 MB, written in half a
+second; ``imitate.KEPT`` positions, the most, 170 MB.
+"""
+
+
+def taught(teaching, out, settings, model, stop, progress):
+    """Teach the agent to the end and keep what is done in between; whether it came to the end."""
+    bar = rich.progress.Progress(disable=not progress)
+    task = bar.add_task(f"{settings.agent} learns from the search", total=teaching.states, completed=teaching.done)
+    last, cost = time.perf_counter(), 0.0
+    with bar:
+        while teaching.done < teaching.states:
+            teaching.round()
+            bar.update(task, completed=teaching.done)
+            now = time.perf_counter()
+            if stop.signal is not None or now - last > max(LEAST, cost / SHARE):
+                save_checkpoint(out, settings, model, teaching.seconds, [], teaching.curve, teaching.get_state())
+                last = time.perf_counter()
+                cost = last - now
+            if stop.signal is not None:
+                return False
+    model.imitated = teaching.curve[-1]["states"]
+    return True

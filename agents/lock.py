@@ -1,0 +1,78 @@
+"""Whose is a run's folder? The process's that holds its lock; nobody's once that process has ended, whatever ended it."""
+
+import os
+import platform
+import sys
+import time
+
+from snooker_env._check import refuse
+
+try:
+    import fcntl
+except ImportError:  # Windows has none
+    fcntl = None
+
+NAME = "train.lock"
+
+
+class Lock:
+    """Holds ``folder`` until ``release`` or the end of the process. Raises ValueError, naming the holder, if another process does.
+
+    The system's lock (flock) on the file ``train.lock`` counts, not that the file is there: one that kill -9 left is no obstacle. Where
+    there is no flock (Windows) the file itself is the lock: after a kill it has to be deleted, as the error says. A file system that
+    knows no locks is told of and not locked.
+    """
+
+    def __init__(self, folder):
+        self._folder, self._path = folder, folder / NAME
+        self._file = self._held_by_file() if fcntl is None else self._held_by_system(fcntl)
+        try:
+            self._file.truncate(0)
+            self._file.write(f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n")
+            self._file.flush()
+        except OSError:
+            self.release()
+            raise
+
+    def _held_by_system(self, system):
+        while True:
+            file = open(self._path, "a+", encoding="utf-8")  # noqa: SIM115 - kept open: the lock ends with it
+            try:
+                system.flock(file, system.LOCK_EX | system.LOCK_NB)
+            except BlockingIOError:
+                file.close()
+                raise self._taken("") from None
+            except OSError as error:
+                print(f"{self._folder}: no lock ({error.strerror}): let no other run use it", file=sys.stderr)
+                return file
+            if self._path.exists() and os.path.samestat(os.fstat(file.fileno()), os.stat(self._path)):
+                return file
+            file.close()  # its last holder took the file away in between
+
+    def _held_by_file(self):
+        try:
+            return open(self._path, "x", encoding="utf-8")
+        except FileExistsError:
+            raise self._taken(f"; if that process is gone, delete {self._path}") from None
+
+    def _taken(self, more):
+        """The complaint that another process holds the folder."""
+        who = self._path.read_text(encoding="utf-8", errors="replace").strip() if self._path.exists() else ""
+        pid = who.split()[1] if who.startswith("process ") else "PID"
+        return refuse(
+            "out", str(self._folder), f"must be a folder that no other train.py uses: {who or 'another process'} does. Let it end, or stop "
+            f"it, which saves it (kill -INT {pid}), or give another --out{more}",
+        )  # fmt: skip
+
+    def release(self):
+        """Let others have the folder."""
+        if fcntl is None:
+            self._file.close()
+        self._path.unlink(missing_ok=True)
+        self._file.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error) -> None:
+        self.release()
