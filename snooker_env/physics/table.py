@@ -80,10 +80,10 @@ class Table:
 
         positions (n, 2) or, of many tables at once, (b, n, 2); on_table (n,) or (b, n) bool: balls that do not count are False.
         """
-        positions = np.asarray(positions, float)
+        positions = np.array(positions, np.float64, order="C")
         many = positions.ndim == 3
         places = positions if many else positions[None]
-        here = np.ones(places.shape[:2], bool) if on_table is None else np.atleast_2d(on_table)
+        here = np.ones(places.shape[:2], bool) if on_table is None else np.array(on_table, np.bool_, order="C", ndmin=2)
         width, *pair = self._narrowest
         if width - 2 * R < PLAY:  # it would bounce between them without end in no time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
