@@ -1,8 +1,8 @@
 """snooker_env: whole snooker shots, frictional impacts, and the Gymnasium environment ``Snooker-v0`` built on them."""
 
-from gymnasium.envs import registration as _registration
+from gymnasium.envs import registration as _gymnasium
 
-from ._autoregister import register as _register
+from ._registration import register as _register
 from .match import match_env
 from .physics.engine import EventKind
 from .physics.parameters import Physics
@@ -17,4 +17,4 @@ __all__ = [
     "simulate", "simulate_batch", "strike", "warmup",
 ]  # fmt: skip
 
-_register(_registration)
+_register(_gymnasium)

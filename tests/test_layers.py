@@ -24,6 +24,7 @@ ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
     "_jit": {"_cache", "_notices"},
+    "_registration": set(),
     "_autoregister": set(),
     "_check": set(),
     "physics": BASE,
@@ -35,7 +36,7 @@ ALLOWED = {
     "play": BASE | {"physics", "simulation", "game", "envs", "render"},
     "match": {"envs"},
     "warm": {"_jit", "_notices", "simulation", "game", "envs"},
-    "__init__": {"physics", "simulation", "envs", "match", "warm", "_autoregister"},
+    "__init__": {"physics", "simulation", "envs", "match", "warm", "_registration"},
 }
 OUTSIDE = {"gymnasium": {"envs", "__init__", "sb3", "play"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "envs"}, "sb3_contrib": {"envs"}}
