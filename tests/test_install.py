@@ -1,5 +1,6 @@
 """Does ``gymnasium.make("Snooker-v0")`` work where the package is installed, without importing it, and at no cost for other programs?"""
 
+import compileall
 import os
 import shutil
 import subprocess
@@ -32,6 +33,7 @@ class Environment:
     def unpack(self, wheel):
         with zipfile.ZipFile(wheel) as archive:
             archive.extractall(self.site)
+        compileall.compile_dir(self.site, maxlevels=0, quiet=1)  # as pip does
         (self.site / "libraries.pth").write_text(str(HERE))
         return self
 

@@ -33,7 +33,7 @@ PICTURES = ("rgb_array", "ansi")
 NOT_OF_A_TABLE = {
     "reset": 'reset(options={"reset_mask": ...})', "step": "step", "set_state": 'reset(options={"states": ...})', "render": "render",
     "close": "close", "last_shot": "simulate_batch, or SnookerEnv for one table", "spec": "the attribute spec",
-    "unwrapped": "this environment", "set_wrapper_attr": "another environment",
+    "unwrapped": "this environment", "get_wrapper_attr": "call", "set_wrapper_attr": "another environment",
 }  # fmt: skip
 """What ``call`` does not do for single tables, and what there is instead: the tables play, end and begin together."""
 
@@ -159,8 +159,9 @@ class SnookerVectorEnv(VectorEnv):
     def call(self, name, *args, **kwargs):
         """For each table what ``SnookerEnv`` calls ``name``, an attribute or a method (which gets the arguments): a tuple, as
         ``SyncVectorEnv.call`` gives it. ValueError for what does not belong to one table, AttributeError for what is not there."""
-        if name in NOT_OF_A_TABLE or name.startswith("_"):
-            raise refuse("name", name, f"must be what a table has for itself; use {NOT_OF_A_TABLE.get(name, 'public names')} instead")
+        if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
+            instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
+            raise refuse("name", name, "must be something public that a table has for itself" + (f"; use {instead}" if instead else ""))
         found = [getattr(self._table(k, generator), name) for k, generator in enumerate(self.np_random)]
         return tuple(each(*args, **kwargs) if callable(each) else each for each in found)
 
