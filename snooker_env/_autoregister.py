@@ -21,10 +21,10 @@ def _register(registration):
         if package is None or not package.submodule_search_locations:  # its source is gone
             return
         path = os.path.join(package.submodule_search_locations[0], "_registration.py")
-        spec = util.spec_from_file_location("_snooker_env_registration", path)
-        module = util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        module.register(registration)
+        with open(path, encoding="utf-8") as file:
+            names = {}
+            exec(compile(file.read(), path, "exec"), names)
+        names["register"](registration)
     except Exception as error:
         print(f"snooker_env: Snooker-v0 is not registered: {type(error).__name__}: {error}", file=sys.stderr)
 

@@ -36,7 +36,7 @@ def _inner(function, options):
     return made
 
 
-def kernel(function=None, *, seconds=0, uses=()):
+def kernel(function=None, *, seconds=0, uses=()) -> Any:
     """Compile an inner kernel: called from other kernels, never from Python, never cached by itself.
 
     It may not make arrays. So numba need not count references to those it is given (``_nrt``), which costs a fifth of a shot.
@@ -54,7 +54,7 @@ def inlined(function):
     return _inner(function, _INLINED)
 
 
-def entry(function=None, *, what="", seconds=0, uses=()):
+def entry(function=None, *, what="", seconds=0, uses=()) -> Any:
     """Compile a kernel that Python calls: its machine code is kept on disk.
 
     One that takes over a second to compile says ``what`` it is, for a line on stderr before it does; ``seconds`` and ``uses`` as for
@@ -63,7 +63,7 @@ def entry(function=None, *, what="", seconds=0, uses=()):
     if function is None:
         return partial(entry, what=what, seconds=seconds, uses=uses)
     made: Any = numba.njit(**_OPTIONS)(function)
-    if isinstance(made, CPUDispatcher):  # with NUMBA_DISABLE_JIT it is the function itself
+    if made is not function:  # with NUMBA_DISABLE_JIT it is
         made.cost = Cost(what, seconds, uses)
         if CACHE_FOLDER is not None:
             made._cache = Kept(function)

@@ -16,6 +16,7 @@ import pytest
 from tests.processes import ROOT
 
 hatchling = pytest.importorskip("hatchling.build")
+pytest.importorskip("editables")
 
 HERE = Path(sysconfig.get_paths()["purelib"])
 

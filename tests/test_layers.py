@@ -43,8 +43,8 @@ OUTSIDE |= {"stable_baselines3": {"sb3", "envs"}, "sb3_contrib": {"envs"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
-    "__future__", "argparse", "base64", "collections", "concurrent", "contextlib", "dataclasses", "enum", "functools", "hashlib", "html",
-    "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "time", "typing",
+    "__future__", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools", "hashlib",
+    "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "time", "typing",
     "warnings", "zipfile", "zlib",
 }  # fmt: skip
 
