@@ -27,7 +27,7 @@ AIMS = 40
 """Aims tried a speed."""
 
 
-@entry
+@entry(what="the solving of aims", uses=(solved_aim,))
 def _solved(positions, shots, speeds, phys, end_mass_ratio, fidelity, n_steps, aims):
     """``aims`` (m, s) [rad]: the direction of the cue ball that sends the first ball of each shot to its aim point, at each speed.
 

@@ -263,7 +263,7 @@ def _find(positions, on_table, ball_on, noses, e, present, shots):
     return count
 
 
-@entry
+@entry(what="the search for indirect pots", seconds=3)
 def _indirect(positions, on_table, ball_on, noses, e, shots):
     return _find(positions, on_table, ball_on, noses, e, np.empty(N_BALLS, np.bool_), shots)
 

@@ -102,7 +102,7 @@ class Position:
         return Position(self.positions[rows], self.on_table[rows], self.game[rows])
 
 
-@entry
+@entry(what="the choices as actions", uses=(chosen,))
 def _as_actions(positions, on_table, game, rows, picks, phys, end_mass_ratio, fidelity, n_steps, out):
     found, motion, phase, work = np.empty((POTS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
     for i in range(len(rows)):

@@ -27,7 +27,7 @@ def tolerance_of(shown):
     return 10.0 ** (2.0 * (shown - 1.0))
 
 
-@entry
+@entry(what="the view of the pots", seconds=1)
 def _add_pots(observations, shown):
     """Copy the observations (n, SIZE) into ``shown`` and write the pots behind them, read from the observations alone."""
     found = np.empty((POTS, POT_COLUMNS))

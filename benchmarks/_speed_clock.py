@@ -68,7 +68,7 @@ def _each_shot(cost, idle, arguments):
         idle[k], cost[k] = between - before, after - between
 
 
-@entry
+@entry(what="the benchmark of impacts", uses=(contact.collide_balls,))
 def _each_impact(cost, idle, x, normals, phys, code, n_steps):
     """With an empty ``cost`` the counter is not read."""
     total, read = 0.0, len(cost) > 0

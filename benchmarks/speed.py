@@ -44,7 +44,7 @@ PARTS = ("impacts", "shots", "breakdown", "start", "growth")
 FILE = Path(__file__).parent / "pictures" / "speed.png"
 
 
-@entry
+@entry(what="the benchmark of an impact", uses=(contact.collide_balls,))
 def _same_impact(x, normal, times, phys, code, n_steps):
     v1, w1, still, total = (x[0], x[1], 0.0), (x[2], x[3], x[4]), (0.0, 0.0, 0.0), 0.0
     work = np.empty(WORK)

@@ -1,7 +1,8 @@
 """snooker_env: whole snooker shots, frictional impacts, and the Gymnasium environment ``Snooker-v0`` built on them."""
 
-import gymnasium as _gymnasium
+from gymnasium.envs import registration as _gymnasium
 
+from ._registration import register as _register
 from .match import match_env
 from .physics.engine import EventKind
 from .physics.parameters import Physics
@@ -16,8 +17,4 @@ __all__ = [
     "simulate", "simulate_batch", "strike", "warmup",
 ]  # fmt: skip
 
-# A string entry point keeps this import light and the spec JSON-able; a second import (a reload) stays silent.
-if "Snooker-v0" not in _gymnasium.registry:
-    _gymnasium.register(
-        id="Snooker-v0", entry_point="snooker_env.envs.snooker:SnookerEnv", vector_entry_point="snooker_env.envs.vector:SnookerVectorEnv"
-    )
+_register(_gymnasium)

@@ -66,9 +66,9 @@ def integer(field, value, low, high):
 
 
 def flags(field, value, shape):
-    """A bool array of the given shape, always a fresh copy."""
+    """A bool array of the given shape, always a fresh C-ordered copy."""
     try:
-        a = np.array(value)
+        a = np.array(value, order="C")
     except (TypeError, ValueError):
         raise refuse(field, value, f"must be bool of shape {shape}") from None
     if a.shape != shape or a.dtype != np.bool_:

@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv
 
-from ._check import choice, refuse
+from ._check import choice, integer, refuse
 from .envs.vector import SnookerVectorEnv
 from .envs.visit import COUNTS, REALS
 
@@ -19,12 +19,16 @@ from .envs.visit import COUNTS, REALS
 class SnookerVecEnv(VecEnv):
     """``num_envs`` tables as SB3 takes them; all other arguments are those of ``SnookerVectorEnv``.
 
+    ``seed``: an int, table k then begins with seed + k, as after ``seed(seed)``.
+
     A step that ends a visit starts the next one. Its info holds ``terminal_observation``, ``TimeLimit.truncated`` and, as a ``Monitor``
     around each table would give it, ``episode`` with the reward "r", the length "l" and the time "t" [s]. Other infos are left out, ten
     entries for each table at each step being slow, but for those named in ``info_keys``.
     """
 
-    def __init__(self, num_envs, *, info_keys=(), **kwargs):
+    def __init__(self, num_envs, *, seed=None, info_keys=(), **kwargs):
+        if seed is not None:
+            seed = integer("seed", seed, 0, 2**63 - 1)
         if "autoreset_mode" in kwargs:
             raise refuse("autoreset_mode", kwargs["autoreset_mode"], "must be left out: Stable-Baselines3 needs SAME_STEP")
         self.tables = SnookerVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **kwargs)
@@ -33,6 +37,8 @@ class SnookerVecEnv(VecEnv):
         self._actions = None
         self._returns, self._lengths = np.zeros(num_envs), np.zeros(num_envs, np.int64)
         self._start = time.time()
+        if seed is not None:
+            self.seed(seed)
 
     def reset(self):
         """New visits on all tables, with the seeds and options set before: ``set_options([{"state": ...}, ...])`` starts from states.

@@ -29,12 +29,12 @@ class SimulationError(RuntimeError):
     """A shot that could not be computed; the message names the shot, its last event and what to try."""
 
 
-@entry
+@entry(what="the impact of two balls", uses=(contact.collide_balls,))
 def _collide_balls(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
     return contact.collide_balls(v1, w1, v2, w2, nx, ny, phys, phys[P_E_B], fidelity, n_steps, np.empty(WORK))
 
 
-@entry
+@entry(what="the impact with a cushion", uses=(contact.collide_cushion,))
 def _collide_cushion(v, w, nx, ny, phys, fidelity, n_steps):
     e = contact.cushion_restitution(v[0] * nx + v[1] * ny, phys)
     return contact.collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, np.empty(WORK))
@@ -141,7 +141,8 @@ class Shot:
             raise refuse("t", float(times.min()), "must not be negative")
         n, m = len(self.positions), len(times)
         out = np.zeros((m, n, 2)), np.zeros((m, n, 2)), np.zeros((m, n, 3))
-        trajectory.states_at(self.segments, n, times, self.physics.pack(), *out)
+        segments = np.require(self.segments, np.float64, ["C", "W"])  # as compiled for; a shot that came from elsewhere may be read-only
+        trajectory.states_at(segments, n, times, self.physics.pack(), *out)
         if self.physics.spin_decel > 0:
             out[2][times >= self.duration] = 0.0  # rounding may leave 1e-14 of a spin at the very time at which it ends
         return tuple(a[0] for a in out) if np.ndim(t) == 0 else out

@@ -1,19 +1,35 @@
-"""How is compiling paid for in advance? ``warmup`` runs everything once that a shot or a step needs."""
+"""How is compiling paid for in advance? ``warmup`` runs everything once that is ever compiled for this package."""
 
+from ._jit import ENTRIES
+from ._notices import warming_up
 from .simulation import collide_balls, collide_cushion, simulate
 
 
 def warmup():
-    """Compile everything that a shot or a step of ``Snooker-v0`` needs, of one table or of many, or load it from the cache.
+    """Compile every kernel of the package, for one table or many, or load it from the cache; stderr tells how far that is.
 
-    Call it in the parent before worker processes start: otherwise each of them compiles everything by itself.
+    Call it in the parent before worker processes start: otherwise each of them compiles for itself. Nothing is said where all comes from
+    the cache, or with ``SNOOKER_ENV_QUIET=1``.
     """
-    from .envs.snooker import SnookerEnv  # not at the top: this module is part of the light import
+    from .envs.actions import line  # not at the top: this module is part of the light import
+    from .envs.snooker import SnookerEnv
+    from .game.balls import REDS_MASK
+    from .game.pots import pots
+    from .game.snookered import is_snookered
+    from .game.spotting import spot_colours
 
-    for task in ("visit", "frame"):
-        env = SnookerEnv(task=task, aim="target", noise="club", placement=True)
+    with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
+        simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
+        collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
+        collide_cushion((1, 0, 0), (0, 0, 0), (1, 0, 0))
+        env = SnookerEnv(action="discrete")
         env.reset(seed=0)
-        env.step([0.0] * 6)
-    simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
-    collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
-    collide_cushion((1, 0, 0), (0, 0, 0), (1, 0, 0))
+        env.action_masks()
+        env.step(0)
+        frame = SnookerEnv(task="frame", aim="target", noise="club", placement=True, miss="clear_path")
+        frame.reset(seed=0)
+        frame.step([0.0] * 6)
+        pots(env.positions, env.on_table, REDS_MASK)
+        line(env.positions, env.on_table, REDS_MASK)
+        is_snookered(env.positions, env.on_table, REDS_MASK)
+        spot_colours(env.positions, env.on_table, 0)

@@ -1,6 +1,10 @@
 """Which fixtures do several test files share? A window that needs no display."""
 
+import os
+
 import pytest
+
+os.environ.setdefault("SNOOKER_ENV_QUIET", "1")  # what tests read on stderr must not depend on what was compiled before
 
 
 @pytest.fixture

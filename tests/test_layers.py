@@ -21,7 +21,11 @@ NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
 BASE = {"_jit", "_check"}
 ALLOWED = {
-    "_jit": set(),
+    "_cache": set(),
+    "_notices": {"_cache"},
+    "_jit": {"_cache", "_notices"},
+    "_registration": set(),
+    "_autoregister": set(),
     "_check": set(),
     "physics": BASE,
     "simulation": BASE | {"physics"},
@@ -31,16 +35,16 @@ ALLOWED = {
     "sb3": BASE | {"physics", "simulation", "game", "envs"},
     "play": BASE | {"physics", "simulation", "game", "envs", "render"},
     "match": {"envs"},
-    "warm": {"simulation", "envs"},
-    "__init__": {"physics", "simulation", "envs", "match", "warm"},
+    "warm": {"_jit", "_notices", "simulation", "game", "envs"},
+    "__init__": {"physics", "simulation", "envs", "match", "warm", "_registration"},
 }
 OUTSIDE = {"gymnasium": {"envs", "__init__", "sb3", "play"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "envs"}, "sb3_contrib": {"envs"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
-    "__future__", "argparse", "base64", "collections", "concurrent", "contextlib", "dataclasses", "enum", "functools", "hashlib", "html",
-    "importlib", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "time", "typing",
+    "__future__", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools", "hashlib",
+    "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "time", "typing",
     "warnings", "zipfile", "zlib",
 }  # fmt: skip
 

@@ -5,42 +5,16 @@ import inspect
 import json
 import os
 import shutil
-import subprocess
-import sys
 import typing
 import warnings
-from pathlib import Path
 
 import gymnasium
 import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env import _jit
-
-ROOT = Path(sn.__file__).resolve().parents[1]
-CACHE = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "NUMBA_DISABLE_JIT")
-
-
-def python(code, *, at=ROOT, warn="error::UserWarning", **variables):
-    """What a fresh interpreter prints; ``at``: the folder that holds the package, ``variables``: of the environment, None to unset."""
-    env = os.environ | {"PYTHONPATH": str(at), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONWARNINGS": warn}
-    env = {k: v for k, v in (env | variables).items() if v is not None}
-    done = subprocess.run([sys.executable, "-c", code], cwd=at, env=env, capture_output=True, text=True, timeout=280, check=False)
-    assert done.returncode == 0, done.stderr[-3000:]
-    return done.stdout, done.stderr
-
-
-def copy_of_package(to):
-    shutil.copytree(ROOT / "snooker_env", to / "snooker_env", ignore=shutil.ignore_patterns("__pycache__"))
-    return to
-
-
-def replace(path, old, new):
-    text = path.read_text()
-    assert text.count(old) == 1, f"{path.name} holds {old!r} {text.count(old)} times"
-    path.write_text(text.replace(old, new))
-
+from snooker_env import _cache
+from tests.processes import CACHE, ROOT, copy_of_package, python, replace
 
 # Imports and names
 
@@ -157,52 +131,44 @@ def test_the_warning_of_an_overwritten_id_would_be_seen():
 
 def test_the_cache_folder_depends_on_every_source_file(tmp_path):
     root = copy_of_package(tmp_path) / "snooker_env"
-    first = _jit.source_hash(root)
-    assert first == _jit.source_hash(root) == _jit.source_hash(ROOT / "snooker_env")
+    first = _cache.source_hash(root)
+    assert first == _cache.source_hash(root) == _cache.source_hash(ROOT / "snooker_env")
     seen = {first}
     files = sorted(root.rglob("*.py"))
     assert len(files) > 25
     for path in files:
         text = path.read_bytes()
         path.write_bytes(text.replace(b"e", b"f", 1) if b"e" in text else text + b"#")  # same size, other content
-        seen.add(_jit.source_hash(root))
+        seen.add(_cache.source_hash(root))
         path.write_bytes(text)
         os.utime(path, (1e9, 1e9))  # its age does not matter
     assert len(seen) == len(files) + 1
     (root / "new.py").write_text("")
-    seen.add(_jit.source_hash(root))
+    seen.add(_cache.source_hash(root))
     (root / "new.py").rename(root / "newer.py")
-    seen.add(_jit.source_hash(root))
+    seen.add(_cache.source_hash(root))
     (root / "newer.py").unlink()
     assert len(seen) == len(files) + 3
-    assert _jit.source_hash(root) == first
+    assert _cache.source_hash(root) == first
     (root / "notes.txt").write_text("no source")
-    assert _jit.source_hash(root) == first
+    assert _cache.source_hash(root) == first
 
 
 def test_the_cache_is_where_it_is_said_to_be(tmp_path, monkeypatch):
     for name in CACHE:
         monkeypatch.delenv(name, raising=False)
-    key = _jit.source_hash()
+    key = _cache.source_hash()
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
-    assert _jit.cache_folder() == tmp_path / "home" / ".cache" / "snooker_env" / key
+    assert _cache.cache_folder() == tmp_path / "home" / ".cache" / "snooker_env" / key
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
-    assert _jit.cache_folder() == tmp_path / "xdg" / "snooker_env" / key
+    assert _cache.cache_folder() == tmp_path / "xdg" / "snooker_env" / key
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "numba"))
-    assert _jit.cache_folder() == tmp_path / "numba" / "snooker_env" / key
-    assert _jit.cache_folder().is_dir() and not list(_jit.cache_folder().iterdir())  # the trial file is gone
+    assert _cache.cache_folder() == tmp_path / "numba" / "snooker_env" / key
+    assert _cache.cache_folder().is_dir() and not list(_cache.cache_folder().iterdir())  # the trial file is gone
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
     with pytest.warns(RuntimeWarning, match="is not writable"):
-        assert _jit.cache_folder() is None
-
-
-def test_numbas_own_setting_is_given_back():
-    import numba
-
-    before = numba.config.CACHE_DIR
-    _jit.entry(lambda x: x + 1)
-    assert before == numba.config.CACHE_DIR
+        assert _cache.cache_folder() is None
 
 
 SPOT = """
@@ -231,7 +197,7 @@ def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
 def test_without_the_hash_a_change_would_be_missed(tmp_path):
     """The control: one folder for all sources, and numba runs the old machine code. So the test above can fail."""
     at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
-    replace(at / "snooker_env/_jit.py", 'Path(home) / "snooker_env" / source_hash()', 'Path(home) / "snooker_env"')
+    replace(at / "snooker_env/_cache.py", 'home / "snooker_env" / source_hash()', 'home / "snooker_env" / "one"')
     assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()[:2] == ["1.4605", "0"]
     replace(at / "snooker_env/game/balls.py", "spots[BLACK] = 0.0, 1.4605", "spots[BLACK] = 0.0, 1.4005")
     assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()[:2] == ["1.4605", "1"]

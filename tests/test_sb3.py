@@ -15,6 +15,7 @@ from agents.tables import training_tables
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.visit import COUNTS, REALS
 from snooker_env.sb3 import SnookerVecEnv
+from tests.refusals import refused
 
 KEYS = (*REALS, *COUNTS, "foul")
 
@@ -61,6 +62,24 @@ def test_it_gives_what_dummy_vec_env_gives(options):
             assert set(info) == set(other) and all(equal(info[key], other[key]) for key in info)
             assert all(type(info[key]) is type(other[key]) for key in KEYS)
     assert ends > 60 and (cut > 5) == ("max_episode_steps" in options)
+
+
+def test_a_seed_at_the_start_is_as_one_given_later():
+    """Table k begins with seed + k; later visits follow from it."""
+    at_once, later, other = SnookerVecEnv(5, seed=3), SnookerVecEnv(5), SnookerVecEnv(5, seed=np.int64(4))
+    later.seed(3)
+    first = at_once.reset()
+    assert np.array_equal(first, later.reset()) and np.array_equal(first[1:], other.reset()[:4])
+    assert at_once.tables.np_random_seed == (3, 4, 5, 6, 7)
+    a = np.zeros((5, 4), np.float32)
+    assert all(np.array_equal(at_once.step(a)[0], later.step(a)[0]) for _ in range(5))
+    assert not np.array_equal(SnookerVecEnv(5).reset(), SnookerVecEnv(5).reset())
+    assert not np.array_equal(at_once.reset(), first)
+
+
+@pytest.mark.parametrize("seed", [-1, 1.0, "1", True, [1, 2], 2**63])
+def test_wrong_seeds_are_refused(seed):
+    refused(lambda: SnookerVecEnv(2, seed=seed), "seed", repr(seed), "must be an integer in [0, 9223372036854775807]")
 
 
 def test_infos_are_empty_unless_something_is_to_say():

@@ -122,9 +122,10 @@ class Actions:
             raise refuse("action", action, allowed)
         if a.shape != (self.size,):
             raise refuse_what("action", f"array of shape {a.shape}", allowed)
-        if not np.all((a >= -1) & (a <= 1)):  # NaN fails too; the most negative integer has no absolute value
-            raise refuse("action", a.tolist(), "must be finite and within [-1, 1]")
-        return a.tolist()
+        a = a.astype(np.float64).tolist()  # whatever it was: the kernels are compiled for float64 alone
+        if not all(-1.0 <= x <= 1.0 for x in a):  # NaN fails too
+            raise refuse("action", a, "must be finite and within [-1, 1]")
+        return a
 
     def check_many(self, actions, n):
         """The actions of n tables as a fresh float64 array (n, size); ValueError as ``check``, naming the first table that is wrong."""

@@ -64,7 +64,7 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
     return (qx * uy - qy * ux) / (hypot(ux, uy) * away) if ahead > 0.0 else 9.0
 
 
-@kernel
+@kernel(seconds=5, uses=(collide_balls,))
 def solved_aim(positions, ball, px, py, gx, gy, speed, side, top, elevation, phys, end_mass_ratio, fidelity, n_steps, motion, state, work):
     """Direction [rad] in which the cue ball must leave to send ``ball`` to the aim point p; (gx, gy): the straight line's ghost ball.
 

@@ -31,7 +31,7 @@ def choice_of(pot, speed, side, top):
     return pot * STROKES + (speed * len(SIDES) + side) * len(TOPS) + top
 
 
-@kernel
+@kernel(seconds=1, uses=(solved_aim,))
 def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_steps, found, motion, state, work):
     """(speed, side, top, aim, elevation) of choice ``index``, as ``actions.shot_of``; found (POTS, POT_COLUMNS), motion (2, COLUMNS),
     state (2,) and work are work space."""

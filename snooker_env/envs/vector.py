@@ -3,8 +3,10 @@
 gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
 """
 
+import copy
 import os
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import gymnasium
@@ -13,17 +15,15 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from .._check import choice, integer, refuse, refuse_what, truth
+from .._check import choice, integer, refuse, refuse_what
 from ..game.balls import BallOn
 from . import observations
-from .bed import fitted
 from .choices import Choices
 from .frame_table import MAX_STROKES
 from .pictures import Pictures
-from .shooting import shooter_of
-from .snooker import LAYOUTS, SnookerEnv, visit_only
+from .snooker import SnookerEnv
 from .state import checked
-from .visit import BALL_ON, COUNTS, NEVER, POINTS, REALS, Returned, Rules, Visits, Work
+from .visit import BALL_ON, COUNTS, NEVER, POINTS, REALS, Returned, Visits, Work
 
 CHUNK = 128
 """Most tables played in one go: few enough for a work space that stays in the cache, enough to make the calls from Python cheap."""
@@ -31,6 +31,12 @@ LEAST = 8
 """Fewest tables that are worth a thread or a chunk of their own."""
 
 PICTURES = ("rgb_array", "ansi")
+NOT_OF_A_TABLE = {
+    "reset": 'reset(options={"reset_mask": ...})', "step": "step", "set_state": 'reset(options={"states": ...})', "render": "render",
+    "close": "close", "last_shot": "simulate_batch, or SnookerEnv for one table", "spec": "the attribute spec",
+    "unwrapped": "this environment", "get_wrapper_attr": "call", "set_wrapper_attr": "another environment",
+}  # fmt: skip
+"""What ``call`` does not do for single tables, and what there is instead: the tables play, end and begin together."""
 
 
 def processors():
@@ -68,17 +74,18 @@ class SnookerVectorEnv(VectorEnv):
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
         if render_mode is not None:
             choice("render_mode", render_mode, PICTURES)
-        layout = LAYOUTS["visit"] if isinstance(layout, str) and layout == "default" else layout
-        shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action)
-        plan = fitted(layout, shooter.table)
-        visit_only(reward, opponent=opponent, trust=truth("trust", trust), miss=miss, decision=decision, max_strokes=max_strokes)
+        self._one = SnookerEnv(
+            task=task, layout=layout, action=action, aim=aim, observation=observation, noise=noise, reward=reward, elevation=elevation,
+            placement=placement, physics=physics, table=table, fidelity=fidelity, render_mode=render_mode, opponent=opponent, miss=miss,
+            decision=decision, max_strokes=max_strokes, trust=trust,
+        )  # fmt: skip
+        shooter = self._one.shooter
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode, self.observation, self.shooter = render_mode, observation, shooter
-        self.single_action_space = shooter.actions.space
-        self.single_observation_space = observations.space(observation)
+        self.single_action_space, self.single_observation_space = self._one.action_space, self._one.observation_space
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
-        self.visits = Visits(Rules(shooter, plan, reward, limit), self.num_envs)
+        self.visits = Visits(replace(self._one.visits.rules, limit=limit), self.num_envs)
         self._pictures = Pictures(shooter.table, render_mode)
         self._generators: list[Any] = [None] * self.num_envs
         self._generator_seeds = [-1] * self.num_envs
@@ -149,6 +156,31 @@ class SnookerVectorEnv(VectorEnv):
         if not isinstance(self.shooter.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.visits.action_masks()
+
+    def call(self, name, *args, **kwargs):
+        """For each table what ``SnookerEnv`` calls ``name``, an attribute or a method (which gets the arguments): a tuple, as
+        ``SyncVectorEnv.call`` gives it. ValueError for what does not belong to one table, AttributeError for what is not there."""
+        if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
+            instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
+            raise refuse("name", name, "must be something public that a table has for itself" + (f"; use {instead}" if instead else ""))
+        found = [getattr(self._table(k, generator), name) for k, generator in enumerate(self.np_random)]
+        return tuple(each(*args, **kwargs) if callable(each) else each for each in found)
+
+    def get_attr(self, name):
+        """``call`` without arguments: an attribute of each table."""
+        return self.call(name)
+
+    def set_attr(self, name, values):
+        """Not to be had."""
+        raise AttributeError(f"{name} cannot be set: the tables share everything; make another environment")
+
+    def _table(self, k, generator):
+        """Table k as a ``SnookerEnv``; they share the table's state."""
+        env, visits, here = copy.copy(self._one), copy.copy(self.visits), slice(k, k + 1)
+        visits.positions, visits.on_table, visits.game = self.visits.positions[here], self.visits.on_table[here], self.visits.game[here]
+        visits.n, visits.streams = 1, self.visits.streams[here]
+        env.visits, env._np_random, env._np_random_seed = visits, generator, self._generator_seeds[k]
+        return env
 
     def render(self):
         """A picture of each table: uint8 (H, W, 3) for "rgb_array", str for "ansi"."""

@@ -48,7 +48,7 @@ _WHY = {
 }
 
 
-@entry
+@entry(what="the strokes of the environment", seconds=3, uses=(choices.chosen,))
 def _address(actions, waiting, positions, on_table, game, streams, options, noise, phys, fidelity, n_steps, r, v, w, here, shots):
     """Carry the actions (m, k) out up to the strike; tables ``waiting`` for a new layout play no shot."""
     found = np.empty((choices.POTS if options[A_DISCRETE] else 1, POT_COLUMNS))
@@ -84,7 +84,7 @@ def _address(actions, waiting, positions, on_table, game, streams, options, nois
         w[k, CUE, 0], w[k, CUE, 1], w[k, CUE, 2] = shot[WX], shot[WY], shot[WZ]
 
 
-@entry
+@entry(what="the referee of visits", seconds=4)
 def _conclude(waiting, positions, on_table, game, r, potted, status, duration, event_time, event_what, n_events, shots, reward, limit,
               observations, rewards, terminated, truncated, reals, counts):  # fmt: skip
     """Judge the shots that came to rest and put their tables in order; write everything that a step returns."""
@@ -127,7 +127,7 @@ def _copy(row, to):
         to[c] = row[c]
 
 
-@entry
+@entry(what="the start of a visit", seconds=1)
 def _begin(wanted, others, in_hand, positions, on_table, game, observations, reals, counts, last_observations, last_reals, last_counts):
     """Start a visit on the tables ``wanted``, dealt before, and write what a reset returns; on the ``others`` too if that is set.
 
@@ -248,7 +248,7 @@ class Visits:
     def action_masks(self):
         """Which choices there are on each table: bool (n, choices.SIZE)."""
         out = np.empty((self.n, choices.SIZE), np.bool_)
-        choices.masks(self.positions, self.on_table, self.game[:, BALL_ON], out)
+        choices.masks(self.positions, self.on_table, self.game[:, BALL_ON].copy(), out)
         return out
 
     def play(self, actions, waiting, out, work, start=0, *, same_step=False):

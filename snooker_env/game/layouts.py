@@ -150,7 +150,7 @@ def _deal(code, tables, stream, positions, on_table, found):
             return
 
 
-@entry
+@entry(what="the dealing of tables", seconds=4)
 def deal_tables(wanted, code, tables, streams, positions, on_table):
     """Deal a new layout on each table k that is ``wanted``, from its own stream: positions (n, 22, 2), on_table (n, 22), in place.
 

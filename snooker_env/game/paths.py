@@ -107,7 +107,7 @@ def clear_path(positions, on_table, on, radius):
     return False
 
 
-@entry
+@entry(what="the paths of the miss rule", seconds=2)
 def _paths(positions, on_table, on, radius):
     return clear_path(positions, on_table, on, radius), full_ball_path(positions, on_table, on, radius)
 

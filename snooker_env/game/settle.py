@@ -61,7 +61,7 @@ def settle(positions, on_table, ball_on, free_ball, lead, first, touching, moved
     return result
 
 
-@entry
+@entry(what="the referee of frames", seconds=2)
 def settle_one(positions, on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags, jaws, radius):
     """``settle`` for Python."""
     return settle(positions, on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags, jaws, radius)

@@ -121,7 +121,7 @@ def snookered(positions, on_table, on, jaws, radius):
     return snookered_in_hand(positions, on_table, on, jaws, radius), 0
 
 
-@entry
+@entry(what="the test for a snooker", seconds=1)
 def _snookered(positions, on_table, on, jaws, radius):
     return snookered(positions, on_table, on, jaws, radius)
 

@@ -112,7 +112,7 @@ def _add(a, b):
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
-@kernel
+@kernel(seconds=2, uses=(solve,))
 def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, work):
     """Impact of two equal balls, (nx, ny) the unit vector from ball 1 to ball 2 -> v1, w1, v2, w2, solved.
 
@@ -134,7 +134,7 @@ def _cushion_constants(sin_t, cos_t):
     )  # fmt: skip
 
 
-@kernel
+@kernel(seconds=1, uses=(solve,))
 def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, work):
     """Impact of a ball with a nose, (nx, ny) the unit vector INTO the cushion -> v, w, solved. [MJP10], Coulomb at zero slip.
 

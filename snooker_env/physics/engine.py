@@ -281,7 +281,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
     return status, n_events, n_segments, end
 
 
-@entry
+@entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion))
 def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, fidelity, n_steps, max_events,
               event_time, event_what, segments, status, n_events, n_segments, duration, start, stop):  # fmt: skip
     """Shots ``start`` to ``stop`` of a batch; arrays as in ``run`` with a leading batch axis. Work space is made once."""

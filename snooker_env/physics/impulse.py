@@ -79,7 +79,7 @@ def _breaks_loose_at(w, start, c, law, mu_s, near, cloth):
     return high
 
 
-@kernel
+@kernel(seconds=8)
 def solve(start, c, law, mu_s, e, accuracy, w):
     """Integrate one impact. Speeds in units of the closing speed (so that is 1); returns (F1, F2, G1, G2, p, W, Z), status.
 

@@ -105,10 +105,10 @@ class Table:
         """
         if self.is_preset and abs(R - BALL_RADIUS) > 1e-9:
             raise refuse("physics.R", R, f'must be {BALL_RADIUS} on table "{self.name}", which is made for it; give a Table of your own')
-        positions = np.asarray(positions, float)
+        positions = np.array(positions, np.float64, order="C")
         many = positions.ndim == 3
         places = positions if many else positions[None]
-        here = np.ones(places.shape[:2], bool) if on_table is None else np.atleast_2d(on_table)
+        here = np.ones(places.shape[:2], bool) if on_table is None else np.array(on_table, np.bool_, order="C", ndmin=2)
         width, *pair = self._narrowest
         if width - 2 * R < PLAY:  # it would bounce between them without end in no time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"

@@ -1,0 +1,33 @@
+"""How does a test look at a fresh process? It runs Python on a copy of the package or on this one."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import snooker_env as sn
+
+ROOT = Path(sn.__file__).resolve().parents[1]
+CACHE = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "NUMBA_DISABLE_JIT")
+"""Variables that decide where machine code is kept, or if there is any."""
+
+
+def python(code, *, at=ROOT, warn="error::UserWarning", **variables):
+    """What a fresh interpreter prints; ``at``: the folder that holds the package, ``variables``: of the environment, None to unset."""
+    env = os.environ | {"PYTHONPATH": str(at), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONWARNINGS": warn, "SNOOKER_ENV_QUIET": "1"}
+    env = {k: v for k, v in (env | variables).items() if v is not None}
+    done = subprocess.run([sys.executable, "-c", code], cwd=at, env=env, capture_output=True, text=True, timeout=280, check=False)
+    assert done.returncode == 0, done.stderr[-3000:]
+    return done.stdout, done.stderr
+
+
+def copy_of_package(to):
+    shutil.copytree(ROOT / "snooker_env", to / "snooker_env", ignore=shutil.ignore_patterns("__pycache__"))
+    return to
+
+
+def replace(path, old, new):
+    text = path.read_text()
+    assert text.count(old) == 1, f"{path.name} holds {old!r} {text.count(old)} times"
+    path.write_text(text.replace(old, new))

@@ -1,0 +1,279 @@
+"""Is kept machine code loaded only where nobody else can write, and does a damaged or full cache do no more harm than a warning?"""
+
+import os
+import pickle
+import stat
+import subprocess
+import sys
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+
+from snooker_env import _cache
+from tests.processes import ROOT, python
+
+TOY = """
+from snooker_env._jit import entry
+
+@entry(what="a toy", seconds=3)
+def double(x):
+    return 2.0 * x
+
+@entry
+def half(x):
+    return 0.5 * x
+"""
+RUN = """
+import toy
+print(toy.double(1.5), toy.half(3.0), *(sum(kernel.stats.cache_hits.values()) for kernel in (toy.double, toy.half)))
+"""
+FRESH, LOADED, MIXED = "3.0 1.5 0 0", "3.0 1.5 1 1", "3.0 1.5 0 1"
+root_only = pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can give files away")
+
+
+@pytest.fixture
+def toy(tmp_path):
+    """Runs two small entry kernels in a fresh process: what it prints (results, cache hits), and stderr."""
+    (tmp_path / "toy").mkdir()
+    (tmp_path / "toy/toy.py").write_text(TOY)
+
+    def run(before="", **variables):
+        paths = os.pathsep.join([str(tmp_path / "toy"), str(ROOT)])
+        variables = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": paths} | variables
+        out, err = python(before + RUN, warn="error,default::RuntimeWarning", **variables)
+        return out.strip(), err
+
+    run.cache, run.folder = tmp_path / "cache", tmp_path / "cache" / "snooker_env" / _cache.source_hash()
+    return run
+
+
+def files(toy, pattern):
+    return sorted(toy.folder.rglob(pattern))
+
+
+# Folders of others
+
+
+def test_folders_are_made_for_the_user_alone_whatever_the_umask(toy):
+    assert toy("import os; os.umask(0)\n", NUMBA_CACHE_DIR=str(toy.cache / "deep")) == (FRESH, "")
+    made = [toy.cache, *toy.cache.rglob("*")]
+    assert len(made) > 6
+    for path in made:
+        assert stat.S_IMODE(path.stat().st_mode) == (0o700 if path.is_dir() else 0o600), path
+    assert not list(toy.cache.rglob("*tmp*"))
+
+
+def unsafe(monkeypatch, home, match):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(home))
+    with pytest.warns(RuntimeWarning, match=match) as seen:
+        assert _cache.cache_folder() is None
+    assert len(seen) == 1 and "set NUMBA_CACHE_DIR to a folder of your own" in str(seen[0].message)
+    return str(seen[0].message)
+
+
+@pytest.fixture
+def folders(tmp_path, monkeypatch):
+    """The chosen folder and those that are made in it."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "home"))
+    folder = _cache.cache_folder()
+    return {"home": folder.parents[1], "snooker_env": folder.parent, "hash": folder}
+
+
+@pytest.mark.parametrize(
+    ("which", "mode"),
+    [("home", 0o777), ("home", 0o702), ("snooker_env", 0o777), ("snooker_env", 0o1777), ("snooker_env", 0o720), ("hash", 0o702),
+     ("hash", 0o770)],
+)  # fmt: skip
+def test_a_folder_that_others_can_write_to_is_not_used(folders, monkeypatch, which, mode):
+    folders[which].chmod(mode)
+    message = unsafe(monkeypatch, folders["home"], "others can write to")
+    assert f"others can write to {folders[which]} (mode {mode:04o}): no machine code is loaded" in message
+    folders[which].chmod(0o700)
+    assert _cache.cache_folder() == folders["hash"]
+
+
+@root_only
+@pytest.mark.parametrize("which", ["home", "snooker_env", "hash"])
+def test_a_folder_of_another_user_is_not_used(folders, monkeypatch, which):
+    os.chown(folders[which], 12345, -1)
+    assert f"{folders[which]} belongs to another user (uid 12345)" in unsafe(monkeypatch, folders["home"], "belongs to")
+
+
+def test_a_home_that_others_share_is_good_as_long_as_they_cannot_exchange_what_is_ours(folders):
+    for mode in (0o1777, 0o775, 0o755):  # /tmp; a home of the user's own group; readable by others
+        folders["home"].chmod(mode)
+        assert _cache.cache_folder() == folders["hash"]
+
+
+def test_links_are_followed(folders, monkeypatch, tmp_path):
+    """What counts is where they lead."""
+    elsewhere = tmp_path / "elsewhere"
+    folders["hash"].rmdir(), folders["snooker_env"].rmdir()
+    elsewhere.mkdir(mode=0o700)
+    folders["snooker_env"].symlink_to(elsewhere)
+    assert _cache.cache_folder() == folders["hash"] and (elsewhere / folders["hash"].name).is_dir()
+    elsewhere.chmod(0o777)
+    assert f"others can write to {folders['snooker_env']}" in unsafe(monkeypatch, folders["home"], "others can write to")
+
+
+@root_only
+def test_a_link_that_another_user_has_laid_is_not_followed(folders, monkeypatch, tmp_path):
+    elsewhere = tmp_path / "elsewhere"
+    folders["hash"].rmdir(), folders["snooker_env"].rmdir()
+    elsewhere.mkdir(mode=0o700)
+    folders["snooker_env"].symlink_to(elsewhere)
+    os.chown(folders["snooker_env"], 12345, -1, follow_symlinks=False)
+    unsafe(monkeypatch, folders["home"], "belongs to another user")
+
+
+def test_where_there_are_no_owners_none_are_checked(folders, monkeypatch):
+    folders["snooker_env"].chmod(0o777)
+    monkeypatch.delattr(os, "geteuid")
+    assert _cache.cache_folder() == folders["hash"]
+
+
+class Planted:
+    """Unpickled, it leaves a mark."""
+
+    def __init__(self, mark):
+        self.mark = mark
+
+    def __reduce__(self):
+        return Path.touch, (self.mark,)
+
+
+@pytest.mark.parametrize("which", ["top", "inner"])
+def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path, which):
+    """Where the folders are the user's own it would be: so this test can fail."""
+    assert toy() == (FRESH, "")
+    mark, (index, *_) = tmp_path / "mark", files(toy, "*.nbi")
+    planted = pickle.dumps("another version") + pickle.dumps(0)
+    folder = toy.folder if which == "top" else index.parent
+
+    def plant():
+        data = pickle.dumps(Planted(mark)) + planted
+        index.write_bytes(data + sha256(data).digest())
+
+    plant()
+    folder.chmod(0o777)
+    out, err = toy()
+    assert out == FRESH and not mark.exists()
+    assert err.count("RuntimeWarning") == 1 and f"others can write to {folder} (mode 0777)" in err
+    folder.chmod(0o700)
+    toy()
+    assert mark.exists()
+
+
+# Broken files, full disks
+
+
+def damaged(data, how):
+    middle = len(data) // 2
+    return {
+        "empty": b"", "short": data[:10], "cut": data[:middle], "garbage": b"garbage" * 99, "zeros": bytes(len(data)),
+        "one bit": data[:middle] + bytes([data[middle] ^ 4]) + data[middle + 1 :],
+    }[how]  # fmt: skip
+
+
+@pytest.mark.parametrize("what", ["*double*.nbi", "*double*.nbc"])
+@pytest.mark.parametrize("how", ["empty", "short", "cut", "garbage", "zeros", "one bit"])
+def test_a_damaged_file_is_compiled_and_kept_anew(toy, what, how):
+    toy()
+    (path,) = files(toy, what)
+    path.write_bytes(damaged(path.read_bytes(), how))
+    out, err = toy()
+    assert out == MIXED
+    assert err.count("RuntimeWarning") == 1 and f"machine code kept in {path.parent} cannot be used" in err
+    assert toy() == (LOADED, "")
+
+
+def test_it_is_said_once_however_many_are_damaged(toy):
+    toy()
+    for path in files(toy, "*.nb?"):
+        path.write_bytes(b"")
+    out, err = toy()
+    assert out == FRESH and err.count("RuntimeWarning") == 1
+    assert toy() == (LOADED, "")
+
+
+def test_what_numba_itself_cannot_rebuild_is_compiled_anew(toy):
+    """Whole, but not what this numba makes."""
+    toy()
+    (path,) = files(toy, "*double*.nbc")
+    data = pickle.dumps(("something", "else"))
+    path.write_bytes(data + sha256(data).digest())
+    out, err = toy()
+    assert out == MIXED and err.count("RuntimeWarning") == 1
+    assert toy() == (LOADED, "")
+
+
+FULL = """
+import os
+import tempfile
+real = tempfile.mkstemp
+def full(*args, dir=None, **options):
+    if dir and "snooker_env" in str(dir):
+        raise OSError(28, "No space left on device")
+    return real(*args, dir=dir, **options)
+tempfile.mkstemp = full
+"""
+
+
+def test_on_a_full_disk_it_works_from_memory(toy):
+    out, err = toy(FULL)
+    assert out == FRESH and not files(toy, "*.nb?")
+    assert err.count("RuntimeWarning") == 1
+    assert "cannot be kept" in err and "No space left on device" in err and "every process compiles for itself" in err
+    assert toy() == (FRESH, "") and toy() == (LOADED, "")
+
+
+@root_only
+def test_on_a_disk_that_is_really_full_it_works_from_memory(toy):
+    toy.cache.mkdir(mode=0o700)
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k,mode=700", "tmpfs", toy.cache], check=False).returncode:
+        pytest.skip("no file system can be mounted here")
+    try:
+        out, err = toy()
+        assert out == FRESH and err.count("RuntimeWarning") == 1
+        assert {path for path in toy.cache.rglob("*") if path.is_file()} <= set(files(toy, "*.nb?"))  # nothing half written stays
+    finally:
+        subprocess.run(["umount", toy.cache], check=True)
+
+
+def test_a_file_that_cannot_be_written_through_leaves_nothing_behind(toy):
+    half = "import os\ndef replace(*args): raise OSError(28, 'No space left on device')\nos.replace = replace\n"
+    out, err = toy(half)
+    assert out == FRESH and err.count("RuntimeWarning") == 1
+    assert not [path for path in toy.folder.rglob("*") if path.is_file()]
+
+
+@pytest.mark.parametrize("instead", ["nothing", "a file"])
+def test_a_folder_that_is_gone_does_no_harm(toy, instead):
+    gone = "import shutil; from snooker_env import _cache; shutil.rmtree(_cache.CACHE_FOLDER.parent)\n"
+    out, err = toy("import toy\n" + gone + ("_cache.CACHE_FOLDER.parent.write_text('')\n" if instead == "a file" else ""))
+    assert out == FRESH
+    if instead == "nothing":
+        assert err == "" and toy() == (LOADED, "")  # made again
+    else:
+        assert err.count("RuntimeWarning") == 1 and "is not read from" in err and "every process compiles for itself" in err
+
+
+def test_processes_that_compile_at_the_same_time_do_not_disturb_each_other(toy, tmp_path):
+    paths = os.pathsep.join([str(tmp_path / "toy"), str(ROOT)])
+    env = os.environ | {"NUMBA_CACHE_DIR": str(toy.cache), "PYTHONPATH": paths, "PYTHONWARNINGS": "error", "SNOOKER_ENV_QUIET": "1"}
+    command = [sys.executable, "-c", RUN]
+    running = [subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(4)]
+    for process in running:
+        out, err = process.communicate(timeout=120)
+        assert out.startswith("3.0 1.5 ") and err == "" and process.returncode == 0
+    assert toy() == (LOADED, "")
+
+
+def test_equal_sources_share_their_machine_code_wherever_they_lie(toy, tmp_path):
+    assert toy() == (FRESH, "")
+    (tmp_path / "moved").mkdir()
+    (tmp_path / "moved/toy.py").write_text(TOY)
+    assert toy(PYTHONPATH=os.pathsep.join([str(tmp_path / "moved"), str(ROOT)])) == (LOADED, "")
+    (tmp_path / "moved/toy.py").write_text(TOY + "\n# changed\n")
+    assert toy(PYTHONPATH=os.pathsep.join([str(tmp_path / "moved"), str(ROOT)])) == (FRESH, "")

@@ -1,0 +1,185 @@
+"""Is each entry kernel compiled for one signature, whatever the numbers that users give are made of? A second one would take seconds."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.envs.actions import Actions
+from snooker_env.envs.choices import Choices
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import SnookerVectorEnv
+from tests.processes import python
+
+INPUTS = """
+import pickle
+import numpy as np
+import snooker_env as sn
+from snooker_env._jit import ENTRIES
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import SnookerVectorEnv
+
+def read_only(a):
+    a = np.array(a)
+    a.flags.writeable = False
+    return a
+
+def strided(a):
+    a = np.array(a)
+    wide = np.zeros([2 * n for n in a.shape], a.dtype)
+    wide[tuple(slice(None, None, 2) for _ in a.shape)] = a
+    return wide[tuple(slice(None, None, 2) for _ in a.shape)]
+
+TYPES = (np.float64, np.float32, np.float16, np.longdouble, ">f8", ">f4", np.int64, np.int8, np.uint16, ">i4")
+LAYOUTS = (np.array, np.asfortranarray, read_only, strided, np.ndarray.tolist, lambda a: tuple(a.tolist()))
+NUMBERS = (int, float, np.float32, np.float16, np.longdouble, np.int8, np.uint64, lambda x: np.array(x, ">f4"))
+
+def kinds(values):
+    for dtype in TYPES:
+        for layout in LAYOUTS:
+            yield layout(np.array(values).astype(dtype))
+
+def close(got, want):
+    assert all(np.array_equal(a, b) for a, b in zip(got, want, strict=True)), (got, want)
+"""
+
+SHOTS = """
+z = (0, 0, 0)
+balls, cushion = sn.collide_balls((1, 0, 0), z, z, z, (1, 0, 0)), sn.collide_cushion((1, 0, 0), z, (1, 0, 0))
+for v, w in zip(kinds((1, 0, 0)), kinds(z)):
+    close(sn.collide_balls(v, w, w, w, v), balls)
+    close(sn.collide_cushion(v, w, v), cushion)
+for x in NUMBERS:
+    close(sn.strike(x(2), x(1), side=x(0), top=x(0), elevation=x(1)), sn.strike(2.0, 1.0, 0.0, 0.0, 1.0))
+r, v, w = [(0, 0), (0, 1)], [(1, 2), (0, 0)], np.zeros((2, 3), int)
+one, many = sn.simulate(r, v, w), sn.simulate_batch([r] * 3, [v] * 3, [w] * 3, events=True)
+for R, V, W in zip(kinds(r), kinds(v), kinds(w)):
+    shot = sn.simulate(R, V, W)
+    close((shot.positions, shot.events), (one.positions, one.events))
+for R, V, W in zip(kinds([r] * 3), kinds([v] * 3), kinds([w] * 3)):
+    close(sn.simulate_batch(R, V, W).positions, many.positions)
+for layout in LAYOUTS:
+    on = np.array([[True, True], [True, False], [True, True]])
+    sn.simulate_batch([r] * 3, [v] * 3, [w] * 3, on_table=layout(on), threads=2, max_events=np.int32(10**6))
+    sn.simulate(r, v, w, on_table=layout(on[1]))
+for n in (0, 1, 2, 5):  # lengths of one make numpy call a column contiguous
+    sn.simulate_batch(np.full((n, 1, 2), 0.1), np.ones((n, 1, 2)), np.zeros((n, 1, 3)))
+for t in (*kinds([0, 1, 2]), *(x(1) for x in NUMBERS), [1], []):
+    one.at(t)
+seen = pickle.loads(pickle.dumps(one, protocol=5, buffer_callback=(buffers := []).append), buffers=[bytes(b.raw()) for b in buffers])
+assert not seen.segments.flags.writeable  # as Ray hands arrays to its workers
+close(seen.at(1), one.at(1))
+preset = sn.Table.preset()
+own = sn.Table("own", np.asfortranarray(preset.noses), preset.jaws.tolist(), preset.falls.astype(">f8"))
+for table in ("match", "tight", None, own, pickle.loads(pickle.dumps(own))):
+    for fidelity in ("fast", "standard", "euler:50"):
+        sn.simulate([(0, 0)], [(1, 2)], [z], table=table, physics={"e_b": np.float32(0.9), "mu_bb": np.longdouble(0.05)}, fidelity=fidelity)
+"""
+
+ENVS = """
+options = {"elevation": True, "placement": True, "noise": "club", "aim": "target"}
+for make in (lambda: SnookerEnv(**options), lambda: SnookerEnv(task="frame", miss="clear_path", decision=True, **options)):
+    env = make()
+    first, _ = env.reset(seed=1)
+    state = env.get_state()
+    ends = set()
+    for a in kinds(np.zeros(env.action_space.shape, int)):
+        env.reset(options={"state": state})
+        ends.add(env.step(a)[0].tobytes())
+    assert len(ends) == 1
+    state["positions"], state["on_table"] = np.asfortranarray(state["positions"]), read_only(state["on_table"])
+    env.set_state(state)
+    env.step(env.action_space.sample())
+env = SnookerEnv(action="discrete", observation="balls", layout="break_off")
+env.reset(seed=1)
+for a in (0, np.int8(3), np.array(5), np.array([7]), np.array(7, ">i2"), np.uint64(9)):
+    env.action_masks()
+    if env.step(a)[2]:
+        env.reset()
+one = SnookerEnv()
+one.reset(seed=3)
+state = one.get_state()
+for n in (1, 2, 9):
+    env = SnookerVectorEnv(n, **options)
+    env.reset(seed=1, options={"reset_mask": strided(np.ones(n, bool))})
+    for a in kinds(np.zeros((n, 7), int)):
+        env.step(a)
+    env.reset(options={"states": [state] * n})
+    env.step(env.action_space.sample())
+    env = SnookerVectorEnv(n, action="discrete", autoreset_mode="SameStep", layout="random:3")
+    env.reset(seed=np.int64(1))
+    for dtype in (np.int64, np.int8, np.uint32, ">i4"):
+        for layout in LAYOUTS:
+            env.action_masks()
+            env.step(layout(np.zeros(n, dtype)))
+            env.step(np.zeros((n, 1), dtype))
+"""
+
+MATCH = """
+env = sn.match_env(miss="clear_path", max_strokes=200)
+env.reset(seed=1)
+for k, a in enumerate(kinds(np.zeros(7, int))):
+    if not env.agents or any(env.truncations.values()) or any(env.terminations.values()):
+        env.reset(seed=k)
+    env.step(a)
+    env.observe("player_0")
+"""
+
+LAST = """
+found = {kernel.__module__ + "." + kernel.__qualname__: kernel.signatures for kernel in ENTRIES if len(kernel.signatures) > 1}
+assert not found, found
+print(len([kernel for kernel in ENTRIES if kernel.signatures]))
+"""
+
+
+@pytest.mark.parametrize(("what", "least"), [(SHOTS, 5), (ENVS, 18), (MATCH, 10)], ids=["shots", "environments", "match"])
+def test_no_kernel_is_compiled_twice_whatever_the_input_is_made_of(what, least):
+    if what is MATCH:
+        pytest.importorskip("pettingzoo")
+    out, err = python(INPUTS + what + LAST)
+    assert int(out) >= least and err == ""
+
+
+def test_a_warm_up_leaves_nothing_to_compile():
+    code = "import snooker_env as sn; from snooker_env._jit import ENTRIES; sn.warmup()\n"
+    code += "print([k.__qualname__ for k in ENTRIES if not k.signatures], [k.__qualname__ for k in ENTRIES if len(k.signatures) > 1])"
+    out, err = python(code)
+    assert out == "['clear_path'] []\n" and err == ""  # a part of another entry kernel
+
+
+WIDE = np.longdouble(1) / 3
+
+
+def test_a_wider_number_means_what_it_rounds_to():
+    for env in (SnookerEnv(), SnookerVectorEnv(1)):
+        ends = []
+        for third in (WIDE, float(WIDE)):
+            env.reset(seed=3)
+            many = isinstance(env, SnookerVectorEnv)
+            actions = np.full((1, 4) if many else 4, third)
+            ends.append(env.step(actions)[0])
+        assert np.array_equal(*ends)
+
+
+@pytest.mark.parametrize("dtype", [None, np.int8, np.longdouble, ">f4", np.float16])
+def test_checked_actions_are_floats(dtype):
+    action = [0, 0, 0, 1] if dtype is None else np.array([0, 0, 0, 1], dtype)
+    actions = Actions("absolute", False, False, sn.Physics())
+    checked = actions.check(action)
+    assert all(type(x) is float for x in checked) and checked == np.asarray(action, float).tolist()
+    many = actions.check_many([action] * 3, 3)
+    assert many.dtype == np.float64 and many.dtype.isnative and many.flags.c_contiguous and many.flags.writeable
+
+
+def test_checked_choices_are_floats():
+    choices = Choices(sn.Physics())
+    assert choices.check(np.array([5], ">i2")) == [5.0] and choices.check_many(np.array([5, 6], ">i2"), 2).dtype.isnative
+
+
+def test_a_shot_from_a_read_only_buffer_can_be_looked_at():
+    shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.5)], [(0.0, 0.0, 0.0)])
+    buffers = []
+    data = pickle.dumps(shot, protocol=5, buffer_callback=buffers.append)
+    again = pickle.loads(data, buffers=[bytes(b.raw()) for b in buffers])
+    assert not again.segments.flags.writeable and all(map(np.array_equal, again.at(0.5), shot.at(0.5)))
