@@ -94,7 +94,8 @@ class Frame:
         for name, high in (("striker", 1), ("breaker", 1), ("break_points", MOST_BREAK), ("failures", 2)):
             _set(self, name, integer(name, getattr(self, name), 0, high))
         for name in ("in_hand", "free_ball", "respotted_black", "miss_called", "warned"):
-            _set(self, name, truth(name, getattr(self, name)))
+            if type(getattr(self, name)) is not bool:
+                _set(self, name, truth(name, getattr(self, name)))
         if not isinstance(self.scores, tuple) or len(self.scores) != 2:
             raise refuse("scores", self.scores, "must be a tuple of two integers")
         _set(self, "scores", tuple(integer(f"scores[{k}]", points, 0, MOST_POINTS) for k, points in enumerate(self.scores)))
