@@ -3,6 +3,7 @@
 #
 #     bash agents/experiments.sh [FOLDER [JOBS]]     runs/experiments, 2 runs side by side, each on one core
 #
+# The tables again from the figures that are kept, without playing: python -m agents.report agents/results*.json
 # Only some of the runs, and no comparison: ONLY='fore-|gamma0-' bash agents/experiments.sh. Say what would be run: ... LIST=1 ...
 set -euo pipefail
 cd "$(dirname "$0")/.."
