@@ -5,12 +5,14 @@
     python train.py --agent ppo_mask --seed 1 --out runs/mine
     python train.py --resume --out runs/mine           go on after Ctrl-C, a kill or a power cut, exactly where the last checkpoint was
 
-A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; like every pickle, load only your own), ``model.zip`` (for
-``stable_baselines3`` and ``python -m agents.evaluate``), ``results.json`` (every figure), ``tb/`` (``tensorboard --logdir runs``) and,
-while the run goes on, ``train.lock``: no two of them share a folder (``agents/lock.py``). What an agent sees is in ``agents/view.py``, how
-it is made in ``agents/hyperparams/``, how it is taught first in ``agents/imitate.py``, how its visits are judged in ``agents/visits.py``,
-what is said of them in ``agents/lesson.py``, what is kept in ``agents/run_folder.py`` and ``agents/keeper.py``; here follow, top to
-bottom: settings, the run.
+A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; a pickle, and loading one runs what it holds: --resume only your own),
+``model.zip`` (for ``python -m agents.evaluate`` and --start, which run nothing of it, and for ``PPO.load`` of ``stable_baselines3``, which
+unpickles), ``results.json`` (every figure), ``tb/`` (``tensorboard --logdir runs``) and, while the run goes on, ``train.lock``: no two
+runs share a folder (``agents/lock.py``).
+
+What an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how it is taught first in ``agents/imitate.py``,
+how its visits are judged in ``agents/visits.py``, what is said of them in ``agents/lesson.py``, what is kept in ``agents/run_folder.py``
+and ``agents/keeper.py``; here follow, top to bottom: settings, the run.
 """
 
 import argparse
@@ -70,7 +72,7 @@ class Settings:
     fidelity: str = option("", "of the simulation: fast, standard, reference or euler:N [the recipe's]")
     physics: str = option("", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]")
     imitate: int = option(-1, "positions on which it is first taught by the search; -1: as many as the recipe says")
-    start: str = option("", "a model of the same agent to start from, its .zip or run folder")
+    start: str = option("", "a model of the same agent to start from, its .zip or run folder; nothing in it is run")
     set: tuple = option((), "other hyper-parameters, as gamma=0", nargs="+")
     eval_visits: int = option(500, f"held-out visits each agent plays at the end, each on a table of its own, of {HELD_OUT}")
     checkpoint_every: int = option(100_000, "shots from one checkpoint to the next")

@@ -9,9 +9,11 @@ from pathlib import Path
 
 from snooker_env._check import number, refuse
 from snooker_env.envs.snooker import LAYOUTS
+from snooker_env.envs.vector import SnookerVectorEnv
 
-from .models import PRETRAINED, pretrained
+from .models import PRETRAINED, load_any, pretrained
 from .players import NAMES, is_player, player_of
+from .recipes import READ, value_of
 from .world import text_of
 
 
@@ -22,9 +24,13 @@ class Agent:
     label: str
     runs: tuple
     """Names, model files or run folders."""
+    trust: bool = False
+    """May code in its files run? Models of Stable-Baselines3 that train.py did not make need it."""
+    options: tuple = ()
+    """How the actions of such models are read: (key, value) of ``recipes.READ``."""
 
     @classmethod
-    def of(cls, text):
+    def of(cls, text, trust=False, options=()):
         """From NAME, PATH or LABEL=PATH,PATH,... Raises ValueError."""
         label, equals, paths = text.partition("=") if not Path(text).exists() else ("", "", "")
         if not equals:
@@ -46,24 +52,58 @@ class Agent:
         if is_player(runs[0]):
             return cls(label or runs[0].rpartition(":")[2], tuple(runs))
         path = Path(runs[0])
-        return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs))
+        return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs), trust, options)
 
     def trained(self):
         """What is known of how each run was made: a dict a run, {} for a player that was not trained."""
-        return [_training(run) for run in self.runs]
+        return [self._training(run) for run in self.runs]
+
+    @property
+    def foreign(self):
+        """Whether a model is among them that train.py did not make."""
+        return not is_player(self.runs[0]) and any(_model(run, self.trust, self.options).foreign for run in self.runs)
+
+    def player(self, k, budget):
+        """A fresh player of its run k, or its model, read once. ``budget``: of a search; its seed is k."""
+        run = self.runs[k]
+        return player_of(run, budget=budget, seed=k) if is_player(run) else _model(run, self.trust, self.options)
+
+    def _training(self, run):
+        if is_player(run):
+            player_of(run)  # one's own may not be there
+            return {}
+        model, path = _model(run, self.trust, self.options).model, Path(run)
+        card, results = path.with_suffix(".json"), (path if path.is_dir() else path.parent) / "results.json"
+        if path.is_file() and card.is_file():
+            seconds, imitated = _told(card, "hours"), _told(card, "imitated")
+            seconds = None if seconds is None else 3600.0 * seconds
+        else:
+            seconds, imitated = _told(results, "seconds"), model.imitated
+        usual = {"layout": LAYOUTS["visit"], "noise": "none", "fidelity": "standard"}
+        return {
+            "recipe": model.recipe, "shots": model.num_timesteps, "imitated": imitated, "seconds": seconds, "seed": model.seed,
+            "gamma": model.gamma, **{key: model.env_options.get(key, value) for key, value in usual.items()},
+            "physics": text_of(model.env_options.get("physics", "paper")),
+        }  # fmt: skip
+
+
+def options_of(changes):
+    """What the "key=value" of --options say, as ``Agent.options``. Raises ValueError."""
+    found = {}
+    for change in changes:
+        key, equals, value = change.partition("=")
+        if not equals or key not in READ or key in found:
+            raise refuse("options", change, f"must be KEY=VALUE, KEY once each of {', '.join(READ)}")
+        found[key] = value_of(value)
+    SnookerVectorEnv(1, **found)  # makes sure of the values
+    return tuple(found.items())
 
 
 @cache
-def _model(path):
+def _model(path, trust, options):
     if not zipfile.is_zipfile(Path(path, "model.zip") if Path(path).is_dir() else path):
         raise refuse("agent", path, "must be a model's .zip or a folder that holds model.zip")
-    try:
-        return player_of(path)
-    except ImportError:
-        raise
-    except Exception as error:  # a broken file makes its readers raise anything
-        why = str(error).partition("\n")[0]
-        raise refuse("agent", path, f"must be a model that train.py saved ({type(error).__name__}: {why})") from error
+    return load_any(Path(path), trust, dict(options))
 
 
 def _told(file, name):
@@ -75,27 +115,3 @@ def _told(file, name):
     if not isinstance(told, dict):
         raise refuse("agent", str(file), f"must hold {name} in an object")
     return None if told.get(name) is None else number(f"{file}: {name}", told[name], 0)
-
-
-def player_for(run, budget, seed):
-    """A fresh player, or a model, read once."""
-    return player_of(run, budget=budget, seed=seed) if is_player(run) else _model(run)
-
-
-def _training(run):
-    if is_player(run):
-        player_of(run)  # one's own may not be there
-        return {}
-    model, path = _model(run).model, Path(run)
-    card, results = path.with_suffix(".json"), (path if path.is_dir() else path.parent) / "results.json"
-    if path.is_file() and card.is_file():
-        seconds, imitated = _told(card, "hours"), _told(card, "imitated")
-        seconds = None if seconds is None else 3600.0 * seconds
-    else:
-        seconds, imitated = _told(results, "seconds"), getattr(model, "imitated", None)
-    usual = {"layout": LAYOUTS["visit"], "noise": "none", "fidelity": "standard"}
-    return {
-        "recipe": model.recipe, "shots": model.num_timesteps, "imitated": imitated, "seconds": seconds, "seed": model.seed,
-        "gamma": model.gamma, **{key: model.env_options.get(key, value) for key, value in usual.items()},
-        "physics": text_of(model.env_options.get("physics", "paper")),
-    }  # fmt: skip

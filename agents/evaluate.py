@@ -12,7 +12,10 @@ training sees, no two of them equal or mirrored, 500 line-ups and 500 times the 
 of a discrete choice is solved in the world that is played.)
 
 Agents are named as ``NAME`` (a player of agents/players.py, a model of agents/pretrained), as a model's .zip or run folder, as
-LABEL=PATH,PATH,... for one that was trained with several seeds (a PATH may be a pattern), or as MODULE:CLASS for a player of your own.
+LABEL=PATH,PATH,... for one that was trained with several seeds (a PATH may be a pattern), or as MODULE:CLASS for a player of your own,
+whose module is imported and so run. Models of train.py and agents/pretrained are read as plain data. Any other model of
+Stable-Baselines3 or sb3-contrib, trained on a visit by what the environment shows, holds pickled Python code, which runs when it is
+loaded: it needs --trust and, where its actions were not read as usual, --options, as aim=target.
 Intervals are 95 % bootstrap intervals over training seeds and visits (agents/statistics.py); the ratios are paired: same tables above
 and below.
 """
@@ -23,7 +26,6 @@ import os
 import platform
 import shlex
 import sys
-from importlib import import_module
 from itertools import product
 from pathlib import Path
 
@@ -39,11 +41,11 @@ with needs("agents.evaluate"):
     from snooker_env.physics.contact import parse_fidelity
 
     from .commit import commit
-    from .contestants import Agent, player_for
+    from .contestants import Agent, options_of
     from .figures import Played, counts
     from .files import writable, write_atomic
     from .models import pretrained
-    from .players import NAMES, is_player
+    from .players import NAMES
     from .report import AXES, main_condition, markdown, show
     from .statistics import RESAMPLES
     from .visits import HELD_OUT_SEED, play, tables_of
@@ -54,17 +56,13 @@ PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
 NOISES = ("none", "professional", "amateur", "club")
 REFERENCE = "ghost_ball"
 PICTURE = Path(__file__).parent / "pictures" / "destinations.png"
-FOR_MODELS = ("torch", "stable_baselines3", "sb3_contrib")
 
 
 def play_agent(agent, condition, seeds, budget, resamples):
     """``Played`` by every run of the agent on the tables with these seeds."""
     options = {"layout": condition["layout"], "noise": condition["noise"], "fidelity": condition["fidelity"]}
     physics = world(condition["physics"])
-    runs = [
-        play(player_for(run, budget, number), len(seeds), first_seed=seeds, physics=physics, **options)
-        for number, run in enumerate(agent.runs)
-    ]
+    runs = [play(agent.player(k, budget), len(seeds), first_seed=seeds, physics=physics, **options) for k in range(len(agent.runs))]
     each = [counts(strokes) for strokes in runs]
     return Played(agent, {name: np.stack([one[name] for one in each]) for name in each[0]}, runs, resamples)
 
@@ -87,6 +85,8 @@ def parser():
         metavar="AGENT",
         help=f"NAME, MODEL, LABEL=PATH,PATH,... or MODULE:CLASS; NAME: {', '.join((*NAMES, *pretrained()))}",
     )
+    p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
+    p.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help="how the actions of such models are read, as aim=target")
     p.add_argument("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=f"agents to compare the others with [{REFERENCE}]")
     usual = [f"{name}={n}" for name, n in PROTOCOL.items()]
     p.add_argument("--layouts", nargs="+", default=usual, metavar="LAYOUT", help=f"LAYOUT=VISITS [{' '.join(usual)}]")
@@ -110,7 +110,8 @@ def parser():
 
 def checked(args):
     """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError before anything is played."""
-    agents = [Agent.of(text) for text in args.agent]
+    options = options_of(args.options)
+    agents = [Agent.of(text, args.trust, options) for text in args.agent]
     labels = [agent.label for agent in agents]
     for label in args.against:
         if label == REFERENCE and label not in labels:
@@ -138,11 +139,10 @@ def checked(args):
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
-    if not all(is_player(run) for agent in agents for run in agent.runs):
-        for package in FOR_MODELS:  # here: whoever reads a model takes what is missing for a broken file
-            import_module(package)
     for agent in agents:
         agent.trained()  # reads its models
+    if options and not any(agent.foreign for agent in agents):
+        raise refuse("options", " ".join(args.options), "must be left out: it is for models that train.py did not make")
     for name in ("json", "markdown", "picture"):
         writable(name, getattr(args, name))
     return agents, list(dict.fromkeys(args.against)), {name: tables_of(name, visits) for name, visits in sizes.items()}
@@ -193,7 +193,7 @@ def main(argv=None):
         p.error(str(error))
     snooker_env.warmup()
     for agent in agents:  # compiled before the clock runs
-        play(player_for(agent.runs[0], args.budget, 0), 2)
+        play(agent.player(0, args.budget), 2)
     report = {
         "command": "python -m agents.evaluate " + shlex.join(argv), **provenance(),
         "protocol": {

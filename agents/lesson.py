@@ -10,6 +10,7 @@ import rich.table
 from .models import Model, player_options
 from .players import GhostBall, Random
 from .recipes import WORLD
+from .tables import view_of
 from .visits import play, summary, tables_of
 
 
@@ -20,7 +21,7 @@ def evaluate(recipe, model, visits):
     discrete choices, so at a pot that is there. Raises ValueError if there are not so many tables.
     """
     options = player_options(recipe.env_kwargs)
-    players = {"trained": Model(model, options, recipe.view), "ghost_ball": GhostBall(), "random": Random()}
+    players = {"trained": Model(model, options, view_of(recipe.view)), "ghost_ball": GhostBall(), "random": Random()}
     told: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in WORLD}
     seeds = tables_of("held_out", visits)
     return {name: summary(play(player, visits, first_seed=seeds, **told)) for name, player in players.items()}

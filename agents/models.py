@@ -1,17 +1,28 @@
-"""How are trained agents kept and played? Models of Stable-Baselines3, saved whole or not at all, as players."""
+"""How are trained agents kept and played? Models of Stable-Baselines3, saved whole or not at all, as players.
 
+What ``train.py`` and ``agents.publish`` write is read by ``kept``, which unpickles nothing. Any other model of Stable-Baselines3 or
+sb3-contrib is a file whose pickles run when it is loaded: ``load_other``, with consent.
+"""
+
+import inspect
 import io
-import os
 from pathlib import Path
 
 import numpy as np
 
-from snooker_env._check import refuse
+from snooker_env._check import integer, number, refuse
+from snooker_env.envs.observations import OBSERVATIONS
+from snooker_env.envs.saved import Saved, outline
+from snooker_env.envs.vector import SnookerVectorEnv
 
-from .recipes import READ, Recipe, algorithm
+from .kept import Trained, read
+from .recipes import READ
 from .tables import view_of
+from .view import Plain
 
 PRETRAINED = Path(__file__).parent / "pretrained"
+UNKNOWN = dict.fromkeys(("layout", "noise", "fidelity", "physics"), "unknown")
+"""What is known of the training of a model that ``train.py`` did not make."""
 
 
 def pretrained():
@@ -20,23 +31,22 @@ def pretrained():
 
 
 class Model:
-    """A trained Stable-Baselines3 model that sees the tables through a view of that name; it plays what it thinks best."""
+    """A trained agent (``Trained``, or a model of Stable-Baselines3) that sees the tables by ``look``; it plays what it thinks best.
 
-    def __init__(self, model, options, view="pots"):
-        self.model, self.options, self._look = model, options, view_of(view)
+    ``foreign``: it sees no more than the environment shows, and train.py did not make it.
+    """
 
-    @property
-    def space(self):
-        """What the view shows today."""
-        return self._look.space
+    def __init__(self, model, options, look):
+        self.model, self.options, self._look = model, options, look
+        self.foreign = isinstance(look, Plain)
+        self._masked = "action_masks" in inspect.signature(model.policy.predict).parameters
 
     def act(self, tables, observations, going):
         """The model's own choice for the tables going."""
         seen = self._look(tables, observations[going], going)
-        discrete = self.options.get("action") == "discrete"
-        masks = {"action_masks": self._look.masks(tables)[going]} if discrete else {}
+        masks = {"action_masks": self._look.masks(tables)[going]} if self._masked else {}
         actions = np.zeros(tables.action_space.shape, tables.action_space.dtype)
-        actions[going] = self.model.predict(seen, deterministic=True, **masks)[0]
+        actions[going] = self.model.policy.predict(seen, deterministic=True, **masks)[0]
         return actions
 
 
@@ -45,49 +55,80 @@ def player_options(env_options):
     return {key: env_options[key] for key in READ if key in env_options}
 
 
-def load_player(path, field="agent"):
-    """A ``Model`` from a model's .zip or a run's folder. Raises ValueError, naming ``field``."""
-    from stable_baselines3.common.save_util import load_from_zip_file
-
+def file_of(path, field):
+    """The model's file that a path means. Raises ValueError, naming ``field``."""
     file = path / "model.zip" if path.is_dir() else path
     if not file.is_file():
         raise refuse(field, str(path), "must be a model's .zip or a folder that holds model.zip")
-    try:
-        data, _, _ = load_from_zip_file(file, device="cpu")
-    except Exception:  # whatever zip, json and pickle make of a file that is something else
-        data = None
-    if not data or "recipe" not in data:
+    return file
+
+
+def load_trained(path, field):
+    """The ``Trained`` of a model's .zip or a run's folder. Raises ValueError, naming ``field``, if train.py did not make it."""
+    file = file_of(path, field)
+    trained = read(file, field)
+    if trained is None:
         raise refuse(field, str(file), "must be a model that train.py saved")
+    return trained
+
+
+def load_player(path, field="agent"):
+    """A ``Model`` of ``train.py`` from its .zip or the run's folder. Raises ValueError, naming ``field``."""
+    return _player(load_trained(path, field))
+
+
+def _player(trained):
+    return Model(trained, player_options(trained.env_options), view_of(trained.view))
+
+
+def load_any(path, trust, options):
+    """The same of ``train.py`` or, with ``trust``, any other model of Stable-Baselines3 or sb3-contrib, see ``load_other``."""
+    file = file_of(path, "agent")
+    trained = read(file, "agent")
+    return load_other(file, trust, options) if trained is None else _player(trained)
+
+
+def load_other(file, trust, options):
+    """A ``Model`` that train.py did not make, trained on a visit with the ``options`` (of ``READ``) by what the environment itself shows.
+
+    Raises ValueError: before any code in the file runs, if by what it says it does not fit, or without ``trust``.
+    """
+    saved = Saved.of(file, "agent")
+    options = ({"action": "discrete"} if saved.action[0] == "Discrete" else {}) | options
+    actions, looks = SnookerVectorEnv(1, **options).single_action_space, [Plain(kind) for kind in OBSERVATIONS]
+    fitting = [look for look in looks if outline(look.space) == saved.observation]
+    other_view = saved.refused("must be a model that sees the observation of a visit, flat or balls, and nothing else")
+    other_actions = saved.refused(f"must be a model whose actions are {actions}: --options says how they were read, as placement=True")
+    if not fitting:
+        raise other_view
+    if outline(actions) != saved.action:
+        raise other_actions
     try:
-        model = algorithm(Recipe.of(data["recipe"]).algo).load(file, device="cpu")
-        player = Model(model, player_options(data["env_options"]), data["view"])
-        if model.observation_space != player.space:
-            raise ValueError
-    except Exception:  # weights of other shapes, another view, a recipe or a class that is gone
-        raise refuse(field, str(file), f"must be a model of today's {data['recipe']}: this one is older, train it again") from None
-    return player
+        seed = saved.data.get("seed")
+        told = {
+            "num_timesteps": integer("num_timesteps", saved.data.get("num_timesteps"), 0, 10**18),
+            "gamma": number("gamma", saved.data.get("gamma"), 0, 1), "seed": seed if seed is None else integer("seed", seed, 0, 2**64),
+        }  # fmt: skip
+    except ValueError as error:
+        raise saved.refused(f"must be a model saved by Stable-Baselines3 ({error})") from None
+    network = saved.network(trust, "--trust")
+    if network.observation_space != fitting[0].space:  # a file may say one thing and hold another
+        raise other_view
+    if network.action_space != actions:
+        raise other_actions
+    trained = Trained(network, saved.algorithm[1], "plain", UNKNOWN | options, imitated=None, start=None, **told)
+    return Model(trained, options, fitting[0])
 
 
 def load_weights(model, path):
     """Give a model the weights of another of the same agent; ``model.start`` tells of it. Raises ValueError."""
-    other = load_player(path, "start").model
+    other = load_trained(path, "start")
     if other.recipe != model.recipe:
         raise refuse("start", str(path), f"must be a model of {model.recipe}, not of {other.recipe}")
     if other.action_space != model.action_space:
         raise refuse("start", str(path), f"must be a model with actions {model.action_space}, not {other.action_space}")
     model.policy.load_state_dict(other.policy.state_dict())
-    before = {key: getattr(other, key, None) for key in ("imitated", "start")}
-    model.start = {"model": str(path), "shots": other.num_timesteps, **before}
-
-
-def write_atomic(path, data):
-    """Write bytes so that ``path`` holds either the old or the new content, whole, whenever the process or the machine dies."""
-    temporary = path.with_name(path.name + ".tmp")
-    with open(temporary, "wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(temporary, path)
+    model.start = {"model": str(path), "shots": other.num_timesteps, "imitated": other.imitated, "start": other.start}
 
 
 def zipped(model):
@@ -95,8 +136,3 @@ def zipped(model):
     file = io.BytesIO()
     model.save(file)
     return file.getvalue()
-
-
-def write_model(model, path):
-    """Save an SB3 model, whole or not at all."""
-    write_atomic(path, zipped(model))

@@ -2,8 +2,8 @@
 
 A player says with ``options`` how it wants its tables (``SnookerEnv`` arguments), and ``act(tables, observations, going)`` gives an action
 for each of the n tables of a ``SnookerVectorEnv`` with flat observations. Only the tables ``going`` (n,) bool matter; the others get any.
-Any class of such players, made without arguments, can be named as MODULE:CLASS; of the environment it may choose how its actions are read
-(``recipes.READ``), the world is given.
+Any class of such players, made without arguments, can be named as MODULE:CLASS: the module is imported and so runs, it is the user's own
+code; of the environment it may choose how its actions are read (``recipes.READ``), the world is given.
 """
 
 import importlib

@@ -2,33 +2,39 @@
 
     python -m agents.publish runs/ppo_foresight-0 --limits "what it cannot do"
 
-writes ``agents/pretrained/AGENT.zip`` and ``AGENT.json``; ``python -m agents.evaluate --agent AGENT`` plays it.
+writes ``agents/pretrained/AGENT.zip`` and ``AGENT.json``; ``python -m agents.evaluate --agent AGENT`` plays it. The zip holds figures as
+JSON and weights, no pickled code as a run's own model.zip does, so that nobody needs to trust it (agents/kept.py).
 """
 
 import argparse
 import json
 import re
+import sys
 from pathlib import Path
 
-from snooker_env._check import refuse
+from .command import command, needs
 
-from .models import PRETRAINED, load_player, write_atomic
-from .players import NAMES
+with needs("agents.publish"):
+    from snooker_env._check import refuse
+
+    from .files import write_atomic
+    from .kept import packed
+    from .models import PRETRAINED, load_trained
+    from .players import NAMES
 
 AS_IT_STANDS = {"layout": [""], "noise": [""], "fidelity": ["", "standard"], "physics": [""], "start": [""], "set": [[]]}
 """What these settings may be in a run of its recipe as it stands."""
 
 
 def results_of(run):
-    """Every figure of a finished run and its model, once both are sound: (dict, bytes). Raises ValueError."""
+    """Every figure of a finished run and its ``Trained`` agent, once both are sound. Raises ValueError."""
     try:
         found = json.loads((run / "results.json").read_text())
         card_of(found, "")
         name_of(found, "any")
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         raise refuse("run", str(run), "must be the folder of a finished run, with a whole results.json") from None
-    load_player(run, "run")
-    return found, (run / "model.zip").read_bytes()
+    return found, load_trained(run, "run")
 
 
 def card_of(found, limits):
@@ -62,17 +68,18 @@ def publish(run, name, limits, replace=False):
     """Write the model and its card; (path without ending, card). Raises ValueError before anything is written."""
     if not limits.strip():
         raise refuse("limits", limits, "must say what a user should know that it cannot do")
-    found, model = results_of(run)
+    found, trained = results_of(run)
     path = PRETRAINED / name_of(found, name)
     card, files = card_of(found, limits), [path.with_name(path.name + end) for end in (".zip", ".json")]
     if not replace and any(file.exists() for file in files):
         raise refuse("name", path.name, "must be new: there is such a model; --replace overwrites it")
     PRETRAINED.mkdir(exist_ok=True)
-    for file, data in zip(files, (model, (json.dumps(card, indent=1) + "\n").encode()), strict=True):
+    for file, data in zip(files, (packed(trained), (json.dumps(card, indent=1) + "\n").encode()), strict=True):
         write_atomic(file, data)
     return path, card
 
 
+@command("agents.publish")
 def main(argv=None):
     """Command line."""
     parser = argparse.ArgumentParser("python -m agents.publish", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -86,7 +93,8 @@ def main(argv=None):
     except ValueError as error:
         parser.error(str(error))
     print(f"{path}.zip and its card: {card['learned']}")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

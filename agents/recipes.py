@@ -29,7 +29,7 @@ BY_OPTION = ("n_timesteps", "n_envs", "imitation")
 def rate(field, value, low, high):
     """A learning rate: a number, or lin_X."""
     try:
-        number(field, _value(value[4:]) if isinstance(value, str) and value.startswith("lin_") else value, low, high)
+        number(field, value_of(value[4:]) if isinstance(value, str) and value.startswith("lin_") else value, low, high)
     except ValueError:
         raise refuse(field, value, f"must be a number in [{low}, {high}], or lin_X with such a number X") from None
     return value
@@ -102,8 +102,16 @@ class Recipe:
         model.start, model.imitated = None, 0  # where its weights came from: see ``models.load_weights``; positions it was taught on
         return model
 
+    def new_network(self, observation_space, action_space):
+        """The untrained network (an SB3 policy) of ``new_model`` alone, for weights that are there already."""
+        network = policy(self.policy)
+        if isinstance(network, str):
+            network = algorithm(self.algo).policy_aliases[network]
+        return network(observation_space, action_space, lambda _: 0.0, **self.settings.get("policy_kwargs", {}))
 
-def _value(text):
+
+def value_of(text):
+    """What a text on the command line means: a Python literal, or itself."""
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
@@ -120,7 +128,7 @@ def _changes(changes, keys):
             raise refuse("set", change, f"must be KEY=VALUE with KEY one of {', '.join(free)}{own}")
         if key in found:
             raise refuse("set", change, f"must give {key} only once")
-        found[key] = _value(value)
+        found[key] = value_of(value)
     return found
 
 

@@ -7,10 +7,12 @@ from snooker_env._check import choice
 from .foresight import Foresight
 from .view import SHOWN, Pots, with_pots
 
+VIEWS = ("pots", "foresight")
+
 
 def view_of(name, threads=None):
-    """The view of that name, "pots" or "foresight"."""
-    return Foresight(threads) if choice("view", name, ("pots", "foresight")) == "foresight" else Pots()
+    """The view of that name."""
+    return Foresight(threads) if choice("view", name, VIEWS) == "foresight" else Pots()
 
 
 def training_tables(n, threads=None, view="pots", **options):

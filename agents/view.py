@@ -7,7 +7,7 @@ from gymnasium import spaces
 
 from snooker_env._jit import entry
 from snooker_env.envs.choices import POTS
-from snooker_env.envs.observations import SIZE
+from snooker_env.envs.observations import SIZE, shaped, space
 from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, VALUES
 from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
 
@@ -80,6 +80,22 @@ class Pots:
     def __call__(self, tables, observations, rows=None):
         """What is seen of the tables ``rows``, whose observations are given."""
         return with_pots(observations)
+
+    def masks(self, tables):
+        """Which choices may be played."""
+        return tables.action_masks()
+
+
+class Plain:
+    """The view of a model that was not made here: the observation of that ``kind`` as the environment shows it."""
+
+    def __init__(self, kind):
+        self._kind = kind
+        self.space = space(kind)
+
+    def __call__(self, tables, observations, rows=None):
+        """What is seen of the tables ``rows``, whose flat observations are given."""
+        return shaped(self._kind, observations)
 
     def masks(self, tables):
         """Which choices may be played."""

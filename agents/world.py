@@ -27,4 +27,4 @@ def world(text):
 def text_of(physics):
     """The text that means this option of the environment: a preset's name or a dict as ``world`` makes it."""
     fields = dict(physics) if isinstance(physics, dict) else {"preset": physics}
-    return ",".join([fields.pop("preset"), *(f"{name}={value}" for name, value in fields.items())])
+    return ",".join([fields.pop("preset", "paper"), *(f"{name}={value}" for name, value in fields.items())])

@@ -30,7 +30,7 @@ ENV = [
     ],
     *[
         case(make(**{field: wrong}), field, repr(wrong), "must be True or False", f"{field}={wrong!r}")
-        for field in ("elevation", "placement", "decision")
+        for field in ("elevation", "placement", "decision", "trust")
         for wrong in (0, 1, None, "yes", 0.5, [True])
     ],
     *[
@@ -39,12 +39,15 @@ ENV = [
     ],
     *[
         case(make(**{field: wrong}), field, repr(wrong), f'must be {plain!r} with task="visit"', f"visit-{field}")
-        for field, wrong, plain in (("opponent", "random", "none"), ("miss", "clear_path", "off"), ("decision", True, False))
+        for field, wrong, plain in (
+            ("opponent", "random", "none"), ("miss", "clear_path", "off"), ("decision", True, False), ("trust", True, False),
+        )
     ],
     *[
         case(make(task="frame", opponent=wrong), "opponent", repr(wrong), "'none', 'random', 'ghost_ball', a path to a model (.zip)")
         for wrong in ("", "Random", "model", 3, None, True, ["random"])
     ],
+    *[case(make(task="frame", trust=w), "trust", repr(w), "must be True or False", f"frame-trust={w!r}") for w in (1, None, "yes")],
     case(make(task="frame", opponent="missing.zip"), "opponent", "'missing.zip'", "must be a model saved by Stable-Baselines3"),
     *[case(make(task="frame", miss=w), "miss", repr(w), "must be one of 'off', 'clear_path'", f"miss={w!r}") for w in ("on", None, True)],
     *[case(make(task="frame", reward=w), "reward", repr(w), "must be one of 'points', 'win'") for w in ("pots", "wins")],

@@ -1,12 +1,21 @@
 """Are published models those that play today, and are only sound runs published?"""
 
+import hashlib
+import io
 import json
+import pickle
+import pickletools
+import zipfile
 
+import cloudpickle
 import numpy as np
 import pytest
+import torch
+from gymnasium import spaces
 
 from agents import models, publish
-from agents.models import load_player, pretrained
+from agents.kept import KEPT
+from agents.models import load_player, load_trained, pretrained
 from agents.recipes import Recipe
 from agents.tables import training_tables
 from snooker_env.envs.vector import SnookerVectorEnv
@@ -70,6 +79,44 @@ def published(folder):
     return sorted(p.name for p in (folder.parent / "pretrained").glob("*"))
 
 
+WEIGHTS = {
+    "ppo_absolute": "67529da87a2b16473f5ec411b665790e933dd6f1234de65e33eb255bf2bb9a5d",
+    "ppo_foresight": "114aaeccdaa2f01d4ba3d1cac4292931d0402127ece1f3061ae661acb22815d7",
+    "ppo_foresight_gamma0": "f7afb6b86e0458b2c9b292b0ea69eddd27e1f766ed92d9090edbc9404195d32e",
+    "ppo_mask": "29bbb22b0327fb9e07bd457709d2e6a718428fddc5e28cf1aa66e27016985dd3",
+    "ppo_target": "06d4428eb0605f9ee959bab5ad16bab8b29ba2d6eae653881502a0cbb06da99c",
+}
+"""SHA-256 of the weights that the published figures were played with, whatever file holds them."""
+
+
+@pytest.mark.parametrize("name", pretrained())
+def test_pretrained_models_hold_figures_and_weights_alone(name, monkeypatch):
+    """Nothing but tensors comes out of them, and nothing is unpickled by the way that runs code."""
+    with zipfile.ZipFile(models.PRETRAINED / f"{name}.zip") as file:
+        assert sorted(file.namelist()) == ["model.json", "policy.pth"]
+        assert set(json.loads(file.read("model.json"))) == {*KEPT, "seen"}
+        with zipfile.ZipFile(io.BytesIO(file.read("policy.pth"))) as inner:
+            pickled = [inner.read(part) for part in inner.namelist() if part.endswith(".pkl")]
+    called = {argument for opcode, argument, _ in pickletools.genops(*pickled) if opcode.name in ("GLOBAL", "STACK_GLOBAL", "INST")}
+    assert called == {"torch._utils _rebuild_tensor_v2", "torch FloatStorage", "collections OrderedDict"}
+    load = torch.load
+
+    def forbidden(*arguments, **options):
+        raise AssertionError("unpickled")
+
+    for library in (pickle, cloudpickle):
+        for function in ("load", "loads"):
+            monkeypatch.setattr(library, function, forbidden)
+    monkeypatch.setattr(
+        torch, "load", lambda *a, weights_only=False, **more: load(*a, weights_only=True, **more) if weights_only else forbidden()
+    )
+    weights = load_player(models.PRETRAINED / f"{name}.zip").model.policy.state_dict()
+    digest = hashlib.sha256()
+    for key in sorted(weights):
+        digest.update(key.encode() + str(tuple(weights[key].shape)).encode() + weights[key].numpy().tobytes())
+    assert digest.hexdigest() == WEIGHTS[name]
+
+
 @pytest.mark.parametrize("name", pretrained())
 def test_pretrained_models_play_today(name):
     player = load_player(models.PRETRAINED / f"{name}.zip")
@@ -86,7 +133,9 @@ def test_a_run_is_published_with_its_card(run, capsys):
     publish.main([str(run), "--limits", "no safety"])
     assert published(run) == ["ppo_mask.json", "ppo_mask.zip"] and "ppo_mask.zip and its card" in capsys.readouterr().out
     folder = run.parent / "pretrained"
-    assert (folder / "ppo_mask.zip").read_bytes() == (run / "model.zip").read_bytes()
+    there, trained = load_player(folder / "ppo_mask.zip").model, load_player(run).model
+    assert all((a == b).all() for a, b in zip(there.policy.parameters(), trained.policy.parameters(), strict=True))
+    assert {key: getattr(there, key) for key in KEPT} == {key: getattr(trained, key) for key in KEPT}
     card = json.loads((folder / "ppo_mask.json").read_text())
     assert (card["limits"], card["hours"], card["imitated"], card["start"]) == ("no safety", 0.01, 0, None)
 
@@ -152,9 +201,9 @@ def test_a_model_of_an_older_network_is_refused(run, monkeypatch):
             with pytest.raises(ValueError, match=said.format("agent")):
                 load_player(run)
     with monkeypatch.context() as patch:
-        patch.setattr(models.Model, "space", None)
+        patch.setattr("agents.view.Pots.space", spaces.Box(-1.0, 1.0, (7,), np.float32))
         with pytest.raises(ValueError, match=said.format("start")):
-            load_player(run / "model.zip", "start")
-    monkeypatch.setattr(models.Recipe, "of", lambda name: {}[name])
+            load_trained(run / "model.zip", "start")
+    monkeypatch.setattr("agents.kept.Recipe.of", lambda name, **more: {}[name])
     with pytest.raises(ValueError, match=said.format("agent")):
         load_player(run)

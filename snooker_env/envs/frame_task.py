@@ -20,11 +20,11 @@ AGENT = 0
 class FrameTask:
     """A frame of the agent against ``opponent``, on ``table``, a ``FrameTable``."""
 
-    def __init__(self, shooter, *, opponent, miss, reward, observation):
+    def __init__(self, shooter, *, opponent, trust, miss, reward, observation):
         self.table = FrameTable(shooter, miss=miss)
-        self.opponent = opponent_of(opponent, observation, shooter.actions)
         self.reward = FRAME_REWARDS[choice("reward", reward, FRAME_REWARDS)]
         self.observation = observation
+        self.opponent = opponent_of(opponent, observation, shooter.actions, trust)
         self.opponent_strokes = 0
         """Strokes that the opponent played in the last step (or before the first)."""
 

@@ -4,17 +4,16 @@ A player is asked with ``play(table, observe, rng, path)`` when it is its turn o
 stroke, and returns what was ``Played`` (None if it handed the table back to the offender).
 """
 
-import json
-import zipfile
 from math import atan2, hypot, pi, sqrt
 from pathlib import Path
 
 import numpy as np
 
-from .._check import refuse
+from .._check import refuse, truth
 from ..game.balls import BALL_RADIUS, BAULK_Y, CUE, D_RADIUS, N_BALLS
 from ..game.pots import POCKETS, pots
 from . import observations
+from .saved import Saved, outline
 
 OPPONENTS = ("none", "random", "ghost_ball")
 
@@ -30,11 +29,12 @@ class Player:
         self.policy = policy
 
     def play(self, table, observe, rng, path):
-        """One turn."""
+        """One turn. Raises ValueError, naming "opponent's action", for a wrong one."""
+        wished = self.policy(observe(), rng)
         try:
-            action = table.shooter.actions.check(self.policy(observe(), rng))
+            action = table.shooter.actions.check(wished)
         except ValueError as error:
-            raise ValueError(f"the opponent's {error}") from None
+            raise ValueError(f"opponent's {error}") from None
         return table.act(action, rng, path=path)
 
 
@@ -107,38 +107,47 @@ def _full(positions, on_table, ball):
 
 
 class Model:
-    """A model that Stable-Baselines3 or sb3-contrib saved, loaded when it is first asked.
+    """A model that Stable-Baselines3 or sb3-contrib saved; its pickles run when it is loaded, which is why ``trust`` is asked for.
 
     Trained on a frame or on the visit task, with the observation kind, aim and action options of this environment: of the frame's entries
-    and the decision it then gets and gives none (the decision is to play). Its actions are its deterministic ones.
+    and the decision it then gets and gives none (the decision is to play). Its actions are its deterministic ones. One that is not is
+    refused here, by what its file says of itself before anything of it runs.
     """
 
-    def __init__(self, path, kind, actions):
-        self.path, self.kind, self.actions = Path(path), kind, actions
-        self._model = None
+    def __init__(self, path, kind, actions, trust):
+        self.path, self.kind, self.actions, self.trust = Path(path), kind, actions, trust
+        self._network = self._load()
 
     def __getstate__(self):
-        return self.__dict__ | {"_model": None}  # loaded again where it is needed
+        return self.__dict__ | {"_network": None}  # loaded again where it is needed
 
     def __call__(self, observation, rng):
         """The action."""
-        if self._model is None:
-            self._model = self._load()
-        if self._model.observation_space == observations.space(self.kind):
+        if self._network is None:
+            self._network = self._load()
+        if self._network.observation_space == observations.space(self.kind):
             observation = visit_part(observation)
-        action = np.clip(self._model.predict(observation, deterministic=True)[0], -1.0, 1.0)
+        action = np.clip(self._network.predict(observation, deterministic=True)[0], -1.0, 1.0)
         return np.append(action, 0.0) if len(action) < self.actions.size else action
 
     def _load(self):
-        model = algorithm(self.path).load(self.path, device="cpu")
-        spaces = [observations.space(self.kind), observations.space(self.kind, frame=True)]
-        if model.observation_space not in spaces:
-            allowed = f'must be a model that sees observation="{self.kind}" of the visit or frame task and nothing else'
-            raise refuse("opponent", str(self.path), allowed)
-        sizes = {self.actions.size, self.actions.size - self.actions.decision}
-        if model.action_space.shape not in {(size,) for size in sizes}:
-            raise refuse("opponent", str(self.path), f"must be a model with {min(sizes)} to {max(sizes)} actions")
-        return model
+        seen = [observations.space(self.kind), observations.space(self.kind, frame=True)]
+        sizes = sorted({self.actions.size, self.actions.size - self.actions.decision})
+        saved = Saved.of(self.path, "opponent")
+        if saved.action[0] != "Box":  # a frame is played by numbers
+            raise saved.refused("must be a model whose actions are a Box")
+        other_view = saved.refused(f'must be a model that sees observation="{self.kind}" of the visit or frame task and nothing else')
+        other_actions = saved.refused(f"must be a model with {' or '.join(map(str, sizes))} actions")
+        if saved.observation not in [outline(space) for space in seen]:
+            raise other_view
+        if saved.action[1] not in [[size] for size in sizes]:
+            raise other_actions
+        network = saved.network(self.trust, "trust=True")
+        if network.observation_space not in seen:  # a file may say one thing and hold another
+            raise other_view
+        if outline(network.action_space) not in [("Box", [size]) for size in sizes]:
+            raise other_actions
+        return network
 
 
 def visit_part(observation):
@@ -149,45 +158,14 @@ def visit_part(observation):
     return observation[:-extra]
 
 
-# An attribute that only this algorithm saves, the more special first.
-_ALGORITHMS = {
-    "top_quantiles_to_drop_per_net": ("sb3_contrib", "TQC"), "cg_max_steps": ("sb3_contrib", "TRPO"),
-    "target_entropy": ("stable_baselines3", "SAC"), "policy_delay": ("stable_baselines3", "TD3"),
-    "clip_range": ("stable_baselines3", "PPO"), "gae_lambda": ("stable_baselines3", "A2C"),
-}  # fmt: skip
-
-
-def algorithm(path):
-    """The class that saved a model file, told by the attributes in it. ValueError for any other file or model, ImportError without SB3."""
-    try:
-        with zipfile.ZipFile(path) as file:
-            saved = json.loads(file.read("data"))
-            is_box = "Box" in saved["action_space"][":type:"]
-    except (OSError, KeyError, ValueError, TypeError, zipfile.BadZipFile) as error:
-        raise refuse("opponent", str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
-    if not is_box:  # a frame is played by numbers; MaskablePPO would pass for PPO below
-        raise refuse("opponent", str(path), "must be a model whose actions are a Box")
-    for attribute, (library, name) in _ALGORITHMS.items():
-        if attribute in saved:
-            try:
-                if library == "sb3_contrib":
-                    import sb3_contrib as module
-                else:
-                    import stable_baselines3 as module
-            except ImportError as error:
-                raise ImportError(f'a model as opponent needs {library}; install it with: pip install "snooker-env[train]"') from error
-            return getattr(module, name)
-    raise refuse("opponent", str(path), "must be a model of " + ", ".join(name for _, name in _ALGORITHMS.values()))
-
-
-def opponent_of(opponent, kind, actions):
-    """The player that ``opponent`` names; None for "none". ``kind``: of the observation, for a model."""
+def opponent_of(opponent, kind, actions, trust=False):
+    """The player that ``opponent`` names; None for "none". ``kind``: of the observation, ``trust``: may code run, for a model's file."""
     allowed = "must be one of " + ", ".join(map(repr, OPPONENTS)) + ", a path to a model (.zip), or a callable(observation, rng) -> action"
+    truth("trust", trust)
     if callable(opponent):
         return Player(opponent)
     if not isinstance(opponent, str | Path) or (str(opponent) not in OPPONENTS and Path(opponent).suffix != ".zip"):
         raise refuse("opponent", opponent, allowed)
     if str(opponent) in OPPONENTS:
         return {"none": lambda: None, "random": RandomPlayer, "ghost_ball": GhostBall}[str(opponent)]()
-    algorithm(opponent)  # a file that is no model fails here and not in the first step
-    return Player(Model(opponent, kind, actions))
+    return Player(Model(opponent, kind, actions, trust))

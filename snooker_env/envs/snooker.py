@@ -5,7 +5,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from .._check import choice, refuse
+from .._check import choice, refuse, truth
 from ..game.balls import REDS_MASK, BallOn, balls_on
 from ..game.layouts import plan_of
 from . import observations
@@ -18,16 +18,16 @@ from .state import FRAME_KEYS, check_keys, check_rng, checked
 from .visit import BALL_ON, IN_HAND, OVER, POINTS, Returned, Rules, Visits, Work
 
 TASKS = ("visit", "frame")
-FRAME_ONLY = {"opponent": "none", "miss": "off", "decision": False}
+FRAME_ONLY = {"opponent": "none", "miss": "off", "decision": False, "trust": False}
 """Arguments that mean something in the frame task only, and the values that they must have in a visit."""
 LAYOUTS = {"visit": "opened", "frame": "break_off"}
 """What layout="default" is in each task."""
 
 
-def visit_only(reward, opponent, miss, decision):
+def visit_only(reward, opponent, miss, decision, trust):
     """Raise ValueError unless these arguments make sense in a visit."""
     choice("reward", reward, REWARDS)
-    for name, value in (("opponent", opponent), ("miss", miss), ("decision", decision)):
+    for name, value in (("opponent", opponent), ("miss", miss), ("decision", decision), ("trust", truth("trust", trust))):
         if value != FRAME_ONLY[name]:
             raise refuse(name, value, f'must be {FRAME_ONLY[name]!r} with task="visit"; it belongs to task="frame"')
 
@@ -44,7 +44,8 @@ class SnookerEnv(gymnasium.Env):
     that the opponent plays after it. Who breaks is drawn from the seed. ``opponent="none"``: the agent plays alone; what it misses or
     fouls it plays on from itself, penalties go to the other score. ``"random"``: uniform actions. ``"ghost_ball"``: the plain geometric
     player. ``opponent(observation, rng) -> action``: any callable, asked in this environment's spaces from its own side of the table.
-    A path to a ``.zip``: a model of Stable-Baselines3 or sb3-contrib, trained on either task with these options.
+    A path to a ``.zip``: a model of Stable-Baselines3 or sb3-contrib, trained on either task with these options. Such a file holds pickled
+    Python code, which runs when it is loaded, and so needs ``trust=True``; a model that does not fit is refused before any of it runs.
 
     ## Action space
     ``Box(-1, 1, (4,), float32)``: cue speed, side spin, top/back spin, aim; see ``snooker_env.envs.actions.Actions`` for every component
@@ -90,6 +91,7 @@ class SnookerEnv(gymnasium.Env):
     | task | "visit" | build a break until the first miss or foul; "frame": see Description |
     | layout | "default" | see Starting state |
     | opponent, miss, decision | "none", "off", False | of a frame only; miss: "off" or "clear_path" (``snooker_env.game.frame``) |
+    | trust | False | of a frame only; may the code in an opponent's ``.zip`` run? |
     | action | "box" | or "discrete": one number means a pot, speed, side and top, the aim solved; ``snooker_env.envs.choices`` |
     | aim | "absolute" | or "target" |
     | observation | "flat" | or "balls" |
@@ -122,7 +124,7 @@ class SnookerEnv(gymnasium.Env):
     def __init__(
         self, *, task="visit", layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points",
         elevation=False, placement=False, physics="paper", table="match", fidelity="standard", render_mode=None, opponent="none",
-        miss="off", decision=False,
+        miss="off", decision=False, trust=False,
     ):  # fmt: skip
         whole = choice("task", task, TASKS) == "frame"
         layout = LAYOUTS[task] if isinstance(layout, str) and layout == "default" else layout
@@ -141,9 +143,9 @@ class SnookerEnv(gymnasium.Env):
         if whole and action == "discrete":
             raise refuse("action", action, 'must be "box" with task="frame"')
         if whole:
-            self.frames = FrameTask(self.shooter, opponent=opponent, miss=miss, reward=reward, observation=observation)
+            self.frames = FrameTask(self.shooter, opponent=opponent, trust=trust, miss=miss, reward=reward, observation=observation)
         else:
-            visit_only(reward, opponent, miss, decision)
+            visit_only(reward, opponent, miss, decision, trust)
             self.visits = Visits(Rules(self.shooter, plan, reward), 1)
             self._work, self._seeded = Work(1, path=render_mode is not None), False
         if render_mode is not None:

@@ -55,6 +55,7 @@ class SnookerVectorEnv(VectorEnv):
         self, num_envs=1, *, max_episode_steps=None, render_mode=None, autoreset_mode=AutoresetMode.NEXT_STEP, threads=None, task="visit",
         layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points", elevation=False, placement=False,
         physics="paper", table="match", fidelity="standard", opponent="none", miss="off", decision=False,
+        trust=False,
     ):  # fmt: skip
         if task == "frame":
             raise refuse("task", task, 'must be "visit" here; for whole frames use vectorization_mode="sync" or "async"')
@@ -68,7 +69,7 @@ class SnookerVectorEnv(VectorEnv):
         layout = LAYOUTS["visit"] if isinstance(layout, str) and layout == "default" else layout
         plan = plan_of(layout)
         shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action)
-        visit_only(reward, opponent, miss, decision)
+        visit_only(reward, opponent, miss, decision, trust)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode, self.observation, self.shooter = render_mode, observation, shooter
         self.single_action_space = shooter.actions.space
