@@ -7,12 +7,12 @@
 
 A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; a pickle, and loading one runs what it holds: --resume only your own),
 ``model.zip`` (for ``python -m agents.evaluate`` and --start, which run nothing of it, and for ``PPO.load`` of ``stable_baselines3``, which
-unpickles), ``results.json`` (every figure), ``tb/`` (``tensorboard --logdir runs``) and, while the run goes on, ``train.lock``: no two of
-them share a folder (``agents/lock.py``).
+unpickles), ``results.json`` (every figure), ``tb/`` (``tensorboard --logdir runs``) and, while the run goes on, ``train.lock``: no two
+runs share a folder (``agents/lock.py``).
 
-What an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how it is taught first in ``agents/imitate.py``, how
-its visits are judged in ``agents/visits.py``, what is said of them in ``agents/lesson.py``, what is kept in ``agents/run_folder.py`` and
-``agents/keeper.py``; here follow, top to bottom: settings, the run.
+What an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how it is taught first in ``agents/imitate.py``,
+how its visits are judged in ``agents/visits.py``, what is said of them in ``agents/lesson.py``, what is kept in ``agents/run_folder.py``
+and ``agents/keeper.py``; here follow, top to bottom: settings, the run.
 """
 
 import argparse

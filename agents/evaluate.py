@@ -26,7 +26,6 @@ import os
 import platform
 import shlex
 import sys
-from importlib import import_module
 from itertools import product
 from pathlib import Path
 
@@ -46,7 +45,7 @@ with needs("agents.evaluate"):
     from .figures import Played, counts
     from .files import writable, write_atomic
     from .models import pretrained
-    from .players import NAMES, is_player
+    from .players import NAMES
     from .report import AXES, main_condition, markdown, show
     from .statistics import RESAMPLES
     from .visits import HELD_OUT_SEED, play, tables_of
@@ -57,7 +56,6 @@ PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
 NOISES = ("none", "professional", "amateur", "club")
 REFERENCE = "ghost_ball"
 PICTURE = Path(__file__).parent / "pictures" / "destinations.png"
-FOR_MODELS = ("torch", "stable_baselines3", "sb3_contrib")
 
 
 def play_agent(agent, condition, seeds, budget, resamples):
@@ -141,9 +139,6 @@ def checked(args):
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
-    if not all(is_player(run) for agent in agents for run in agent.runs):
-        for package in FOR_MODELS:  # here: whoever reads a model takes what is missing for a broken file
-            import_module(package)
     for agent in agents:
         agent.trained()  # reads its models
     if options and not any(agent.foreign for agent in agents):

@@ -6,7 +6,6 @@ sb3-contrib is a file whose pickles run when it is loaded: ``load_other``, with 
 
 import inspect
 import io
-import os
 from pathlib import Path
 
 import numpy as np
@@ -132,23 +131,8 @@ def load_weights(model, path):
     model.start = {"model": str(path), "shots": other.num_timesteps, "imitated": other.imitated, "start": other.start}
 
 
-def write_atomic(path, data):
-    """Write bytes so that ``path`` holds either the old or the new content, whole, whenever the process or the machine dies."""
-    temporary = path.with_name(path.name + ".tmp")
-    with open(temporary, "wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(temporary, path)
-
-
 def zipped(model):
     """An SB3 model as the bytes of its zip file."""
     file = io.BytesIO()
     model.save(file)
     return file.getvalue()
-
-
-def write_model(model, path):
-    """Save an SB3 model, whole or not at all."""
-    write_atomic(path, zipped(model))

@@ -9,13 +9,18 @@ JSON and weights, no pickled code as a run's own model.zip does, so that nobody 
 import argparse
 import json
 import re
+import sys
 from pathlib import Path
 
-from snooker_env._check import refuse
+from .command import command, needs
 
-from .kept import packed
-from .models import PRETRAINED, load_trained, write_atomic
-from .players import NAMES
+with needs("agents.publish"):
+    from snooker_env._check import refuse
+
+    from .files import write_atomic
+    from .kept import packed
+    from .models import PRETRAINED, load_trained
+    from .players import NAMES
 
 AS_IT_STANDS = {"layout": [""], "noise": [""], "fidelity": ["", "standard"], "physics": [""], "start": [""], "set": [[]]}
 """What these settings may be in a run of its recipe as it stands."""
@@ -74,6 +79,7 @@ def publish(run, name, limits, replace=False):
     return path, card
 
 
+@command("agents.publish")
 def main(argv=None):
     """Command line."""
     parser = argparse.ArgumentParser("python -m agents.publish", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -87,7 +93,8 @@ def main(argv=None):
     except ValueError as error:
         parser.error(str(error))
     print(f"{path}.zip and its card: {card['learned']}")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -58,6 +58,7 @@ def test_train_says_what_is_missing(package):
         ("yaml", "train", "curves", ["runs/x"]),
         ("rich", "train", "report", ["--show", "agents/results_147.json"]),
         ("numba", "train", "looks", []),
+        ("yaml", "train", "publish", ["runs/x", "--limits", "none"]),
     ],
 )
 def test_a_command_says_what_is_missing(package, extra, module, arguments):
