@@ -43,6 +43,8 @@ SHORT = {
     "benchmarks.layouts_picture": ["--out", "{tmp}/layouts.png"],
     "benchmarks.pictures": ["--out", "{tmp}/shot.png"],
     "agents.evaluate": ["--agent", "random", "--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"],
+    "agents.report": ["--show", "agents/results_147.json"],
+    "benchmarks.fuzz": ["--shots", "300", "--threads", "1"],
     "benchmarks.vector": ["--seconds", "0.1", "--repeats", "1", "--tables", "64", "--ppo-steps", "2048"],
 }  # fmt: skip
 
