@@ -40,7 +40,7 @@ def run(main):
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without UTF-8 shows "?" for what it cannot show
-    signal.signal(signal.SIGINT, _interrupt)
+    before = signal.signal(signal.SIGINT, _interrupt)
     try:
         code = main()
         sys.stdout.flush()
@@ -50,6 +50,8 @@ def run(main):
     except BrokenPipeError:  # nobody reads on: python -m benchmarks.paper | head
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 1
+    finally:
+        signal.signal(signal.SIGINT, before)
     sys.exit(code)
 
 

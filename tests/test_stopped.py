@@ -1,5 +1,6 @@
 """Is a frame that goes nowhere stopped by the referee, and can no score that play reaches break it?"""
 
+import copy
 import inspect
 import json
 
@@ -150,7 +151,7 @@ def test_it_is_sound_for_gymnasium_and_round_trips():
     env = gymnasium.make("Snooker-v0", task="frame", max_strokes=3, opponent="random")
     check_env(env.unwrapped, skip_render_check=True)
     for limit in (3, None):
-        spec = gymnasium.spec("Snooker-v0")
+        spec = copy.deepcopy(gymnasium.spec("Snooker-v0"))  # it is the registry's own
         spec.kwargs = {"task": "frame", "max_strokes": limit}
         again = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(spec.to_json()))
         assert again.unwrapped.frames.table.max_strokes == limit

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from agents import evaluate, visits
+from agents import evaluate, figures, visits
 from agents.players import GhostBall, Random
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BallOn
@@ -32,7 +32,7 @@ def test_counts_of_a_visit_by_hand():
         cleared=np.zeros(5, bool), cue=np.zeros((5, 2)), tolerance=np.array([1e-2, 0, 1e-3, 1e-2, 0]), thinking=0.0,
     )  # fmt: skip
     assert s.following.tolist() == [2, -1, 3, 4, -1]
-    c = {name: values.tolist() for name, values in evaluate.counts(s).items()}
+    c = {name: values.tolist() for name, values in figures.counts(s).items()}
     assert c == {
         "points": [9, 0], "pots": [3, 0], "strokes": [4, 1], "fouls": [1, 0], "goes_on": [3, 0], "followed": [2, 0], "easy": [2, 0],
         "colours": [1, 0], "colour_points": [7, 0], "high": [1, 0], "reds": [2, 0], "high_after_red": [1, 0], "clearances": [0, 0],
@@ -52,7 +52,7 @@ def a_clearance_a_foul_and_a_miss():
 
 
 def test_a_foul_clears_no_table():
-    c, f = evaluate.counts(a_clearance_a_foul_and_a_miss()), visits.summary(a_clearance_a_foul_and_a_miss())
+    c, f = figures.counts(a_clearance_a_foul_and_a_miss()), visits.summary(a_clearance_a_foul_and_a_miss())
     assert c["clearances"].tolist() == c["centuries"].tolist() == [1, 0, 0]
     assert f["clearances"] == f["centuries"] == pytest.approx(1 / 3)
 
@@ -61,19 +61,19 @@ def test_a_foul_clears_no_table():
 def test_centuries_and_maximums(points, century, maximum):
     s = a_clearance_a_foul_and_a_miss()
     s.points[0] = points - s.points[-1]
-    c = evaluate.counts(s)
+    c = figures.counts(s)
     assert c["centuries"].tolist() == [century, 0, 0] and c["maximums"].tolist() == [maximum, 0, 0]
 
 
 def test_counts_agree_with_the_summary():
     s = visits.play(GhostBall(), 60, noise="professional")
     for strokes in (s, a_clearance_a_foul_and_a_miss()):
-        c, f = evaluate.counts(strokes), visits.summary(strokes)
+        c, f = figures.counts(strokes), visits.summary(strokes)
         for name in ("points_a_visit", "pots_a_visit", "fouls_a_visit", "pot_rate", "next_pot_after_a_pot", "colour_value", "high_colours",
                      "centuries", "clearances"):  # fmt: skip
-            above, below = evaluate.FIGURES[name]
+            above, below = figures.FIGURES[name]
             assert c[above].sum() / c[below].sum() == pytest.approx(f[name])
-    c, f = evaluate.counts(s), visits.summary(s)
+    c, f = figures.counts(s), visits.summary(s)
     assert f["next_pot_after_a_pot"] > 0.4 and np.all(c["strokes"] - c["pots"] == 1 - c["clearances"])  # a visit ends with its first miss
 
 
