@@ -19,7 +19,7 @@ def number(field, value, low=-np.inf, high=np.inf, *, open_low=False):
     bounds = f"must be a finite number in {left}{low:g}, {high:g}{right}"
     if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
         raise refuse(field, value, bounds)
-    if isinstance(value, np.ndarray) and (value.ndim or np.ma.is_masked(value)):
+    if isinstance(value, (np.ndarray, np.generic)) and (value.ndim or value.dtype.kind not in "iuf" or np.ma.is_masked(value)):
         raise refuse(field, value, bounds)
     try:
         x = float(value)
@@ -60,7 +60,8 @@ def choice(field, value, options):
 
 def integer(field, value, low, high):
     """An int in [low, high]."""
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
+    other = (bool, np.bool_, np.timedelta64)  # this one is a NumPy integer, too
+    if isinstance(value, other) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
         raise refuse(field, value, f"must be an integer in [{low}, {high}]")
     return int(value)
 

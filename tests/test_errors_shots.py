@@ -200,6 +200,11 @@ DTYPES = [
     case(impact(v1=[10**400, 0, 0]), "v1", "1000", REAL, "int beyond float64"),
     case(strike(speed=10**400), "speed", "1000", "must be a finite number", "speed beyond float64"),
     case(strike(speed=np.True_), "speed", "True", "must be a finite number", "numpy bool"),
+    *[
+        case(strike(speed=wrong), "speed", repr(wrong), "must be a finite number", f"speed={wrong!r}")
+        for wrong in (np.complex128(1 + 2j), np.array(1j), np.timedelta64(3, "ns"), np.datetime64(3, "ns"))
+    ],
+    case(shot(max_events=np.timedelta64(3, "ns")), "max_events", repr(np.timedelta64(3, "ns")), "must be an integer in", "events of time"),
     case(shot(fidelity="euler:" + "9" * 5000), "fidelity", "'euler:9999", FIDELITY, "endless N"),
     case(lambda: sn.Table("x", np.zeros((1, 2)), np.zeros((0, 6)), np.zeros((0, 3))), "table.noses", "shape (1, 2)",
          "must have shape (n, 5)", "own table of wrong shape"),
