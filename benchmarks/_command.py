@@ -131,6 +131,16 @@ def save_json(file, figures):
             place.write_text(json.dumps(figures, indent=1) + "\n")
 
 
+def save_image(file, pixels):
+    """Write a picture (H, W, 3), in the format of the file's suffix. Not by pygame, which says nothing of a full disk."""
+    import pygame
+
+    drawn = io.BytesIO()
+    pygame.image.save(pygame.surfarray.make_surface(pixels.swapaxes(0, 1)), drawn, file.name)
+    with saved(file) as place:
+        place.write_bytes(drawn.getvalue())
+
+
 def _path(file):
     return None if file is None else Path(file)
 

@@ -13,7 +13,7 @@ from snooker_env.game.pots import pots
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import scene
 
-from ._command import command, run, saved, writable
+from ._command import command, run, save_image, writable
 
 FILE = Path(__file__).parent / "pictures" / "layouts.png"
 HEIGHT, COLUMNS, GAP = 330, 3, 6
@@ -67,16 +67,12 @@ def sheet(seed):
 
 def main():
     """Command line."""
-    import pygame
-
     parser = command("layouts_picture", __doc__)
     parser.add_argument("--out", type=Path, default=FILE)
     parser.add_argument("--seed", type=int, default=4)
     args = parser.parse_args()
     writable(args.out)
-    image = pygame.surfarray.make_surface(sheet(args.seed).swapaxes(0, 1))
-    with saved(args.out) as place:
-        pygame.image.save(image, place)
+    save_image(args.out, sheet(args.seed))
     print(args.out)
 
 

@@ -13,7 +13,7 @@ from snooker_env.game.pots import pots
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import ball_paths, scene
 
-from ._command import command, run, saved, writable
+from ._command import command, run, save_image, writable
 
 FILE = Path(__file__).parent / "pictures" / "shot.png"
 
@@ -38,8 +38,6 @@ def pot(seed):
 
 def main():
     """Command line."""
-    import pygame
-
     parser = command("pictures", __doc__)
     parser.add_argument("--out", type=Path, default=FILE)
     out = parser.parse_args().out
@@ -48,8 +46,7 @@ def main():
     positions, ball, shot = pot(6)
     text = "a red potted with screw and right-hand side: the table before the shot, and where the two balls went"
     picture = rgb_array(scene("match", positions, paths=ball_paths(shot, balls=(0, ball)), text=text))
-    with saved(out) as place:
-        pygame.image.save(pygame.surfarray.make_surface(picture.swapaxes(0, 1)), place)
+    save_image(out, picture)
     print(out)
 
 

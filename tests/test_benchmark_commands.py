@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from benchmarks import _command
@@ -169,3 +170,13 @@ def test_what_was_written_before_ctrl_c_is_named(tmp_path, capsys, monkeypatch):
     with pytest.raises(SystemExit) as stopped:
         _command.run(main)
     assert stopped.value.code == 130 and capsys.readouterr().err.endswith(f"; written: {tmp_path / 'a.json'}\n")
+
+
+def test_a_picture_on_a_full_disk_is_no_empty_file(tmp_path):
+    pixels = np.random.default_rng(0).integers(256, size=(50, 80, 3), dtype=np.uint8)
+    _command.save_image(tmp_path / "a.png", pixels)
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG") and (tmp_path / "a.png").stat().st_size > 50 * 80 * 3
+    if Path("/dev/full").exists():
+        (tmp_path / "full.png").symlink_to("/dev/full")
+        with pytest.raises(SystemExit, match="could not be written: No space left on device"):
+            _command.save_image(tmp_path / "full.png", pixels)
