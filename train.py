@@ -262,8 +262,12 @@ def main(argv=None):
         except KeyboardInterrupt:
             print(f"Interrupted. {kept(out)}", file=sys.stderr)
             return 130
+        except BrokenPipeError:
+            print(f"train.py: nobody reads its output any more. {kept(out)}", file=sys.stderr)
+            raise
         except OSError as error:
-            raise SystemExit(f"train.py: {of_disk(error, str(out / 'tb'))}. {kept(out)}") from None
+            what = f"{out / 'tb'} or the output"  # TensorBoard's errors name no file either
+            raise SystemExit(f"train.py: {of_disk(error, what)}. {kept(out)}") from None
     return 0
 
 

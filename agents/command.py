@@ -6,6 +6,7 @@ Only the standard library is imported here: what is missing must be told before 
 import errno
 import functools
 import io
+import os
 import sys
 import threading
 
@@ -73,6 +74,9 @@ def command(name):
                 return main(argv)
             except ImportError as error:
                 raise missing(name, error) from None
+            except BrokenPipeError:  # nobody reads on: train.py | head
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+                return 1
             except OSError as error:
                 raise SystemExit(f"{name}: {of_disk(error)}") from None
             except KeyboardInterrupt:

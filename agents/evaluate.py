@@ -247,10 +247,10 @@ def tell(report, shown, args):
             failed.append(of_disk(error, files[name]))
             files[name] = None
 
-    written("json", lambda file: write_atomic(file, (json.dumps(report, indent=1) + "\n").encode()))  # first: the rest cannot lose it
-    show(report)
+    written("json", lambda file: write_atomic(file, (json.dumps(report, indent=1) + "\n").encode()))
     written("markdown", text)
     written("picture", picture)
+    show(report)  # last: whoever reads it may leave, as head does
     for name, file in files.items():
         if file:
             print(f"{name}: {file}")

@@ -131,3 +131,14 @@ def test_only_a_full_disk_is_told_without_a_traceback():
     assert stop.value.code == "agents.x: r.json cannot be written: No space left on device"
     with pytest.raises(FileNotFoundError):
         failing(FileNotFoundError(2, "No such file", "x"))()
+
+
+@pytest.mark.parametrize("arguments", [["-m", "agents.looks"], ["train.py", *TINY]])
+def test_a_reader_that_leaves_ends_a_command_in_one_line_at_most(arguments, tmp_path):
+    out = [] if "-m" in arguments else ["--out", str(tmp_path / "run")]
+    reading, writing = os.pipe()
+    os.close(reading)
+    with open(writing, "w") as nobody:
+        done = subprocess.run([sys.executable, *arguments, *out], cwd=ROOT, stdout=nobody, stderr=subprocess.PIPE, text=True, timeout=300)
+    assert done.returncode == 1 and "Traceback" not in done.stderr
+    assert done.stderr == ("train.py: nobody reads its output any more. Nothing was saved yet: begin the run anew.\n" if out else "")

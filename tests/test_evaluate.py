@@ -283,6 +283,16 @@ def test_a_full_disk_loses_one_file_only(tmp_path, monkeypatch, capsys, full):
     assert "points a visit" in told and str(tmp_path / full) not in told
 
 
+def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
+    def gone(report):
+        raise SystemExit(1)  # as rich does
+
+    monkeypatch.setattr(evaluate, "show", gone)
+    with pytest.raises(SystemExit):
+        evaluate.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
+    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "p.png"}
+
+
 def test_a_world_is_named_as_it_was_called():
     for text in ("paper", "match", "paper,mu_bb=marlow", "match,mu_bb=0.06"):
         assert text_of(world(text)) == text
