@@ -45,9 +45,13 @@ class Lock:
             except OSError as error:
                 print(f"{self._folder}: no lock ({error.strerror}): let no other run use it", file=sys.stderr)
                 return file
-            if self._path.exists() and os.path.samestat(os.fstat(file.fileno()), os.stat(self._path)):
+            if self._is(file):
                 return file
             file.close()  # its last holder took the file away in between
+
+    def _is(self, file):
+        """Is this open file the one at the lock's path?"""
+        return self._path.exists() and os.path.samestat(os.fstat(file.fileno()), os.stat(self._path))
 
     def _held_by_file(self):
         try:
@@ -66,9 +70,11 @@ class Lock:
 
     def release(self):
         """Let others have the folder."""
+        own = self._is(self._file)  # not that of another run, in a new folder where this one was before it was moved
         if fcntl is None:
             self._file.close()
-        self._path.unlink(missing_ok=True)
+        if own:
+            self._path.unlink(missing_ok=True)
         self._file.close()
 
     def __enter__(self):

@@ -276,3 +276,15 @@ sys.exit(train.main({[*TINY, "--imitate", "0", "--out", str(tmp_path / "run")]!r
     assert done.returncode == 1
     assert done.stderr == f"train.py: {file} cannot be written: File too large. Nothing was saved yet: begin the run anew.\n"
     assert {p.name for p in file.parent.iterdir()} <= {"tb"}
+
+
+def test_a_folder_that_was_moved_leaves_the_lock_of_another_run_alone(tmp_path):
+    folder = tmp_path / "run"
+    folder.mkdir()
+    first = lock.Lock(folder)
+    folder.rename(tmp_path / "moved")
+    folder.mkdir()
+    with lock.Lock(folder):
+        first.release()
+        with pytest.raises(ValueError, match="no other train"):
+            lock.Lock(folder)
