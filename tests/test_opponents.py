@@ -58,6 +58,31 @@ def test_what_a_callable_itself_raises_is_left_as_it_is():
         [env.reset(seed=seed) for seed in range(10)]
 
 
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
+def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
+    """His turn was cut short: the agent's next action is not his, and the next episode begins as ever."""
+
+    def opponent(observation, rng):
+        if failing:
+            raise error("no turn")
+        return np.zeros(7)
+
+    env, miss, failing = frame_env(opponent=opponent), [-0.9, 0, 0, 1.0, 0, 0, 0], True
+    frame_state(env, PLACES, {})
+    with pytest.raises(error, match="no turn"):
+        env.step(miss)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(miss)
+    with pytest.raises(error, match="no turn"):
+        [env.reset(seed=seed) for seed in range(10)]  # he breaks off
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(miss)
+    failing = False
+    env.reset(seed=0)
+    env.step(miss)
+    assert env.frames.table.frame.striker == 0
+
+
 def test_the_ghost_ball_player_pots_what_is_there():
     rng, potted = np.random.default_rng(0), 0
     shooter = shooter_of("absolute", False, False, False, "none", "paper", "match", "standard")
