@@ -209,6 +209,13 @@ def test_a_file_that_tells_nothing_sound_is_refused(saved, tmp_path, change):
     assert not (tmp_path / "mark").exists()
 
 
+def test_a_small_file_that_unpacks_to_gigabytes_is_not_unpacked(tmp_path):
+    with zipfile.ZipFile(tmp_path / "model.zip", "w", zipfile.ZIP_DEFLATED) as file:
+        file.writestr("data", b"{}" + b" " * 2**26)
+    with pytest.raises(ValueError, match="data is larger than 67108864 bytes"):
+        SnookerEnv(task="frame", opponent=str(tmp_path / "model.zip"))
+
+
 @pytest.mark.parametrize("content", [b"", b"junk", b"[]", b"{", b"[" * 100_000, b"\xff\xff", b"3"])
 def test_a_file_that_is_none_of_stable_baselines_is_refused(tmp_path, content):
     (tmp_path / "plain.zip").write_bytes(content)
