@@ -78,6 +78,8 @@ def cache_folder():
     home = Path(chosen).absolute()
     folder = home / "snooker_env" / source_hash()
     try:
+        if chosen == "~/.cache":  # of a user without a home: a folder wherever he stands, made by whoever gave it to him
+            raise UnsafeFolderError("there is no home folder")
         _claim(home, folder)
         with tempfile.TemporaryFile(dir=folder):  # asked by making one: access bits lie on read-only mounts and for root
             return folder

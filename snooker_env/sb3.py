@@ -47,8 +47,9 @@ class SnookerVecEnv(VecEnv):
         """
         options = None
         if any(self._options):
-            if not all(set(own) == {"state"} for own in self._options):
-                raise refuse("options", self._options[0], 'must be {"state": ...} for each table, or nothing')
+            for k, own in enumerate(self._options):
+                if set(own) != {"state"}:
+                    raise refuse(f"keys of options[{k}]", list(own), 'must be "state" alone, for each table, or nothing for all')
             options = {"states": [own["state"] for own in self._options]}
         observation, info = self.tables.reset(seed=self._seeds, options=options)
         self.reset_infos = [{key: info[key][k] for key in self.info_keys} for k in range(self.num_envs)]

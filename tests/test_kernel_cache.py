@@ -133,6 +133,17 @@ def test_where_there_are_no_owners_none_are_checked(folders, monkeypatch):
     assert _cache.cache_folder() == folders["hash"]
 
 
+def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):
+    """A folder called ~ may lie wherever he stands, made by whoever gave it to him."""
+    for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(os.path, "expanduser", lambda path: path)
+    monkeypatch.chdir(tmp_path)
+    with pytest.warns(RuntimeWarning, match="no home folder: .*every process compiles for itself; set NUMBA_CACHE_DIR"):
+        assert _cache.cache_folder() is None
+    assert not list(tmp_path.iterdir())
+
+
 class Planted:
     """Unpickled, it leaves a mark."""
 

@@ -58,6 +58,31 @@ def test_what_a_callable_itself_raises_is_left_as_it_is():
         [env.reset(seed=seed) for seed in range(10)]
 
 
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
+def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
+    """His turn was cut short: the agent's next action is not his, and the next episode begins as ever."""
+
+    def opponent(observation, rng):
+        if failing:
+            raise error("no turn")
+        return np.zeros(7)
+
+    env, miss, failing = frame_env(opponent=opponent), [-0.9, 0, 0, 1.0, 0, 0, 0], True
+    frame_state(env, PLACES, {})
+    with pytest.raises(error, match="no turn"):
+        env.step(miss)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(miss)
+    with pytest.raises(error, match="no turn"):
+        [env.reset(seed=seed) for seed in range(10)]  # he breaks off
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(miss)
+    failing = False
+    env.reset(seed=0)
+    env.step(miss)
+    assert env.frames.table.frame.striker == 0
+
+
 def test_the_ghost_ball_player_pots_what_is_there():
     rng, potted = np.random.default_rng(0), 0
     shooter = shooter_of("absolute", False, False, False, "none", "paper", "match", "standard")
@@ -182,6 +207,13 @@ def test_a_file_that_tells_nothing_sound_is_refused(saved, tmp_path, change):
     with pytest.raises(ValueError, match=r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \("):
         SnookerEnv(task="frame", opponent=str(file), trust=True)
     assert not (tmp_path / "mark").exists()
+
+
+def test_a_small_file_that_unpacks_to_gigabytes_is_not_unpacked(tmp_path):
+    with zipfile.ZipFile(tmp_path / "model.zip", "w", zipfile.ZIP_DEFLATED) as file:
+        file.writestr("data", b"{}" + b" " * 2**26)
+    with pytest.raises(ValueError, match="data is larger than 67108864 bytes"):
+        SnookerEnv(task="frame", opponent=str(tmp_path / "model.zip"))
 
 
 @pytest.mark.parametrize("content", [b"", b"junk", b"[]", b"{", b"[" * 100_000, b"\xff\xff", b"3"])

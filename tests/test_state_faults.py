@@ -14,8 +14,8 @@ from snooker_env.envs.shooting import shooter_of
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
-from snooker_env.game.frame import Frame
-from snooker_env.game.referee import Stroke
+from snooker_env.game.frame import Frame, Saved
+from snooker_env.game.referee import FULL_TABLE, Stroke
 from tests.mutations import at, frozen, kind_of, mutations, names_it
 from tests.refusals import refused
 from tests.tables import PLACES, frame_env, frame_state
@@ -268,6 +268,30 @@ def test_a_layout_is_kept_by_the_rule_of_the_miss_only():
 def test_what_the_rules_exclude_is_refused(places, frame, field):
     with pytest.raises(ValueError, match=field):
         frame_state(frame_env(), places, frame)
+
+
+HELD = Saved(on_table=FULL_TABLE, ball_on=BallOn.RED, in_hand=False, free_ball=False)
+
+
+@pytest.mark.parametrize(
+    ("fields", "field"),
+    [
+        ({"miss_called": True}, "miss_called"),
+        ({"failures": 1}, "failures"),
+        ({"phase": "choice", "ball_on": BallOn.ANY_COLOUR}, "ball_on"),
+        ({"miss": "off", "saved": HELD}, "saved"),
+        ({"saved": replace(HELD, on_table=FULL_TABLE & ~2)}, "saved"),
+        ({"saved": replace(HELD, ball_on=BallOn.ANY_COLOUR)}, "saved"),
+        ({"saved": replace(HELD, in_hand=True)}, "saved"),
+        ({"saved": replace(HELD, free_ball=True)}, "saved"),
+    ],
+)
+def test_parts_of_a_frame_that_do_not_fit_together_are_refused(fields, field):
+    good = {"in_hand": False, "miss": "clear_path", "saved": HELD}
+    Frame.from_dict(Frame(**good).to_dict())
+    wrong = Frame(**good | {"saved": None} | fields)
+    with pytest.raises(ValueError, match=f"^frame.{field} = "):
+        Frame.from_dict(wrong.to_dict())
 
 
 def test_the_highest_break_is_within_the_observation_space():

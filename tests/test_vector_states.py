@@ -23,6 +23,7 @@ def test_a_state_with_seeds_is_what_single_tables_make_of_it(seed):
         assert len({row.tobytes() for row in first[0]}) == (1 if seed is None else 4 if seed == 40 else 3)
         assert all(same(env.step(a), other.step(a)) for _ in range(3))
     assert env.get_state() == [one.unwrapped.get_state() for one in other.envs]
+    assert env.np_random_seed == other.np_random_seed
 
 
 def test_a_wrong_seed_or_state_changes_no_table():

@@ -14,8 +14,9 @@ from gymnasium import spaces
 
 from .._check import refuse
 
-MOST = 2**28
-"""Bytes of a file's part that are read at most: a small zip can unpack to more than a machine has."""
+MOST = 2**26
+"""Bytes of JSON that are read at most (SB3 keeps the last observations there): a small zip can unpack to more than a machine has, and JSON
+to objects 25 times as large."""
 PLAIN = "model.json"
 """What stands in place of ``data`` in the zips that ``agents.publish`` writes, which hold no pickles."""
 

@@ -11,7 +11,7 @@ from . import observations
 from .bed import fitted
 from .choices import Choices
 from .frame_table import MAX_STROKES
-from .frame_task import FrameTask
+from .frame_task import AGENT, FrameTask
 from .pictures import FPS, MODES, Pictures
 from .rewards import REWARDS
 from .shooting import mask, shooter_of
@@ -222,7 +222,7 @@ class SnookerEnv(gymnasium.Env):
     def _take(self, sound, *, seed):
         """Take over a sound state; with a seed the random numbers are not the state's but those of ``np_random``."""
         if seed is None:
-            self.np_random.bit_generator.state = sound.rng
+            self.np_random.bit_generator.state, self._np_random_seed = sound.rng, -1  # Gymnasium's number for "not from a seed"
         if self.visits is None:
             self.frames.take(sound)
             self._unbegun = False
@@ -263,8 +263,9 @@ class SnookerEnv(gymnasium.Env):
 
     def _reset_frame(self, fresh):
         if fresh:
-            self._unbegun = False
+            self._unbegun = True  # until the opponent has played, if it is he who breaks
             self.frames.start(self._plan, self.np_random, self._watch if self.render_mode is not None else None)
+            self._unbegun = False
         return self.frames.observe(), self._frame_info(None)
 
     def step(self, action):
@@ -290,7 +291,11 @@ class SnookerEnv(gymnasium.Env):
         return observation, float(out.rewards[0]), bool(out.terminated[0]), False, out.info(0)
 
     def _frame_step(self, a):
-        reward, played = self.frames.step(a, self.np_random, self._watch if self.render_mode is not None else None)
+        try:
+            reward, played = self.frames.step(a, self.np_random, self._watch if self.render_mode is not None else None)
+        except BaseException:
+            self._unbegun = self.frames.table.frame.striker != AGENT  # the next action would be played for the opponent
+            raise
         if played is not None and self.render_mode is None:
             self.last_shot = played.shot
         table = self.frames.table
