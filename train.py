@@ -209,9 +209,10 @@ def train(out, settings, recipe, state, tables, model, progress):
             seconds, curve, running = (state[name] for name in ("seconds", "curve", "running"))
         else:
             seconds, curve, running = time.perf_counter() - began, [], None
+        stop.running = f"this rollout of {rollout_of(model):,} shots"
         keeper = Keeper(out, settings, seconds, curve, imitation, running, stop, progress)
         goal, asked = goal_of(model, settings.steps), settings.steps
-        whole = f" ({asked:,} were asked for: whole rollouts of {rollout_of(model):,})" if goal > asked > model.num_timesteps else ""
+        whole = f" ({asked:,} asked for; whole rollouts of {rollout_of(model):,})" if goal > asked > model.num_timesteps else ""
         print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {goal:,} shots played{whole}", flush=True)
         if model.num_timesteps >= settings.steps:
             print("Nothing is left to train.", flush=True)
@@ -222,7 +223,8 @@ def train(out, settings, recipe, state, tables, model, progress):
             finally:
                 keeper.bar.stop()  # gives the terminal its cursor back, whatever happened
         if stop.signal:
-            print(f"Saved at {keeper.saved or model.num_timesteps:,} shots. {go_on(out)}")
+            done = "; all are played, only the judging is left" if model.num_timesteps >= settings.steps else ""
+            print(f"Saved at {keeper.saved or model.num_timesteps:,} shots{done}. {go_on(out)}")
         return keeper, imitation, stop.signal
 
 
@@ -253,7 +255,6 @@ def main(argv=None):
     with ExitStack() as ending:
         settings, recipe, state, tables, model = prepared(parser, given, out, rest.resume, ending)
         try:
-            print("Compiling ...", flush=True)
             snooker_env.warmup()
             keeper, imitation, stopped = train(out, settings, recipe, state, tables, model, not rest.no_progress)
             if stopped:

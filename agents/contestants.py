@@ -11,7 +11,7 @@ from snooker_env._check import number, refuse
 from snooker_env.envs.snooker import LAYOUTS
 from snooker_env.envs.vector import SnookerVectorEnv
 
-from .models import PRETRAINED, load_any, pretrained
+from .models import PRETRAINED, file_of, load_any, pretrained
 from .players import NAMES, is_player, player_of
 from .recipes import READ, value_of
 from .world import text_of
@@ -101,7 +101,7 @@ def options_of(changes):
 
 @cache
 def _model(path, trust, options):
-    if not zipfile.is_zipfile(Path(path, "model.zip") if Path(path).is_dir() else path):
+    if not zipfile.is_zipfile(file_of(Path(path), "agent")):
         raise refuse("agent", path, "must be a model's .zip or a folder that holds model.zip")
     return load_any(Path(path), trust, dict(options))
 

@@ -213,7 +213,8 @@ def main(argv=None):
             evaluate(report, agents, seeds, lambda: bar.advance(task), shown)
         except KeyboardInterrupt:
             complete = len(report["results"]) // len(agents)
-            report["incomplete"] = f"interrupted when {complete} of {conditions} conditions were complete; the others are lost"
+            what = "the others are lost" if complete else "nothing is kept"
+            report["incomplete"] = f"interrupted when {complete} of {conditions} parts (layouts under one noise) were complete: {what}"
     if "incomplete" in report:
         print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
         if not report["results"]:

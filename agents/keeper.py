@@ -15,10 +15,13 @@ POINTS_OF_THE_CURVE = 20
 
 
 class Stop:
-    """While it lasts SIGINT and SIGTERM are only noted: the save comes when the running update is done. A second one acts at once."""
+    """While it lasts SIGINT and SIGTERM are only noted: the save comes when what runs is learned from. A second one acts at once, whichever
+    of the two it is."""
 
     def __init__(self):
         self.signal = None
+        self.running = "this round of positions"
+        """What is played to its end before the save, in words."""
 
     def __enter__(self):
         self._before = {number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)}
@@ -30,9 +33,10 @@ class Stop:
 
     def _note(self, number, frame):
         self.signal = number
-        signal.signal(number, signal.SIG_DFL if number != signal.SIGINT else signal.default_int_handler)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         name = signal.Signals(number).name
-        rich.get_console().print(f"\n{name}: saving after this update ... (once more stops at once, without a save)")
+        rich.get_console().print(f"\n{name}: saving after {self.running} ... (once more stops at once, without a save)")
 
 
 def rollout_of(model):

@@ -21,6 +21,8 @@ from .tables import view_of
 from .view import Plain
 
 PRETRAINED = Path(__file__).parent / "pretrained"
+CHECKPOINT = "checkpoint.pkl"
+"""What a run's folder holds until, and after, its model is there."""
 UNKNOWN = dict.fromkeys(("layout", "noise", "fidelity", "physics"), "unknown")
 """What is known of the training of a model that ``train.py`` did not make."""
 
@@ -59,7 +61,9 @@ def file_of(path, field):
     """The model's file that a path means. Raises ValueError, naming ``field``."""
     file = path / "model.zip" if path.is_dir() else path
     if not file.is_file():
-        raise refuse(field, str(path), "must be a model's .zip or a folder that holds model.zip")
+        unfinished = (path / CHECKPOINT).is_file()
+        ends = f"; this run has not ended, it goes on with: python train.py --resume --out {path}" if unfinished else ""
+        raise refuse(field, str(path), f"must be a model's .zip or a folder that holds model.zip{ends}")
     return file
 
 

@@ -14,10 +14,9 @@ from snooker_env._check import refuse
 from .files import write_atomic
 from .lock import NAME as LOCK
 from .lock import Lock
-from .models import zipped
+from .models import CHECKPOINT, zipped
 from .recipes import algorithm
 
-CHECKPOINT = "checkpoint.pkl"
 _UNFINISHED = re.compile(r"(checkpoint\.pkl|model\.zip|results\.json)(\.\d+)?\.tmp")
 """What a process that was killed was writing."""
 

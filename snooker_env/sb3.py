@@ -8,8 +8,15 @@ import time
 
 import numpy as np
 from gymnasium.vector import AutoresetMode
-from stable_baselines3.common.monitor import Monitor
-from stable_baselines3.common.vec_env import VecEnv
+
+try:
+    from stable_baselines3.common.monitor import Monitor
+    from stable_baselines3.common.vec_env import VecEnv
+except ModuleNotFoundError as error:
+    if (error.name or "").split(".")[0] != "stable_baselines3":
+        raise
+    wanted = 'snooker_env.sb3 needs Stable-Baselines3; install it, in a clone of snooker_env, with: pip install -e ".[train]"'
+    raise ImportError(wanted) from error
 
 from ._check import choice, integer, refuse
 from .envs.vector import SnookerVectorEnv
@@ -90,8 +97,14 @@ class SnookerVecEnv(VecEnv):
         return self.tables.render()
 
     def get_attr(self, attr_name, indices=None):
-        """An attribute of the vector environment, the same for each table asked for."""
-        return [getattr(self.tables, attr_name) for _ in self._get_indices(indices)]
+        """An attribute of the tables asked for: what all share, or of each its own, as ``points``."""
+        if hasattr(self.tables, attr_name) and attr_name not in ("np_random", "np_random_seed"):
+            return [getattr(self.tables, attr_name) for _ in self._get_indices(indices)]
+        try:
+            each = self.tables.get_attr(attr_name)
+        except ValueError as error:  # a name that is not of one table: SB3's ``has_attr`` expects this error
+            raise AttributeError(str(error)) from None
+        return [each[k] for k in self._get_indices(indices)]
 
     def set_attr(self, attr_name, value, indices=None):
         """Not to be had: the tables share everything."""

@@ -237,7 +237,7 @@ def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     interrupted_at(monkeypatch, 4)
     assert evaluate.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
     told = capsys.readouterr()
-    lost = "interrupted when 1 of 2 conditions were complete; the others are lost"
+    lost = "interrupted when 1 of 2 parts (layouts under one noise) were complete: the others are lost"
     assert told.err.strip() == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(told.out.split())
     found = json.loads((tmp_path / "r.json").read_text())
     assert found["incomplete"] == lost and [(r["layout"], r["agent"]) for r in found["results"]] == [
@@ -252,7 +252,8 @@ def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatc
     interrupted_at(monkeypatch, 2)
     assert evaluate.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
     told = capsys.readouterr()
-    assert told.err.strip() == "agents.evaluate: interrupted when 0 of 2 conditions were complete; the others are lost" and not told.out
+    lost = "interrupted when 0 of 2 parts (layouts under one noise) were complete: nothing is kept"
+    assert told.err.strip() == f"agents.evaluate: {lost}" and not told.out
     assert not list(tmp_path.iterdir())
 
 

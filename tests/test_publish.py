@@ -14,6 +14,7 @@ import torch
 from gymnasium import spaces
 
 from agents import models, publish
+from agents.contestants import Agent
 from agents.kept import KEPT
 from agents.models import load_player, load_trained, pretrained
 from agents.recipes import Recipe
@@ -189,6 +190,9 @@ def test_a_file_that_is_no_model_is_refused(run, capsys):
         assert f"run = {str(run / 'model.zip')!r}: must be a model that train.py saved" in refused(capsys, run, "--limits", "none")
     (run / "model.zip").unlink()
     assert "must be a model's .zip or a folder that holds model.zip" in refused(capsys, run, "--limits", "none")
+    (run / "checkpoint.pkl").write_bytes(b"")
+    with pytest.raises(ValueError, match=f"^agent = .*this run has not ended, it goes on with: python train.py --resume --out {run}$"):
+        Agent.of(str(run)).trained()
     assert published(run) == []
 
 

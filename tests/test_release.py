@@ -36,16 +36,28 @@ def test_the_wheel_says_who_may_use_it(built):
     assert text.startswith("MIT License\n") and "the snooker_env authors" in text
 
 
-def test_the_citation_names_this_version():
+def released():
+    """The versions that the change log tells of, newest first."""
+    return re.findall(r"^## (\d+\.\d+\.\d+)", (ROOT / "CHANGELOG.md").read_text(), re.M)
+
+
+def number(version):
+    return tuple(map(int, version.split(".")[:3]))
+
+
+def test_the_citation_names_the_last_release():
     cited = yaml.safe_load((ROOT / "CITATION.cff").read_text())
-    assert cited["version"] == sn.__version__ and cited["license"] == "MIT" and cited["cff-version"] == "1.2.0"
+    assert cited["version"] == released()[0] and cited["license"] == "MIT" and cited["cff-version"] == "1.2.0"
     assert cited["authors"] == [{"name": "the snooker_env authors"}]
 
 
 def test_the_change_log_tells_of_this_version_and_of_every_one_before():
-    versions = re.findall(r"^## (\d+\.\d+\.\d+)", (ROOT / "CHANGELOG.md").read_text(), re.M)
-    assert versions[0] == sn.__version__ and versions[-1] == "0.1.0"
-    assert versions == sorted(versions, key=lambda v: tuple(map(int, v.split("."))), reverse=True)
+    versions, text = released(), (ROOT / "CHANGELOG.md").read_text()
+    assert versions[-1] == "0.1.0" and versions == sorted(versions, key=number, reverse=True)
+    if ".dev" in sn.__version__:  # of the release to come
+        assert number(sn.__version__) > number(versions[0]) and "## Unreleased\n" in text
+    else:
+        assert sn.__version__ == versions[0] and "## Unreleased\n" not in text
 
 
 def test_nobody_is_told_to_install_from_an_index_that_does_not_have_it():

@@ -182,6 +182,17 @@ def test_teaching_is_saved_at_intervals(whole, tmp_path, capsys, monkeypatch):
     assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
 
 
+@pytest.mark.parametrize("first", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("second", [signal.SIGINT, signal.SIGTERM])
+def test_a_second_signal_acts_at_once_whichever_it_is(first, second):
+    before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+    with keeper.Stop() as stop:
+        signal.raise_signal(first)
+        assert stop.signal == first
+        assert signal.getsignal(second) == (signal.default_int_handler if second == signal.SIGINT else signal.SIG_DFL)
+    assert before == [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+
+
 def test_saves_are_rare(tmp_path, monkeypatch):
     """By the clock, and rarer where they are slow."""
     saves, now = [], [0.0]

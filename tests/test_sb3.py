@@ -15,6 +15,7 @@ from agents.tables import training_tables
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.visit import COUNTS, REALS
 from snooker_env.sb3 import SnookerVecEnv
+from tests.processes import python
 from tests.refusals import refused
 
 KEYS = (*REALS, *COUNTS, "foul")
@@ -136,9 +137,19 @@ def test_a_seed_draws_new_errors_from_a_state():
     assert len(set(ends[1])) == 5 and ends[1] == ends[2] and ends[3][:4] == ends[1][1:]
 
 
+def test_without_stable_baselines_one_line_says_how_to_get_it():
+    code = "import sys\nsys.modules['stable_baselines3'] = None\ntry: import snooker_env.sb3\nexcept ImportError as error: print(error)\n"
+    wanted = 'snooker_env.sb3 needs Stable-Baselines3; install it, in a clone of snooker_env, with: pip install -e ".[train]"'
+    assert python(code)[0].strip() == wanted
+
+
 def test_attributes():
     env = SnookerVecEnv(2)
-    assert env.get_attr("num_envs") == [2, 2] and env.has_attr("shooter") and not env.has_attr("no_such")
+    assert env.get_attr("num_envs") == [2, 2] and env.has_attr("shooter") and not env.has_attr("no_such") and not env.has_attr("last_shot")
+    env.seed(3)
+    env.reset()
+    assert env.get_attr("np_random_seed", [1]) == [4] and env.get_attr("points") == [0, 0]
+    assert [p.tobytes() for p in env.get_attr("positions")] == [p.tobytes() for p in env.tables.visits.positions]
     with pytest.raises(AttributeError, match="cannot be set"):
         env.set_attr("observation", "balls")
     with pytest.raises(ValueError, match="method_name"):

@@ -211,7 +211,7 @@ MISS = [
     ({"rng__state__inc": 1.0}, "state.rng.state.inc", "1.0", "must be of type int"),
     ({"strokes": -1}, "state.strokes", "-1", "must be an integer"),
     ({"strokes": 1000}, "state.strokes", "1000", "must be below max_strokes = 1000: there is no shot left"),
-    ({"ball_on": 1}, "state", "'ball_on'", "must be a state of get_state() with the keys ['frame', 'positions', 'on_table', 'strokes'"),
+    ({"ball_on": 1}, "state", "'ball_on'", "must be a state of get_state() here, with the keys ['frame', 'positions', 'on_table',"),
 ]  # fmt: skip
 
 

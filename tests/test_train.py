@@ -354,7 +354,7 @@ def test_whole_rollouts_are_announced_and_a_finished_run_says_so(tmp_path, capsy
     assert run(tmp_path / "run", "--agent", agent, "--steps", "1", *more) == 0
     steps = results(tmp_path / "run")["steps"]
     whole = {"ppo_mask": 128, "tqc_target": 6}[agent]  # two tables
-    assert f": 0 of {steps:,} shots played (1 were asked for: whole rollouts of {whole:,})" in capsys.readouterr().out
+    assert f": 0 of {steps:,} shots played (1 asked for; whole rollouts of {whole:,})" in capsys.readouterr().out
     assert steps == whole
     assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
     assert f": {steps:,} of {steps:,} shots played\nNothing is left to train." in capsys.readouterr().out

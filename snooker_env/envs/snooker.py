@@ -29,8 +29,9 @@ def visit_only(reward, **frame_only):
     """Raise ValueError unless these arguments make sense in a visit; ``frame_only``: those that ``FRAME_ONLY`` names."""
     choice("reward", reward, REWARDS)
     for name, value in frame_only.items():
-        if value != FRAME_ONLY[name]:
-            raise refuse(name, value, f'must be {FRAME_ONLY[name]!r} with task="visit"; it belongs to task="frame"')
+        usual = FRAME_ONLY[name]
+        if not isinstance(value, (type(usual), np.bool_)) or value != usual:
+            raise refuse(name, value, f'must be {usual!r} with task="visit"; it belongs to task="frame"')
 
 
 class SnookerEnv(gymnasium.Env):

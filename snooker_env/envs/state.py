@@ -47,9 +47,9 @@ def check_keys(state, keys):
     if not isinstance(state, dict):
         raise refuse("state", state, "must be a state of get_state(), a dict")
     if missing := sorted(set(keys) - set(state)):
-        raise refuse("state", sorted(state, key=str), f"must be a state of get_state(); missing {missing}")
+        raise refuse_what("state", f"a dict without {missing}", f"must be a state of get_state() here, with the keys {list(keys)}")
     if unknown := [key for key in state if key not in keys]:
-        raise refuse("state", unknown, f"must be a state of get_state() with the keys {list(keys)} only")
+        raise refuse_what("state", f"a dict with {unknown}", f"must be a state of get_state() here, with the keys {list(keys)} only")
 
 
 def checked_layout(names, positions, on_table, table, R):

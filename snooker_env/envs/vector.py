@@ -66,7 +66,7 @@ class SnookerVectorEnv(VectorEnv):
         trust=False,
     ):  # fmt: skip
         if task == "frame":
-            raise refuse("task", task, 'must be "visit" here; for whole frames use vectorization_mode="sync" or "async"')
+            raise refuse("task", task, 'must be "visit" here; for frames gymnasium.make_vec has vectorization_mode="sync" and "async"')
         choice("task", task, ("visit",))
         self.num_envs = integer("num_envs", num_envs, 1, 2**24)
         self._threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
@@ -258,7 +258,8 @@ class SnookerVectorEnv(VectorEnv):
         elif "states" in options:
             states, each = options["states"], 1
             if not isinstance(states, list | tuple) or len(states) != self.num_envs:
-                raise refuse_what('options["states"]', type(states).__name__, f"must be a list of {self.num_envs} states")
+                found = f"{type(states).__name__} of {len(states)}" if isinstance(states, list | tuple) else type(states).__name__
+                raise refuse_what('options["states"]', found, f"must be a list of {self.num_envs} states")
         else:
             return None
         generator = self.np_random[0]

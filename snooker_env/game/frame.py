@@ -92,13 +92,15 @@ class Frame:
         choice("phase", self.phase, PHASES)
         choice("miss", self.miss, MISS_RULES)
         for name, high in (("striker", 1), ("breaker", 1), ("break_points", MOST_BREAK), ("failures", 2)):
-            _set(self, name, integer(name, getattr(self, name), 0, high))
+            if not _plain(getattr(self, name), high):
+                _set(self, name, integer(name, getattr(self, name), 0, high))
         for name in ("in_hand", "free_ball", "respotted_black", "miss_called", "warned"):
             if type(getattr(self, name)) is not bool:
                 _set(self, name, truth(name, getattr(self, name)))
         if not isinstance(self.scores, tuple) or len(self.scores) != 2:
             raise refuse("scores", self.scores, "must be a tuple of two integers")
-        _set(self, "scores", tuple(integer(f"scores[{k}]", points, 0, MOST_POINTS) for k, points in enumerate(self.scores)))
+        if not all(_plain(points, MOST_POINTS) for points in self.scores):
+            _set(self, "scores", tuple(integer(f"scores[{k}]", points, 0, MOST_POINTS) for k, points in enumerate(self.scores)))
         _set(self, "on_table", _object_balls(self.on_table))
         if self.saved is not None and not isinstance(self.saved, Saved):
             raise refuse("saved", self.saved, "must be a Saved or None")
@@ -309,6 +311,11 @@ _REPLACED = ("on_table", "ball_on", "in_hand", "free_ball")
 
 def _set(frozen, name, value):
     object.__setattr__(frozen, name, value)
+
+
+def _plain(value, high):
+    """Is it an int in [0, high]? Nearly always, so the words of a complaint need not be made."""
+    return type(value) is int and 0 <= value <= high
 
 
 def _object_balls(mask):
