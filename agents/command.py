@@ -19,7 +19,9 @@ DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 
 def missing(name, error):
     """The end of the command ``name`` for an ``ImportError``. A name that is not in a module of our own is no missing package."""
-    package = (error.name or str(error)).partition(".")[0]
+    if not error.name:  # it says itself what is missing
+        return SystemExit(f"{name}: {error}")
+    package = error.name.partition(".")[0]
     if package in OUR_OWN:
         raise error
     extra = EXTRAS.get(package, "train")

@@ -84,7 +84,9 @@ def _explained(error):
         print(f"\nstopped by Ctrl-C: what is printed so far stands, the rest was not measured; {files}", file=sys.stderr)
         return STOPPED
     library = (error.name or "").partition(".")[0]
-    if library in ("", "snooker_env", "benchmarks"):
+    if not library:  # it says itself what is missing
+        print(error, file=sys.stderr)
+    elif library in ("snooker_env", "benchmarks"):
         traceback.print_exception(error)
     else:
         print(f'{library} is missing; in a clone of the repository:  pip install -e ".[test]"', file=sys.stderr)

@@ -88,7 +88,7 @@ def test_a_saved_state_plays_on_bit_for_bit(opponent):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda s: s.pop("frame"), "missing"),
+        (lambda s: s.pop("frame"), "a dict without"),
         (lambda s: s["frame"].update(miss="clear_path"), "as this environment plays"),
         (lambda s: s["on_table"].__setitem__(YELLOW, False), "must hold the cue ball"),
         (lambda s: s["frame"].update(phase="end"), "phase"),

@@ -35,7 +35,12 @@ class Environment:
         with zipfile.ZipFile(wheel) as archive:
             archive.extractall(self.site)
         compileall.compile_dir(self.site, maxlevels=0, quiet=1)  # as pip does
-        (self.site / "libraries.pth").write_text(str(HERE))
+        libraries = self.cwd.parent / "libraries"
+        libraries.mkdir()
+        for found in HERE.iterdir():  # not the package's own files, where it is installed here
+            if "snooker_env" not in found.name:
+                (libraries / found.name).symlink_to(found)
+        (self.site / "libraries.pth").write_text(str(libraries))
         return self
 
     def run(self, code, *flags, **variables):
@@ -107,7 +112,7 @@ RUN_FILE = "import subprocess, sys; sys.exit(subprocess.run([sys.executable, 'wo
 
 def test_without_the_site_it_is_not_registered(installed):
     """The control: neither Gymnasium nor anything else here knows the id by itself."""
-    paths = [str(installed.site), str(HERE), str(ROOT)]
+    paths = [str(installed.site), str(installed.cwd.parent / "libraries"), str(ROOT)]
     code = f"import sys; sys.path += {paths!r}\nimport gymnasium\nprint('Snooker-v0' in gymnasium.registry)"
     assert installed.run(code, "-S")[0] == "False\n"
 
