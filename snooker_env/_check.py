@@ -38,15 +38,17 @@ def array(field, value, shape, most=np.inf, unit=""):
         raw = np.asarray(value)
     except (TypeError, ValueError):
         raise refuse(field, value, f"must be real numbers of shape {want}") from None
-    if raw.dtype.kind not in "iuf" or np.ma.is_masked(value):
+    if raw.dtype.kind not in "iuf" or (isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value)):
         raise refuse(field, value, f"must be real numbers of shape {want}")
-    with np.errstate(over="ignore"):  # a wider number may become an infinity, which is refused below
-        a = np.array(raw, dtype=np.float64, order="C")
+    if raw.dtype.itemsize > 8:
+        with np.errstate(over="ignore"):  # a wider number may become an infinity, which is refused below
+            raw = raw.astype(np.float64)
+    a = np.array(raw, dtype=np.float64, order="C")
     if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
         raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {want}")
-    bad = np.argwhere(~np.isfinite(a) | (np.abs(a) > most))
-    if len(bad):
-        at = tuple(int(k) for k in bad[0])
+    sound = np.isfinite(a) if most == np.inf else np.abs(a) <= most
+    if not sound.all():
+        at = tuple(int(k) for k in np.argwhere(~sound)[0])
         raise refuse(f"{field}{list(at)}", float(a[at]), "must be finite" + (f", within {most:,g} {unit} of zero" if most < np.inf else ""))
     return a
 
