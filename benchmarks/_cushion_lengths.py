@@ -3,7 +3,8 @@
 Measured: I. Stevenage, The Amateur Billiard Player, October 1996 (https://www.eaba.co.uk/?p=4149), on full-size tables. A ball thrown from
 the baulk end as hard as possible goes 4.25 to 4.75 lengths on nine tables, 4.75 on a heated one with new cloth and steel-block cushions;
 there a ball from a test ramp 3.5 inches high comes back from the top cushion to 6 inches past the pink's spot. Players say about five
-lengths for the hardest stroke. A thrown ball starts without spin, as one struck at its middle does; its speed was not measured.
+lengths for the hardest stroke. A thrown ball starts without spin, as one struck at its middle does; its speed was not measured. Two
+experienced players close to their maximum stayed under 13.4 m/s (Carroll and Stevenage, Billiards Quarterly Review, July 1993).
 """
 
 from math import pi, sqrt
@@ -15,7 +16,7 @@ import snooker_env as sn
 LENGTH = 3.569
 BAULK_END = -LENGTH / 2.0
 PINK = LENGTH / 4.0
-SPEEDS = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0)
+SPEEDS = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 13.0)
 RAMP = sqrt(10.0 / 7.0 * 9.81 * 3.5 * 0.0254)
 """Speed [m/s] of a ball that has rolled down 3.5 inches."""
 QUICK = 0.010
@@ -61,15 +62,17 @@ def print_lengths(ends):
     for mu_r in (match.mu_r, QUICK):
         far, near = (past_pink(sn.Physics.preset("match", mu_r=mu_r), start) for start in (0.05, 0.35))
         print(f"  mu_r {mu_r:.4f}: {far:+.2f} m from the baulk cushion, {near:+.2f} m where the ramp ends 0.3 m further up the table")
-    quick = f"mu_r {QUICK:.3f}"
 
-    def between(world, soft=7.0, hard=9.0):
+    def between(world, soft, hard):
         return f"{table[soft][world]:.1f} to {table[hard][world]:.1f}"
 
+    shipped, quick, both, paper = (
+        (between(world, 7.0, 9.0), between(world, 10.0, 13.0)) for world in ("match", f"mu_r {QUICK:.3f}", "both livelier", "paper")
+    )
     print(f"""
 Players say about 5 lengths for the hardest stroke; a ball thrown as hard as possible was measured to go 4.25 to 4.75 (Stevenage 1996).
-"match" is short of that: {between("match")} at 7 to 9 m/s. Part of it is the cloth: the ramp asks for a rolling resistance of about
-{QUICK:g}, with which they are {between(quick)}. With the livelier end of the power's interval as well they are {between("both livelier")},
-and {between("both livelier", 10.0, 12.0)} at 10 to 12 m/s: the lengths measured, if balls were thrown at that speed (it is not known).
-"paper" ({between("paper")}) reaches 5 with a restitution that does not fall, which the rebounds above 2.5 m/s contradict.
+"match" is short of that: {shipped[0]} at 7 to 9 m/s, {shipped[1]} at 10 to 13, which is a maximum. Part of it is the cloth: with this
+cushion the ramp asks for a rolling resistance of about {QUICK:g}, which gives {quick[0]} and {quick[1]}. With the livelier end of the
+power's interval as well it is {both[0]} and {both[1]}: the measured lengths, if balls were thrown at 10 to 13 m/s. "paper" has
+{paper[0]} and {paper[1]}, by a restitution that does not fall, which the rebounds above 2.5 m/s contradict.
 The constants are not bent to these lengths.""")
