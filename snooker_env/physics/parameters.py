@@ -28,7 +28,7 @@ _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
 """Bounds of ``e_c_power``: the rebound goes as no higher power of e than 1.25 (tests/physics/test_cushion_law.py), so it never falls."""
 
 # Places in the packed vector. They are indices, not tunables: freezing them into a kernel is safe.
-(P_R, P_M, P_G, P_MU_S, P_MU_R, P_SPIN, P_E_B, P_MU_A, P_MU_B, P_MU_C, P_E_C, P_E_KNEE, P_E_POWER, P_MU_W, P_SIN) = range(15)
+(P_R, P_M, P_G, P_MU_S, P_MU_R, P_SPIN, P_E_B, P_MU_A, P_MU_B, P_MU_C, P_E_C, P_E_KNEE, P_E_POWER, P_MU_W, P_SIN, P_E_J) = range(16)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +53,8 @@ class Physics:
     * e_c_power: How it falls there, in [0, 0.8]: e(v) = e_c for v <= e_c_knee, e_c (v / e_c_knee)^(-e_c_power) above; 0: constant. So
       v e(v) rises with v in every world, and for mu_c, mu_s and sin_theta up to 0.5 so does the rebound of a rolling or a stunned ball.
       A power of 1/4 is that of an impact that loses its energy by yielding (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
+    * e_j: Energetic restitution ball-jaw, at every speed, in [0, 1]; None: e_c. Nothing is measured; the rubber of a jaw is pared thin over
+      its wood, so it gives less than a rail's.
     * mu_c: Sliding friction ball-cushion, in [0, 1] [MJP10].
     * sin_theta: Height of the nose above the ball's centre over R, in [0, 0.95]; nose height 7R/5 gives 0.4 [MJP10].
     * end_mass_ratio: Ball mass over the cue's effective end mass, for squirt, >= 0 [TP A.31].
@@ -70,6 +72,7 @@ class Physics:
     e_c: float = 0.98
     e_c_knee: float = 0.0
     e_c_power: float = 0.0
+    e_j: float | None = None
     mu_c: float = 0.14
     sin_theta: float = 0.4
     end_mass_ratio: float = 30.0
@@ -84,6 +87,8 @@ class Physics:
         for field, (low, high) in low_high.items():
             open_low = field in ("M", "g", "max_offset")
             object.__setattr__(self, field, number(f"physics.{field}", getattr(self, field), low, high, open_low=open_low))
+        if self.e_j is not None:
+            object.__setattr__(self, "e_j", number("physics.e_j", self.e_j, 0, 1))
         object.__setattr__(self, "mu_bb", _mu_bb(self.mu_bb))
         if self.e_c_power > 0 and self.e_c_knee < _LEAST_KNEE:
             allowed = f"must be at least {_LEAST_KNEE:g} m/s where e_c_power > 0: above it e(v) = e_c (v / e_c_knee)^(-e_c_power)"
@@ -142,7 +147,7 @@ class Physics:
         """The constants as the kernels read them: float64, places ``P_*`` of this module."""
         return np.array([
             self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law,
-            self.e_c, self.e_c_knee, self.e_c_power, self.mu_c, self.sin_theta,
+            self.e_c, self.e_c_knee, self.e_c_power, self.mu_c, self.sin_theta, self.e_c if self.e_j is None else self.e_j,
         ])  # fmt: skip
 
 
