@@ -1,7 +1,5 @@
 """What do the pockets look like in one picture? Draws ``pockets.png`` from the figures of ``python -m benchmarks.pockets``."""
 
-import numpy as np
-
 from ._command import pyplot, saved
 from ._pockets_pool import ANGLES, INCH, SPEEDS
 
@@ -13,12 +11,15 @@ def _against_speed(ax, figures, table, pocket):
     rows = [r for r in figures["windows"] if (r["table"], r["pocket"], r["ball"], r["measure"]) == (table, pocket, "rolling", "mm")]
     rows = [r for r in rows if r["distance"] == min(r["distance"] for r in rows)]
     for k, row in enumerate(rows):
-        ax.plot(figures["speeds"], row["after"], "o-", color=f"C{k}", ms=4, label=f"{row['angle']} deg off the axis")
+        ax.plot(figures["speeds"], row["after"], "o-", color=f"C{k}", ms=4)
         ax.plot(figures["speeds"], row["before"], ":", color=f"C{k}", lw=1.4)
+        above = k > 0 and abs(row["after"][-1] - rows[k - 1]["after"][-1]) < 6  # else its name would lie on the curve before it
+        name = f"{row['angle']} deg" + (" off the axis" if k == 0 else "")
+        ax.annotate(name, (figures["speeds"][-1], row["after"][-1]), (0, 6 if above else -13), textcoords="offset points", ha="right",
+                    fontsize=9, color=f"C{k}", bbox={"color": "white", "pad": 0.3})  # fmt: skip
     ax.set(xlabel="speed 0.3 m before the pocket [m/s]", ylabel="window [mm]", ylim=(0, None), xlim=(0, None))
     ax.set_title(f"{pocket} pocket, table {table!r}", fontsize=11)
     ax.grid(alpha=0.3)
-    ax.legend(fontsize=8.5, loc="lower right" if pocket == "middle" else "lower left", framealpha=0.85)
 
 
 def _against_distance(ax, figures):
@@ -89,7 +90,7 @@ def draw(figures, out):
     _rail(axes[2, 0], figures)
     _pool(axes[2, 1], figures)
     for ax in axes[0]:
-        ax.set_ylim(0, np.nanmax([line.get_ydata()[:].max() for a in axes[0] for line in a.get_lines()]) * 1.05)
+        ax.set_ylim(0, 70)
     fig.suptitle(f"How wide the pockets are. Solid: {AFTER}; dotted: {BEFORE}", fontsize=12)
     with saved(out) as place:
         fig.savefig(place, dpi=100)

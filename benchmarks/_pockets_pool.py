@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from math import cos, pi, radians, sin, sqrt
 
 import numpy as np
-from scipy.optimize import brentq
 
 import snooker_env as sn
 
@@ -67,11 +66,13 @@ class Pool:
     def root(self, f, theta, guess):
         """The root of f over beta that lies nearest to a guess; infinite if there is none."""
         grid = np.radians(np.linspace(0.5, 120, 2400)).tolist()
-        values = [f(x, theta) for x in grid]
-        ends = [
-            k for k in range(len(grid) - 1) if values[k] * values[k + 1] < 0 and max(abs(values[k]), abs(values[k + 1])) < 20
-        ]  # beyond 20 in the sign changes at a pole
-        roots = [float(brentq(lambda x: f(x, theta), grid[k], grid[k + 1])) for k in ends]
+        values, roots = [f(x, theta) for x in grid], []
+        for low, high, a, b in zip(grid, grid[1:], values, values[1:], strict=False):
+            if a * b < 0 and max(abs(a), abs(b)) < 20:  # beyond 20 inches the sign changes at a pole
+                for _ in range(50):
+                    x = 0.5 * (low + high)
+                    low, high = (x, high) if f(x, theta) * a > 0 else (low, x)
+                roots.append(low)
         return min(roots, key=lambda x: abs(x - guess), default=np.inf)
 
     def side_by_point(self, theta):
@@ -152,14 +153,15 @@ def pocket(kind):
 
 
 def sizes(kind, engines):
-    """Target sizes [m] against the angle: his, this engine's with his assumptions, and with ``"match"`` at the three speeds.
-
-    engines: "before" and "after".
+    """Target sizes [m] against the angle: his; this engine's with his assumptions, and with mirrors but a ball that rolls on cloth, at
+    0.5 m/s; and with ``"match"`` at the three speeds. engines: "before" and "after".
     """
     here, angles = pocket(kind), np.radians(ANGLES[kind])
     found = {"Alciatore": np.array([published(kind, a) * INCH for a in ANGLES[kind]])}
     world = sn.Physics(**MIRROR)
     found["his assumptions"] = windows(here, angles, DISTANCE, 0.5, False, False, world, engines["before"]).width
+    world = sn.Physics(R=PHYSICS["R"], e_c=1.0, mu_c=0.0)
+    found["his, but it rolls"] = windows(here, angles, DISTANCE, 0.5, True, False, world, engines["before"]).width
     world = sn.Physics.preset("match", **PHYSICS)
     for rule, engine in engines.items():
         for name, speed in SPEEDS.items():
@@ -168,5 +170,21 @@ def sizes(kind, engines):
 
 
 def says(found):
-    """Where each pocket differs from his."""
-    return []
+    """Where and why each pocket differs from his, sizes in inches."""
+    lines = []
+    for kind, rows in found.items():
+        his, angles = np.asarray(rows["Alciatore"]), ANGLES[kind]
+        slow, fast = np.asarray(rows["slow after"]) - his, np.asarray(rows["fast after"]) - his
+        most, least = int(np.abs(slow).argmax()), int(fast.argmin())
+        spin = rows["his, but it rolls"][most] - his[most]
+        lines.append(
+            f"Pool, {kind} pocket: at 0.5 m/s {slow[most]:+.2f} in against Alciatore's at {angles[most]} deg, where they differ most: a"
+            f" ball that has met a facing still rolls, which carries it on towards the hole (alone {spin:+.2f} in), and friction at the"
+            f" nose takes part of that back; at 6 m/s {fast[least]:+.2f} in at {angles[least]} deg, since the ball meets the facings"
+            " beyond the hole's edge before it has fallen."
+        )
+    lines.append(
+        "Pool: in flight the engine continues a facing straight behind its end, so the converging facings of the side pocket can wedge a"
+        " ball of 6 m/s where a pool table has none any more."
+    )
+    return lines

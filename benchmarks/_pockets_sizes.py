@@ -12,9 +12,9 @@ from snooker_env.physics.table import HALF_WIDTH
 from ._pockets_windows import Engine, drops, played, strokes
 
 PUBLISHED = (
-    "published: a match pocket is 3 1/2 in (88.9 mm) wide at the fall of the slate, a club pocket 3 5/8 in (92.1), a wide one 4 in (101.6)\n"
-    "  (G. Large, gclbilliards.com); the Standard Association's template of 1896: 3 5/8 in, its fall in the middle pockets slightly on the\n"
-    "  table's side of the cushions' inner line (Broadfoot, Billiards). The templates of today are not published."
+    "published: a match pocket is 3 1/2 in (88.9 mm) wide at the fall of the slate, a club pocket 3 5/8 in (92.1), a wide one\n"
+    "  4 in (101.6) (G. Large, gclbilliards.com); the Standard Association's template of 1896: 3 5/8 in, its fall in the middle\n"
+    "  pockets slightly on the table's side of the cushions' inner line (Broadfoot, Billiards). Today's templates are not published."
 )
 
 

@@ -1,8 +1,9 @@
 """How wide is a pocket's window? Which paths of one ball drop into it, found by a scan and by bisection of both ends.
 
-A window is a range of one number s, everything else fixed: the angle by which the path is turned about its start [rad], or how far it is
-shifted sideways as a whole [m]. The scan takes the run of pots around the centre line (the nearest one where that misses), bisection finds
-its two ends; pots outside it are counted as islands. Nothing is random and nothing is timed: the same figures on every machine.
+A window is what drops of a range of one number s, everything else fixed: the angle by which the path is turned about its start [rad], or
+how far it is shifted sideways as a whole [m]. A scan finds the runs of pots, bisection their ends. A window may be in pieces: a firm ball
+that just touches a jaw may rattle out between paths that drop. Its width is that of all its pieces; gaps and pieces thinner than a step of
+the scan may be missed. Nothing is random and nothing is timed.
 """
 
 import os
@@ -98,31 +99,27 @@ def played(pocket, start, physics, engine, log=0):
     return (out.potted[:, 0] >= 0) & here[:, 0], ~here[:, 0], out
 
 
-def drops(pocket, angle, distance, speed, rolling, physics, engine, s=0.0, turned=False):
-    """Does the ball on each path drop? Arrays of one shape, or numbers."""
-    angle, distance, speed, rolling, s, turned = np.broadcast_arrays(angle, distance, speed, rolling, s, turned)
-    flat = (a.ravel() for a in (s, angle, distance, speed, rolling, turned))
-    return played(pocket, strokes(pocket, *flat, physics), physics, engine)[0].reshape(s.shape)
+def drops(pocket, angle, distance, speed, rolling, physics, engine, s):
+    """Does the ball on each path drop, shifted by s? Arrays, or numbers."""
+    s, angle, distance, speed, rolling = np.broadcast_arrays(s, angle, distance, speed, rolling)
+    start = strokes(pocket, s.ravel(), angle.ravel(), distance.ravel(), speed.ravel(), rolling.ravel(), False, physics)
+    return played(pocket, start, physics, engine)[0].reshape(s.shape)
 
 
 @dataclass(frozen=True)
 class Windows:
     """Arrays of the shape that was asked for; not a number where no ball arrives."""
 
+    width: np.ndarray
+    """All that drops, in units of s."""
+    centre: np.ndarray
+    """The piece around the centre line, or the nearest to it."""
     low: np.ndarray
     high: np.ndarray
-    """The ends of the window, in units of s."""
-    islands: np.ndarray
-    """How many separate runs of pots the scan met outside the window."""
-    outside: np.ndarray
-    """How wide they are in all, by the scan."""
+    """The ends of the widest piece; not a number where there is none."""
+    pieces: np.ndarray
     held: np.ndarray
-    """Does the window end where the ball would start in a cushion?"""
-
-    @property
-    def width(self):
-        """Of the connected window."""
-        return self.high - self.low
+    """Does a piece end where the ball would start in a cushion?"""
 
 
 def windows(pocket, angle, distance, speed, rolling, turned, physics, engine=None, half=None, scan=SCAN):
@@ -133,41 +130,37 @@ def windows(pocket, angle, distance, speed, rolling, turned, physics, engine=Non
     """
     engine = engine or Engine()
     angle, distance, speed, rolling, turned = np.broadcast_arrays(angle, distance, speed, rolling, turned)
-    shape = angle.shape
-    cases = [a.ravel() for a in (angle, distance, speed, rolling, turned)]
-    n = cases[0].size
+    shape, n = angle.shape, angle.size
+    angle, distance, speed, rolling, turned = (a.ravel() for a in (angle, distance, speed, rolling, turned))
     if half is None:
-        half = np.where(cases[4], np.arctan2(REACH, cases[1]), REACH)
+        half = np.where(turned, np.arctan2(REACH, distance), REACH)
     half = np.broadcast_to(half, n)
     grid = half[:, None] * np.linspace(-1.0, 1.0, scan)
 
-    def pots(s):
-        """s (n, k) -> who drops, who starts in a cushion, both (n, k)."""
-        k = s.shape[1]
-        start = strokes(pocket, s.ravel(), *(np.repeat(a, k) for a in cases), physics)
-        hit, held, _ = played(pocket, start, physics, engine)
-        return hit.reshape(n, k), held.reshape(n, k)
+    def pots(s, case):
+        """Who drops, and who starts in a cushion."""
+        start = strokes(pocket, s, angle[case], distance[case], speed[case], rolling[case], turned[case], physics)
+        return played(pocket, start, physics, engine)[:2]
 
-    hit, _ = pots(grid)
+    hit = pots(grid.ravel(), np.repeat(np.arange(n), scan))[0].reshape(n, scan)
     if hit[:, [0, -1]].any():
         raise RuntimeError("a window is wider than the scan")
-    inside, outside = np.zeros((n, 2)), np.zeros((n, 2))
-    islands, elsewhere = np.zeros(n, np.int64), np.zeros(n)
-    for k in range(n):
-        edges = np.flatnonzero(np.diff(hit[k].astype(np.int8)))  # between the points i and i + 1
-        if len(edges):
-            runs = edges.reshape(-1, 2)
-            middle = (scan - 1) // 2
-            away = np.maximum(0, np.maximum(runs[:, 0] + 1 - middle, middle - runs[:, 1]))
-            first, last = runs[away.argmin()]
-            inside[k], outside[k] = grid[k, [first + 1, last]], grid[k, [first, last + 1]]
-            islands[k] = len(runs) - 1
-            elsewhere[k] = (hit[k].sum() - (last - first)) * (grid[k, 1] - grid[k, 0])
+    case, left = np.nonzero(hit[:, 1:] != hit[:, :-1])  # each end of each run: between the points left and left + 1
+    rising = hit[case, left + 1]
+    inside, outside = grid[case, left + rising], grid[case, left + ~rising]
     for _ in range(HALVINGS):
         between = 0.5 * (inside + outside)
-        ok = pots(between)[0]
+        ok, _ = pots(between, case)
         inside, outside = np.where(ok, between, inside), np.where(ok, outside, between)
-    held = pots(outside)[1].any(1)
-    arrives = (reach(cases[2], cases[3], physics) > cases[1] + NEAR)[:, None]
-    ends = np.where(arrives, inside, np.nan)
-    return Windows(*(a.reshape(shape) for a in (ends[:, 0], ends[:, 1], islands, elsewhere, held)))
+    _, held = pots(outside, case)
+    low, high, case = inside[0::2], inside[1::2], case[0::2]  # the runs, case by case
+    held = held[0::2] | held[1::2]
+    found = np.tile([[0.0], [0.0], [np.nan], [np.nan]], n)  # width, centre, low, high
+    for k in np.unique(case):
+        a, b = low[case == k], high[case == k]
+        near, widest = np.maximum(0.0, np.maximum(a, -b)).argmin(), (b - a).argmax()
+        found[:, k] = (b - a).sum(), b[near] - a[near], a[widest], b[widest]
+    found[:, reach(speed, rolling, physics) <= distance + NEAR] = np.nan
+    pieces, held = np.bincount(case, minlength=n), np.bincount(case, held, minlength=n) > 0
+    width, centre, low, high = found.reshape(4, *shape)
+    return Windows(width, centre, low, high, pieces.reshape(shape), held.reshape(shape))

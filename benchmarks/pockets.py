@@ -3,10 +3,11 @@
     python -m benchmarks.pockets [--quick] [--json FILE] [--out FILE]
 
 One ball, physics "match". The window is the whole range of paths into the pocket aimed at, as an angle of the path (turned about the
-start) and as its shift sideways. "rolling": the ball rolls at the start; "struck": it starts without spin, as an object ball leaves an
-impact, and rolls only if it is soft or comes from far. Speeds are those at the start, distances those to the aim point (where the fall
-meets the pocket's axis). A ball that comes out again has missed. "before": the ball drops at once where its centre crosses the edge, as it
-did up to version 0.1; the first run compiles a copy of the package for that (``_variants``).
+start) and as its shift sideways; * where it is in pieces: a firm ball that just touches a jaw may rattle out between paths that drop.
+"rolling": the ball rolls at the start; "struck": it starts without spin, as an object ball leaves an impact, and rolls only if it is soft
+or comes from far. Speeds are those at the start, distances those to the aim point (where the fall meets the pocket's axis). A ball that
+comes out again has missed. "before": the ball drops at once where its centre crosses the edge, as it did up to version 0.1; the first run
+compiles a copy of the package for that (``_variants``).
 """
 
 from pathlib import Path
@@ -42,17 +43,17 @@ def all_windows(physics, engines, speeds, distances):
     for table, pocket in PLACES:
         here = alone(sn.Table.preset(table), INDEX[pocket])
         angles = ANGLES[pocket]
-        grid = np.meshgrid(np.radians(angles), distances, speeds, (True, False), (False, True), indexing="ij")
-        found = {rule: windows(here, *grid, physics, engine) for rule, engine in engines.items()}
+        a, d, v, rolling, turned = np.meshgrid(np.radians(angles), distances, speeds, (True, False), (False, True), indexing="ij")
+        found = {rule: windows(here, a, d, v, rolling, turned, physics, engine) for rule, engine in engines.items()}
         for m, (measure, scale) in enumerate(MEASURES.items()):
-            for a, angle in enumerate(angles):
-                for d, distance in enumerate(distances):
+            for i, angle in enumerate(angles):
+                for j, distance in enumerate(distances):
                     for b, ball in enumerate(BALLS):
-                        at = (a, d, slice(None), b, m)
+                        at = (i, j, slice(None), b, m)
                         row = {"table": table, "pocket": pocket, "measure": measure, "angle": angle, "distance": distance, "ball": ball}
                         for rule, w in found.items():
                             row[rule] = scale * w.width[at]
-                            row[f"islands {rule}"], row[f"outside {rule}"] = w.islands[at], scale * w.outside[at]
+                            row[f"centre {rule}"], row[f"pieces {rule}"] = scale * w.centre[at], w.pieces[at]
                             row[f"held {rule}"] = w.held[at]
                         rows.append(row)
     return rows
@@ -69,14 +70,13 @@ def print_windows(rows, speeds):
             last = head
         cells = ""
         for k in range(len(speeds)):
-            mark = "*" if row["islands after"][k] else "h" if row["held after"][k] else " "
+            mark = "*" if row["pieces after"][k] > 1 else "h" if row["held after"][k] else " "
             before = f"({shown(row['before'][k])})"
             cells += f"{shown(row['after'][k]):>7s}{mark}{before:<8s}"
         print(f"  {row['angle']:4d}   {row['distance']:3.1f} m  {row['ball']:8s}{cells}")
-    many = sum(int((row["islands after"] > 0).sum()) for row in rows)
-    most = {m: max(float(np.nanmax(r["outside after"])) for r in rows if r["measure"] == m) for m in MEASURES}
-    print(f"\n  *: more paths drop outside the window: in {many} of {sum(len(r['after']) for r in rows)} windows, at most {most['mm']:.1f} mm"
-          f" or {most['deg']:.2f} deg in all.  -: the ball stops short.  h: ends where the ball would start in the cushion.")  # fmt: skip
+    after, before = (sum(int((row[f"pieces {rule}"] > 1).sum()) for row in rows) for rule in ("after", "before"))
+    print(f"\n  *: in pieces ({after} of {sum(len(r['after']) for r in rows)} windows, before {before}); the width is that of all pieces.")
+    print("  -: the ball stops short.  h: the window ends where the ball would start in the cushion.")
 
 
 def rail(physics, engines, quick):
@@ -123,7 +123,7 @@ def sizes(physics, engines, quick):
     found, speeds = {}, CLEAN_SPEEDS[::3] if quick else CLEAN_SPEEDS
     for table, pocket in PLACES:
         here = alone(sn.Table.preset(table), INDEX[pocket])
-        entry = {name: 1e3 * x for name, x in _pockets_sizes.openings(here).items()}
+        entry: dict[str, object] = {name: 1e3 * x for name, x in _pockets_sizes.openings(here).items()}
         entry["clean"] = 1e3 * _pockets_sizes.clean(here, physics.R)
         for rule, engine in engines.items():
             entry[f"untouched {rule}"] = 1e3 * _pockets_sizes.untouched(here, speeds, True, physics, engine)
@@ -144,8 +144,9 @@ def print_sizes(found):
     for name, p in found["pockets"].items():
         low, high = p["untouched after"].min(), p["untouched after"].max()
         yes = "all drop" if p["all drop after"] else "NOT ALL DROP"
-        print(f"  {name:14s}  throat: +-{p['clean']:.2f} mm, {yes} at {found['speeds'][0]:g} to {found['speeds'][-1]:g} m/s; no jaw in the log"
-              f" up to +-{low:.2f} mm (hardest) .. {high:.2f} (softest), before +-{p['untouched before'].min():.2f}")  # fmt: skip
+        before = p["untouched before"].min()
+        print(f"  {name:14s}  throat less ball: +-{p['clean']:.2f} mm, {yes} at {found['speeds'][0]:g} to {found['speeds'][-1]:g} m/s;"
+              f" no jaw in the log up to +-{low:.2f} (firm) .. {high:.2f} (soft), before +-{before:.2f}")  # fmt: skip
 
 
 def worlds(physics):
@@ -195,7 +196,12 @@ def print_pool(found):
 
 def says(figures):
     """What follows."""
-    lines, speeds = [], list(figures["speeds"])
+    at, speeds = figures["sizes"]["pockets"], list(figures["speeds"])
+    lines = [
+        f"Between the noses at the fall a corner of 'match' is {at['match corner']['at the fall']:.1f} mm wide (published: 3 1/2 in,"
+        f" 88.9), one of 'tight' {at['tight corner']['at the fall']:.1f}; a middle pocket {at['match middle']['fall to jaw']:.1f} where its"
+        " fall meets the jaws."
+    ]
     soft, firm = speeds.index(1.0), speeds.index(6.0)
     for table, pocket in PLACES:
         rows = [r for r in figures["windows"] if (r["table"], r["pocket"], r["ball"], r["measure"]) == (table, pocket, "rolling", "mm")]
