@@ -110,7 +110,7 @@ def print_rail(found):
         marks = "".join(f"{mark if here else '-':>14s}" for mark, here in zip(marks, m["arrives"], strict=True))
         off = "frozen" if m["off"] == 0 else f"{1e3 * m['off']:.0f} mm"
         print(f"  {m['table']:7s} {m['ball']:8s} {m['run']:4.1f} m   {off:>8s}    {marks}")
-    print("  angles that drop [deg], + towards the rail; rolling")
+    print("  widest range of angles that drops [deg], + towards the rail; rolling")
     for m in found["marks"]:
         if m["ball"] == "rolling":
             ranges = [f"{a:+.2f}..{b:+.2f}" if a == a else "-" for a, b in zip(m["low"], m["high"], strict=True)]
