@@ -100,8 +100,9 @@ def test_a_throat_is_moved_by_what_is_asked_and_a_fall_too():
 
 
 def test_a_ball_five_millimetres_off_the_rail_drops_softly_and_not_firmly():
-    found = _pockets_rail.down_the_rail(sn.Table.preset("match"), sn.Physics.preset("match"), Engine(), (0.0, 0.005), (0.5,), (1.0, 10.0))
-    assert found["potted"][:, 0, :, 0].tolist() == [[True, False], [True, False]]
+    table, physics, offs = sn.Table.preset("match"), sn.Physics.preset("match"), (0.005,)
+    found = _pockets_rail.down_the_rail(table, physics, Engine(), offs, (0.5, 1.5), (1.0, 2.0, 6.0, 10.0))
+    assert found["potted"][0, :, :, 0].tolist() == [[True, True, False, False]] * 2  # rolling; the second index is the distance
 
 
 def test_alciatore_s_target_sizes_by_his_formulas():
