@@ -36,6 +36,8 @@ class EventKind(IntEnum):
     """Ball i stopped sliding; it rolls from now on."""
     STOP = 5
     """Ball i stopped (it may still spin on the spot)."""
+    BEND = 8
+    """The nap turned rolling ball i: the next piece of its path begins. Only with ``Physics.nap``."""
 
 
 class Status(IntEnum):
@@ -48,6 +50,7 @@ class Status(IntEnum):
 
 
 _BALL_BALL, _POT, _ROLL, _STOP = int(EventKind.BALL_BALL), int(EventKind.POT), int(EventKind.ROLL), int(EventKind.STOP)
+_BEND = int(EventKind.BEND)
 _OK, _TOO_MANY, _FULL, _UNSOLVED = int(Status.OK), int(Status.TOO_MANY_EVENTS), int(Status.LOG_FULL), int(Status.IMPACT_UNSOLVED)
 
 
@@ -143,7 +146,7 @@ def _predict(motion, state, i, t, noses, jaws, falls, clear, R, pair, best_time,
         s, kind, index = boundary_event(motion, state, i, noses, jaws, falls, clear, R)
         if s > motion[i, T_END] or kind == 0:
             s, index = motion[i, T_END], -1
-            kind = _ROLL if state[i] == cloth.SLIDE else _STOP
+            kind = _STOP if state[i] == cloth.ROLL else _ROLL if state[i] == cloth.SLIDE else _BEND
         own_time[i], own_kind[i], own_index[i] = s, kind, index
 
 
@@ -238,7 +241,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
             v1, w1, v2, w2, solved = _meet(v1, w1, v2, w2, nx / d, ny / d, phys, fidelity, n_steps, work)
             _begin(motion, state, i, t, r1, v1, w1, phys)
             _begin(motion, state, j, t, r2, v2, w2, phys)
-        elif kind == _ROLL or kind == _STOP:
+        elif kind == _ROLL or kind == _STOP or kind == _BEND:
             cloth.next_phase(motion, state, i, phys)
             solved = True
         elif kind == _POT:
