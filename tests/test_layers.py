@@ -233,9 +233,9 @@ def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
     from snooker_env.physics import parameters as p
 
     places = {
-        "R": [p.P_R], "M": [p.P_M], "g": [p.P_G], "mu_s": [p.P_MU_S], "mu_r": [p.P_MU_R], "spin_decel": [p.P_SPIN], "nap": [p.P_NAP], "e_b": [p.P_E_B],
+        "R": [p.P_R], "M": [p.P_M], "g": [p.P_G], "mu_s": [p.P_MU_S], "mu_r": [p.P_MU_R], "spin_decel": [p.P_SPIN], "e_b": [p.P_E_B],
         "e_c": [p.P_E_C], "e_c_knee": [p.P_E_KNEE], "e_c_slope": [p.P_E_SLOPE], "mu_c": [p.P_MU_W], "sin_theta": [p.P_SIN],
-        "end_mass_ratio": [], "max_offset": [],
+        "nap": [p.P_NAP], "end_mass_ratio": [], "max_offset": [],
     }  # fmt: skip
     base = Physics().pack()
     for field in dataclasses.fields(Physics):

@@ -63,7 +63,7 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
         T = 0.0
     gx, gy = motion[1, cloth.X] - bx, motion[1, cloth.Y] - by
     ux, uy = motion[1, cloth.VX] + 0.5 * motion[1, cloth.AX] * T, motion[1, cloth.VY] + 0.5 * motion[1, cloth.AY] * T
-    if gx * qx + gy * qy > 0.9 * away * away:  # still sliding at the pocket: its chord is near enough
+    if T == 0.0 and gx * qx + gy * qy > 0.9 * away * away:  # still sliding at the pocket: its chord is near enough
         ux, uy = gx, gy
     else:
         qx, qy = qx - gx, qy - gy

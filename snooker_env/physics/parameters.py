@@ -77,8 +77,8 @@ class Physics:
 
     def __post_init__(self):
         low_high = {
-            "R": (1e-3, 1), "M": (0, np.inf), "g": (0, np.inf), "mu_s": (0, 1), "mu_r": (0, 1), "spin_decel": (0, np.inf), "nap": (-np.inf, np.inf),
-            "e_b": (0, 1), "e_c": (0, 1), "e_c_knee": (0, np.inf), "e_c_slope": (0, np.inf), "mu_c": (0, 1),
+            "R": (1e-3, 1), "M": (0, np.inf), "g": (0, np.inf), "mu_s": (0, 1), "mu_r": (0, 1), "spin_decel": (0, np.inf),
+            "nap": (-np.inf, np.inf), "e_b": (0, 1), "e_c": (0, 1), "e_c_knee": (0, np.inf), "e_c_slope": (0, np.inf), "mu_c": (0, 1),
             "sin_theta": (0, 0.95), "end_mass_ratio": (0, np.inf), "max_offset": (0, 0.999),
         }  # fmt: skip
         for field, (low, high) in low_high.items():
