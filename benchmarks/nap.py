@@ -21,7 +21,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import snooker_env as sn
-from snooker_env import Table
+from snooker_env.physics.table import UNBOUNDED
 
 from ._command import command, run
 
@@ -69,7 +69,8 @@ def aside(place, v):
 
 def played(v, nap):
     """The same roll to rest by the engine: its ``Shot``."""
-    return sn.simulate([(0.0, 0.0)], [v], [(-v[1] / R, v[0] / R, 0.0)], Table.of(None), {"nap": nap})
+    w = -v[1] / R, v[0] / R, 0.0
+    return sn.simulate([(0.0, 0.0)], [v], [w], UNBOUNDED, {"nap": nap})  # pyright: ignore[reportArgumentType]
 
 
 def pots():
