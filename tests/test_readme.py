@@ -39,6 +39,8 @@ SHORT = {
         "--shots", "20", "--repeats", "1", "--parts", "impacts", "shots", "growth", "--largest-batch", "64", "--out", "{tmp}/speed.png",
     ],
     "benchmarks.fit_cushion": [],
+    "benchmarks.nap": [],
+    "benchmarks.left_out": [],
     "benchmarks.make_opened": ["--tables", "2", "--out", "{tmp}/opened.npz"],
     "benchmarks.frames": ["--frames", "2", "--jobs", "1"],
     "benchmarks.layouts_picture": ["--out", "{tmp}/layouts.png"],

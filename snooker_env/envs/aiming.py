@@ -49,13 +49,21 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
     cloth.begin(motion, state, 1, t, bx, by, v2[0], v2[1], w2[0], w2[1], w2[2], phys)
     if state[1] == cloth.SLIDE:  # the curve ends where it rolls, or at the pocket
         cloth.next_phase(motion, state, 1, phys)
-    if state[1] != cloth.ROLL:
+    if state[1] <= cloth.REST:
         return 9.0
-    gx, gy = motion[1, cloth.X] - bx, motion[1, cloth.Y] - by
     qx, qy = px - bx, py - by
-    ux, uy = motion[1, cloth.VX], motion[1, cloth.VY]
     away = hypot(qx, qy)
-    if gx * qx + gy * qy > 0.9 * away * away:  # still sliding at the pocket: its chord is near enough
+    T = 0.0
+    while state[1] == cloth.BEND:  # by the nap: the chord of the piece that ends past the pocket is near enough
+        T = motion[1, cloth.T_END] - motion[1, cloth.T0]
+        (x, y), _v, _w = cloth.evaluate(motion, state, 1, motion[1, cloth.T_END], phys)
+        if (x - bx) * qx + (y - by) * qy >= away * away:
+            break
+        cloth.next_phase(motion, state, 1, phys)
+        T = 0.0
+    gx, gy = motion[1, cloth.X] - bx, motion[1, cloth.Y] - by
+    ux, uy = motion[1, cloth.VX] + 0.5 * motion[1, cloth.AX] * T, motion[1, cloth.VY] + 0.5 * motion[1, cloth.AY] * T
+    if T == 0.0 and gx * qx + gy * qy > 0.9 * away * away:  # still sliding at the pocket: its chord is near enough
         ux, uy = gx, gy
     else:
         qx, qy = qx - gx, qy - gy

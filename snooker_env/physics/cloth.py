@@ -4,22 +4,29 @@
 direction is constant and the path a parabola (curved when the spin is not about the axis of rolling: the masse curve). Slip ends
 after T = 2 |u| / (7 mu_s g); rolling decelerates by mu_r g; spin about the vertical decays by ``spin_decel`` in every state.
 
+Nap. The cloth's fibres lean towards +y, so that its force on a rolling ball differs with the direction v/|v|. Rolling resistance is the
+term of that force that is odd in the direction; the lowest even one is a constant: dv/dt = -mu_r g v/|v| + nap y, as on a bed that slopes
+a little. A ball that rolls across the nap turns slowly towards it; ``_bent`` has its motion in closed form, and it is followed in pieces
+of constant acceleration whose ends are exact. A sliding ball does not feel the nap: its friction is a thousand times as strong.
+
 A ball over a pocket (``FALLING``) moves straight and evenly, see ``pocket.py``.
 
 A ball's motion is one row of ``motion`` (float64, columns below), valid from its time T0 to T_END, and one code in ``state``. LO_X to
 HI_Y bound its whole path in that time: whatever they do not come near, the ball does not meet.
 """
 
-from math import copysign, sqrt
+from math import copysign, exp, expm1, inf, log1p, sqrt
 
 from .._jit import kernel
-from .parameters import P_G, P_MU_R, P_MU_S, P_R, P_SPIN
+from .parameters import P_G, P_MU_R, P_MU_S, P_NAP, P_R, P_SPIN
 
-GONE, REST, ROLL, SLIDE, FALLING = range(5)
+GONE, REST, ROLL, SLIDE, FALLING, BEND = range(6)
+# ROLL: straight, to rest; BEND: a piece of a path that the nap bends, and it rolls on; FALLING: over a pocket
 X, Y, VX, VY, AX, AY, WX, WY, WZ, T0, T_END, LO_X, HI_X, LO_Y, HI_Y = range(15)
 COLUMNS = 15
 
 _STILL = 1e-12  # m/s: slower is at rest (it would roll 4e-24 m)
+_STRAY = 2e-6  # m; no piece of a bent path is further from it
 
 
 @kernel
@@ -31,6 +38,54 @@ def extent(x, v, a, T):
         turn = x - 0.5 * v * v / a
         low, high = min(low, turn), max(high, turn)
     return low, high
+
+
+@kernel
+def _faded(rate, s):
+    """Integral of exp(-rate s) from 0 to s."""
+    return -expm1(-rate * s) / rate
+
+
+@kernel
+def _bent(vx, vy, s, decel, nap):
+    """A ball rolls from (vx, vy) across the nap until ds = dt/|v| adds up to s; inf: to rest. Time, way (x, y) and velocity then.
+
+    In s the motion is linear: v_x falls as exp(-decel s), p = (|v| + v_y)/2 as exp(-(decel - nap) s) and m = (|v| - v_y)/2 as
+    exp(-(decel + nap) s). Time is the integral of |v| = p + m, x that of v_x (p + m), y that of v_y (p + m) = p^2 - m^2.
+    """
+    v = sqrt(vx * vx + vy * vy)
+    p, m = 0.5 * (v + vy), 0.5 * (v - vy)
+    t = p * _faded(decel - nap, s) + m * _faded(decel + nap, s)
+    x = vx * (p * _faded(2.0 * decel - nap, s) + m * _faded(2.0 * decel + nap, s))
+    y = p * p * _faded(2.0 * (decel - nap), s) - m * m * _faded(2.0 * (decel + nap), s)
+    return t, x, y, vx * exp(-decel * s), p * exp(-(decel - nap) * s) - m * exp(-(decel + nap) * s)
+
+
+@kernel
+def _piece(vx, vy, decel, nap):
+    """How long, as s of ``_bent``, one piece may be that starts at (vx, vy); inf: straight to rest.
+
+    A piece that takes the share b c of the speed, b = decel - |nap|, strays from the path by decel |nap v_x| |v| c^3 / 40 if short, and
+    by at most 1/10 of that if not (computed: tests/physics/test_nap.py).
+    """
+    b = decel - abs(nap)
+    cube = 10.0 * _STRAY * b * b * b
+    bend = decel * abs(nap * vx) * sqrt(vx * vx + vy * vy)
+    return -log1p(-((cube / bend) ** (1.0 / 3.0))) / b if cube < bend else inf
+
+
+@kernel
+def _roll_on_nap(motion, state, i, vx, vy, decel, nap):
+    """Ball i rolls at (vx, vy): write its next piece; returns how long it takes."""
+    s = _piece(vx, vy, decel, nap)
+    T, x, y, _, _ = _bent(vx, vy, s, decel, nap)
+    state[i] = BEND
+    if s == inf:  # almost or wholly straight: right to the place where it stops
+        state[i] = ROLL
+        vx, vy = 2.0 * x / T, 2.0 * y / T
+    motion[i, VX], motion[i, VY] = vx, vy
+    motion[i, AX], motion[i, AY] = 2.0 * (x / T - vx) / T, 2.0 * (y / T - vy) / T
+    return T
 
 
 @kernel
@@ -48,6 +103,9 @@ def begin(motion, state, i, t, x, y, vx, vy, wx, wy, wz, phys):
         motion[i, AX], motion[i, AY] = -decel * ux / u, -decel * uy / u
         motion[i, WX], motion[i, WY] = wx, wy
         motion[i, T_END] = t + u / (3.5 * decel)  # eq. 19
+    elif v > _STILL and phys[P_NAP] != 0.0:
+        motion[i, T_END] = t + _roll_on_nap(motion, state, i, vx, vy, phys[P_MU_R] * g, phys[P_NAP])
+        motion[i, WX], motion[i, WY] = -motion[i, VY] / R, motion[i, VX] / R
     elif v > _STILL:
         decel = phys[P_MU_R] * g
         state[i] = ROLL
@@ -81,7 +139,7 @@ def evaluate(motion, state, i, t, phys):
     x, y = motion[i, X] + (motion[i, VX] + 0.5 * ax * dt) * dt, motion[i, Y] + (motion[i, VY] + 0.5 * ay * dt) * dt
     R = phys[P_R]
     wz = spin_after(motion[i, WZ], dt, phys[P_SPIN])
-    if state[i] >= SLIDE:  # friction at the cloth turns the ball: dw = (5/2) z x (-a) / R; in the air a is 0
+    if state[i] == SLIDE or state[i] == FALLING:  # friction at the cloth turns the ball: dw = (5/2) z x (-a) / R; in the air a is 0
         wx, wy = motion[i, WX] + 2.5 * ay * dt / R, motion[i, WY] - 2.5 * ax * dt / R
     else:
         wx, wy = -vy / R, vx / R
@@ -90,7 +148,9 @@ def evaluate(motion, state, i, t, phys):
 
 @kernel
 def next_phase(motion, state, i, phys):
-    """Ball i has come to the end of its phase (T_END): slide -> roll or rest, roll -> rest. The new phase starts exactly rolling."""
+    """Ball i has come to the end of its phase (T_END): slide -> roll or rest, bend -> bend or roll, roll -> rest.
+
+    The new phase starts exactly rolling."""
     t = motion[i, T_END]
     (x, y), (vx, vy), (_wx, _wy, wz) = evaluate(motion, state, i, t, phys)
     if state[i] == SLIDE:
@@ -98,6 +158,11 @@ def next_phase(motion, state, i, phys):
         # final v = v0 - (2/7) u0 without the rounding of v0 + a T: u is then zero by construction
         vx = motion[i, VX] - (motion[i, VX] - R * motion[i, WY]) / 3.5
         vy = motion[i, VY] - (motion[i, VY] + R * motion[i, WX]) / 3.5
+        begin(motion, state, i, t, x, y, vx, vy, -vy / R, vx / R, wz, phys)
+    elif state[i] == BEND:
+        R, decel, nap = phys[P_R], phys[P_MU_R] * phys[P_G], phys[P_NAP]
+        vx, vy = motion[i, VX], motion[i, VY]
+        _, _, _, vx, vy = _bent(vx, vy, _piece(vx, vy, decel, nap), decel, nap)
         begin(motion, state, i, t, x, y, vx, vy, -vy / R, vx / R, wz, phys)
     else:
         begin(motion, state, i, t, x, y, 0.0, 0.0, 0.0, 0.0, wz, phys)

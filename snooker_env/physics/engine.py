@@ -40,6 +40,8 @@ class EventKind(IntEnum):
     """Ball i flies over the edge of pocket j towards a jaw: a POT or a RETURN follows. A ball with no jaw on its way is potted at once."""
     RETURN = 7
     """Ball i comes back on to the bed, over the edge of pocket j."""
+    BEND = 8
+    """The nap turned rolling ball i: the next piece of its path begins. Only with ``Physics.nap``."""
 
 
 class Status(IntEnum):
@@ -52,7 +54,8 @@ class Status(IntEnum):
 
 
 _BALL_BALL, _CUSHION, _JAW, _POT = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW), int(EventKind.POT)
-_ROLL, _STOP, _DROP, _RETURN = int(EventKind.ROLL), int(EventKind.STOP), int(EventKind.DROP), int(EventKind.RETURN)
+_ROLL, _STOP, _BEND = int(EventKind.ROLL), int(EventKind.STOP), int(EventKind.BEND)
+_DROP, _RETURN = int(EventKind.DROP), int(EventKind.RETURN)
 _OK, _TOO_MANY, _FULL, _UNSOLVED = int(Status.OK), int(Status.TOO_MANY_EVENTS), int(Status.LOG_FULL), int(Status.IMPACT_UNSOLVED)
 
 
@@ -183,7 +186,7 @@ def _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, be
         s, kind, index = boundary_event(motion, state, i, noses, jaws, falls, clear, R)
         if s > motion[i, T_END] or kind == 0:
             s, index = motion[i, T_END], -1
-            kind = _ROLL if state[i] == cloth.SLIDE else _STOP
+            kind = _STOP if state[i] == cloth.ROLL else _ROLL if state[i] == cloth.SLIDE else _BEND
         own_time[i], own_kind[i], own_index[i] = s, kind, index
 
 
@@ -283,7 +286,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
             v1, w1, v2, w2, solved = _meet(v1, w1, v2, w2, nx / d, ny / d, phys, fidelity, n_steps, work)
             _begin_again(motion, state, flight, i, t, r1, v1, w1, falls, jaws, phys)
             _begin_again(motion, state, flight, j, t, r2, v2, w2, falls, jaws, phys)
-        elif kind == _ROLL or kind == _STOP:
+        elif kind == _ROLL or kind == _STOP or kind == _BEND:
             cloth.next_phase(motion, state, i, phys)
             solved = True
         elif kind == _POT:

@@ -28,7 +28,7 @@ _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
 """Bounds of ``e_c_power``: the rebound goes as no higher power of e than 1.25 (tests/physics/test_cushion_law.py), so it never falls."""
 
 # Places in the packed vector. They are indices, not tunables: freezing them into a kernel is safe.
-(P_R, P_M, P_G, P_MU_S, P_MU_R, P_SPIN, P_E_B, P_MU_A, P_MU_B, P_MU_C, P_E_C, P_E_KNEE, P_E_POWER, P_MU_W, P_SIN, P_E_J) = range(16)
+(P_R, P_M, P_G, P_MU_S, P_MU_R, P_SPIN, P_E_B, P_MU_A, P_MU_B, P_MU_C, P_E_C, P_E_KNEE, P_E_POWER, P_MU_W, P_SIN, P_E_J, P_NAP) = range(17)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,6 +46,9 @@ class Physics:
     * mu_r: Rolling resistance, deceleration over g, in [0, 1] (measured 0.124 to 0.126 m/s^2).
     * spin_decel: Decay of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21]. With 0 nothing ends such
       a spin: a shot ends when no ball moves across the table, and what spin is left then stays.
+    * nap: Acceleration of a rolling ball along +y [m/s^2] by the cloth's nap, which runs from baulk to the black end; 0 for none, else
+      below mu_r g in size, so that a ball at rest stays there. Not measured; 0.001 is the most that the range of mu_r allows
+      (``python -m benchmarks.nap``).
     * e_b: Energetic restitution ball-ball, in [0, 1] [MJP14 2.4.2].
     * mu_bb: Ball-ball friction: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) for mu(s) = a + b exp(-c s), s in m/s.
     * e_c: Energetic restitution ball-cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
@@ -67,6 +70,7 @@ class Physics:
     mu_s: float = 0.21
     mu_r: float = 0.0127
     spin_decel: float = 22.0
+    nap: float = 0.0
     e_b: float = 0.89
     mu_bb: float | str | tuple[float, float, float] = 0.05
     e_c: float = 0.98
@@ -81,7 +85,7 @@ class Physics:
     def __post_init__(self):
         low_high = {
             "R": (1e-3, 1), "M": (0, np.inf), "g": (0, np.inf), "mu_s": (0, 1), "mu_r": (0, 1), "spin_decel": (0, np.inf),
-            "e_b": (0, 1), "e_c": (0, 1), "e_c_knee": (0, np.inf), "e_c_power": (0, _MOST_POWER), "mu_c": (0, 1),
+            "nap": (-np.inf, np.inf), "e_b": (0, 1), "e_c": (0, 1), "e_c_knee": (0, np.inf), "e_c_power": (0, _MOST_POWER), "mu_c": (0, 1),
             "sin_theta": (0, 0.95), "end_mass_ratio": (0, np.inf), "max_offset": (0, 0.999),
         }  # fmt: skip
         for field, (low, high) in low_high.items():
@@ -93,6 +97,8 @@ class Physics:
         if self.e_c_power > 0 and self.e_c_knee < _LEAST_KNEE:
             allowed = f"must be at least {_LEAST_KNEE:g} m/s where e_c_power > 0: above it e(v) = e_c (v / e_c_knee)^(-e_c_power)"
             raise refuse("physics.e_c_knee", self.e_c_knee, allowed)
+        if self.nap != 0 and not abs(self.nap) < self.mu_r * self.g:
+            raise refuse("physics.nap", self.nap, f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size")
 
     @classmethod
     def preset(cls, name="paper", **fields):
@@ -132,6 +138,9 @@ class Physics:
                 bounds = f"times g = {self.g:g} in [{_LEAST_DECELERATION:g}, {_MOST_DECELERATION:g}] m/s^2"
                 allowed = f"must be > 0 to simulate a shot, {bounds}: without it no ball comes to rest"
                 raise refuse(f"physics.{name}", getattr(self, name), allowed)
+        if self.mu_r * self.g - abs(self.nap) < _LEAST_DECELERATION:
+            allowed = f"must leave a ball that rolls with it {_LEAST_DECELERATION:g} m/s^2 of mu_r g = {self.mu_r * self.g:g} m/s^2"
+            raise refuse("physics.nap", self.nap, allowed)
         if 0 < self.spin_decel < _LEAST_DECELERATION:
             allowed = f"must be 0 (a spin about the vertical stays) or at least {_LEAST_DECELERATION:g} rad/s^2 to simulate a shot"
             raise refuse("physics.spin_decel", self.spin_decel, allowed)
@@ -147,7 +156,7 @@ class Physics:
         """The constants as the kernels read them: float64, places ``P_*`` of this module."""
         return np.array([
             self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law,
-            self.e_c, self.e_c_knee, self.e_c_power, self.mu_c, self.sin_theta, self.e_c if self.e_j is None else self.e_j,
+            self.e_c, self.e_c_knee, self.e_c_power, self.mu_c, self.sin_theta, self.e_c if self.e_j is None else self.e_j, self.nap,
         ])  # fmt: skip
 
 

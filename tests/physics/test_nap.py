@@ -1,0 +1,187 @@
+"""Does a ball that rolls over the nap go where its equation of motion takes it? Against an independent integration of that equation."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import snooker_env as sn
+from snooker_env import EventKind, Table
+from snooker_env.envs.aiming import solved_aim
+from snooker_env.physics import cloth, contact
+from snooker_env.physics.polynomial import WORK
+from tests.kernels import from_python
+from tests.physics.test_shots import check_shot, random_table
+
+R, DECEL = 0.02625, 0.0127 * 9.81
+
+
+def rolled(v, nap, start=(0.0, 0.0), table=None):
+    return sn.simulate([start], [v], [(-v[1] / R, v[0] / R, 0.0)], table, {"nap": nap})
+
+
+def integrated(v, nap, times):
+    """Place and velocity at ``times``, then the time and place of rest, of dv/dt = -decel v/|v| + nap y by DOP853.
+
+    The last ``end`` m/s are a ball's that has turned to the nap: the place is theirs to end^2 / decel.
+    """
+    end = 1e-8
+
+    def rate(_, z):
+        speed = np.hypot(z[2], z[3])
+        return z[2], z[3], -DECEL * z[2] / speed, -DECEL * z[3] / speed + nap
+
+    def slow(_, z):
+        return np.hypot(z[2], z[3]) - end
+
+    slow.terminal = True
+    out = solve_ivp(rate, (0, 1e4), (0, 0, *v), "DOP853", events=slow, dense_output=True, rtol=1e-12, atol=1e-14)
+    within = np.minimum(times, out.t[-1])
+    return out.sol(within).T, out.t[-1], out.y[:2, -1], end / (DECEL - abs(nap))
+
+
+def rolls(n, seed, share):
+    """(v, nap): any direction, 0.02 to 4 m/s, |nap| up to ``share`` of the resistance."""
+    rng = np.random.default_rng(seed)
+    for _ in range(n):
+        speed, turn = 4 * rng.uniform(0.07, 1) ** 2, rng.uniform(-np.pi, np.pi)
+        yield speed * np.array([np.sin(turn), np.cos(turn)]), DECEL * share * rng.uniform(-1, 1)
+
+
+@pytest.mark.parametrize("share", [0.04, 0.9])
+def test_stop_place_stop_time_and_the_way_there(share):
+    most = 0
+    for v, nap in rolls(60, 1, share):
+        shot = rolled(v, nap)
+        times = np.linspace(0, shot.duration, 400)
+        path, stop, place, late = integrated(v, nap, times)
+        assert shot.positions[0] == pytest.approx(place, abs=1e-10)
+        assert 0 <= shot.duration - stop <= late + 1e-9
+        r, u, w = shot.at(times)
+        assert np.abs(r[:, 0] - path[:, :2]).max() < 2.1e-6  # the pieces' bound
+        assert np.abs(u[:-1, 0] - path[:-1, 2:]).max() < (2e-4 if share < 0.1 else 1e-3)
+        assert w[:, 0, :2] * R == pytest.approx(u[:, 0, ::-1] * (-1, 1), abs=1e-12)
+        assert set(shot.events["kind"][:-1]) <= {EventKind.BEND} and shot.events["kind"][-1] == EventKind.STOP
+        x, y, ax, ay = shot.segments[-2, [cloth.VX, cloth.VY, cloth.AX, cloth.AY]]
+        assert abs(x * ay - y * ax) < 1e-14 * np.hypot(x, y)  # the piece to rest is straight, as the search for its contacts takes it
+        most = max(most, len(shot.events))
+    assert 30 < most < (120 if share < 0.1 else 400)
+
+
+@pytest.mark.parametrize("turn", [0.3, np.pi / 2, 3.1])
+def test_the_speed_always_falls(turn):
+    """So does the kinetic energy and the height on the equivalent slope: v^2 / 2 - nap y."""
+    for nap in (0.001, -0.03):
+        shot = rolled(0.8 * np.array([np.sin(turn), np.cos(turn)]), nap)
+        r, v, _ = shot.at(np.linspace(0, shot.duration, 20_000))
+        speed = np.hypot(*v[:, 0].T)
+        assert np.diff(speed).max() < 1e-9
+        assert np.diff(0.5 * speed**2 - nap * r[:, 0, 1]).max() < 1e-9
+
+
+def test_along_the_nap_is_one_piece_in_closed_form():
+    for v, nap in ((0.7, 0.002), (-0.7, 0.002), (0.7, -0.002), (-0.7, -0.1)):
+        shot = rolled((0.0, v), nap)
+        slows = DECEL - nap * np.sign(v)
+        assert shot.events["kind"].tolist() == [EventKind.STOP]
+        assert shot.positions[0] == pytest.approx([0, 0.5 * v * abs(v) / slows], abs=1e-14)
+        assert shot.duration == pytest.approx(abs(v) / slows, rel=1e-14)
+
+
+def test_straight_across_it_drifts_by_the_way_times_nap_over_twice_the_resistance():
+    """v^2 nap / (4 (decel^2 - nap^2)), towards the black end for a positive nap."""
+    for nap in (0.001, -0.001, 0.02):
+        shot = rolled((0.5, 0.0), nap)
+        assert shot.positions[0, 1] == pytest.approx(0.25 * nap / (4 * (DECEL**2 - nap**2)), rel=1e-12)
+
+
+def test_left_is_the_mirror_of_right_to_the_bit():
+    table = Table.preset("match")
+    for v, nap in rolls(10, 2, 0.05):
+        one, two = (rolled(v * (s, 1), nap, (0.1 * s, 0.2), table) for s in (1, -1))
+        assert np.array_equal(one.events["time"], two.events["time"]) and np.array_equal(one.events["kind"], two.events["kind"])
+        assert np.array_equal(one.positions * (-1, 1), two.positions)
+    up, down = (rolled(np.array([0.6, 0.4 * s]), 0.003 * s) for s in (1, -1))
+    assert up.positions * (1, -1) == pytest.approx(down.positions, abs=1e-14)
+
+
+def test_without_a_nap_nothing_changes_and_a_tiny_one_changes_little():
+    for v, _ in rolls(10, 3, 0.1):
+        plain, named, tiny = rolled(v, 0.0), sn.simulate([(0, 0)], [v], [(-v[1] / R, v[0] / R, 0)], None), rolled(v, 1e-15)
+        assert np.array_equal(plain.segments, named.segments)
+        slowing = -DECEL * v / np.sqrt(v[0] * v[0] + v[1] * v[1])
+        assert plain.segments[0, [cloth.VX, cloth.VY, cloth.AX, cloth.AY]].tolist() == [*v, *slowing]  # to the bit
+        assert tiny.positions == pytest.approx(plain.positions, abs=1e-10) and len(tiny.events) == 1
+    assert rolled((1.0, 1.0), 5e-324).positions == pytest.approx(rolled((1.0, 1.0), 0.0).positions, abs=1e-14)
+
+
+def test_a_ball_at_rest_stays_and_one_that_slides_does_not_feel_it():
+    for nap in (0.001, 0.99 * DECEL):
+        assert rolled((0.0, 0.0), nap).duration == 0.0
+        slid = [sn.simulate([(0, 0)], [(2.0, 0)], np.zeros((1, 3)), None, {"nap": n}) for n in (0.0, nap)]
+        assert slid[0].events["time"][0] == slid[1].events["time"][0]
+        assert np.array_equal(slid[0].at(0.1)[0], slid[1].at(0.1)[0])
+
+
+def test_a_ball_at_rest_in_the_way_of_a_bent_path_is_met_where_the_path_is():
+    """At the last, almost straight piece and before: the contact is that of the integrated path."""
+    rng = np.random.default_rng(4)
+    for v, nap in rolls(40, 5, 0.3):
+        _, stop, _, _ = integrated(v, nap, np.linspace(0, 1e3, 2))
+        t = rng.uniform(0.1, 1.0) * stop
+        there = integrated(v, nap, np.array([t]))[0][0]
+        side = rng.uniform(-1.2, 1.2) + np.arctan2(there[3], there[2])
+        other = there[:2] + 2 * R * np.array([np.cos(side), np.sin(side)])
+        if np.hypot(*other) < 2.1 * R:
+            continue
+        shot = sn.simulate([(0, 0), other], [v, (0, 0)], [(-v[1] / R, v[0] / R, 0), (0, 0, 0)], None, {"nap": nap})
+        hits = shot.events["time"][shot.events["kind"] == EventKind.BALL_BALL]
+        speed = np.hypot(*there[2:]) * np.cos(side - np.arctan2(there[3], there[2]))
+        if speed > 0.01:  # at a creep a micrometre decides when, or whether
+            assert hits[0] == pytest.approx(t, abs=5e-6 / speed)
+
+
+def test_shots_of_many_balls_keep_their_laws():
+    rng = np.random.default_rng(6)
+    for nap in (0.001, -0.03):
+        for _ in range(10):
+            v, w = rng.uniform(-2, 2, (6, 2)), rng.uniform(-60, 60, (6, 3))
+            check_shot(sn.simulate(random_table(rng, 6), v, w, "match", {"nap": nap}))
+
+
+def test_a_ball_that_the_nap_presses_along_a_cushion_stays_within_a_millimetre_of_it():
+    """Not nearer: the engine's slowest parting, 2 mm/s, is much beside a nap of 0.001 m/s^2."""
+    rail = 1.7845 - R
+    for speed in (0.2, 0.4, 0.6):
+        shot = rolled((speed, 0.0), 0.001, (-0.7, rail), "match")
+        off = rail - shot.at(np.linspace(0, shot.duration, 2000))[0][:, 0, 1]
+        assert off.min() > -1e-9 and off.max() < 1e-3
+
+
+def test_a_nap_that_would_move_a_ball_at_rest_is_refused():
+    for physics in ({"nap": DECEL}, {"nap": -0.2}, {"nap": 1e-9, "mu_r": 0.0}, {"nap": float("nan")}, {"nap": float("inf")}):
+        with pytest.raises(ValueError, match=r"^physics\.nap"):
+            sn.Physics.of(physics)
+    assert sn.Physics(mu_r=0.0).nap == 0.0
+    with pytest.raises(ValueError, match=r"^physics\.nap .* must leave a ball"):
+        sn.simulate([(0, 0)], [(1, 0)], np.zeros((1, 3)), None, {"nap": DECEL - 1e-8})
+
+
+@pytest.mark.parametrize("nap", [0.0, 0.003])
+def test_a_solved_aim_allows_for_the_nap(nap):
+    """A slow pot across the table into a middle pocket."""
+    aim_for = from_python(solved_aim)
+    physics = sn.Physics(nap=nap)
+    balls, pocket = np.array([(-0.62, 0.05), (-0.12, 0.03)]), np.array([0.889, 0.0])
+    line = (pocket - balls[1]) / np.linalg.norm(pocket - balls[1])
+    ghost = balls[1] - 2 * R * line
+    code, steps = contact.parse_fidelity("standard")
+    work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+
+    def missed_by(solved_for):
+        aim = aim_for(balls, 1, *pocket, *ghost, 1.2, 0.0, 0.0, 0.0, solved_for.pack(), physics.end_mass_ratio, code, steps, *work)
+        v, w = sn.strike(1.2, aim, physics=physics)
+        shot = sn.simulate(balls, [v[:2], (0, 0)], [w, (0, 0, 0)], None, physics)
+        return np.hypot(*(shot.at(np.linspace(0, shot.duration, 40_000))[0][:, 1] - pocket).T).min()
+
+    assert missed_by(physics) < (1e-4 if nap else 2e-5)
+    assert not nap or missed_by(sn.Physics()) > 3e-3
