@@ -65,7 +65,7 @@ def test_a_rail_throws_a_ball_back_as_a_rigid_one_does(angle, share):
         w = rolling(v, share)
         state = at_rest([[-1e-6, 0.0]], [v[:2]], [w], m, 1)[0]
         while state[0] > -2e-6 or state[3] > 0.0:
-            trace(state, rail, fall, m, default_step(m), 1, 10)
+            trace(state, rail, fall, m, m.slate_time / 20.0, 1, 10)
         want_v, want_w = sn.collide_cushion(v, w, [1.0, 0.0, 0.0], fidelity="reference")
         assert np.abs(state[3:6] - want_v).max() <= 1e-3 * speed
         assert np.abs(state[6:9] - want_w).max() * R <= 5e-3 * speed
