@@ -18,11 +18,10 @@ Forces per unit of mass, on a sphere of radius R whose centre is at ``r`` (momen
   Poeschel 2007, *Granular Matter* 9, 465, a contact that ends when the force is zero).
 * Coulomb friction at both, ``mu`` times the normal impulse of the step against the slip, at most what ends the slip (2/7 of it); rolling
   resistance as a torque ``7/5 mu_r N R`` against the spin, where the slate holds the ball without slip, decelerates a rolling ball by
-  ``mu_r g``.
+  ``mu_r g``; the spin about the slate's normal decays by ``spin_decel N / g``.
 
-Left out: the decay of the spin about the vertical (a ball is at the jaws for a twentieth of a second) and the leather; the back of the
-pocket keeps what reaches it. Below its nose the cushion recedes: by default so far that nothing but the nose can be touched (``undercut``
-1), else as a plane face whose normal points down by the angle of that sine.
+Left out is the leather: the back of the pocket keeps what reaches it. Below its nose the cushion recedes: by default so far that nothing but
+the nose can be touched (``undercut`` 1), else as a plane face whose normal points down by the angle of that sine.
 
 Units are SI, spins in rad/s. World frame: right-handed, z up, the slate's top at z = 0; the centre of a ball at rest is at z = R, less the
 40 nm by which its weight presses it into the slate.
@@ -70,6 +69,7 @@ class Model(NamedTuple):
     nose_mu: float = 0.14
     slate_mu: float = 0.21
     mu_r: float = 0.0127
+    spin_decel: float = 22.0  # [rad/s^2]
     edge: float = 5e-4  # [m]
     undercut: float = 1.0  # sine of the downward angle of the normal of the cushion's face below the nose
 
@@ -169,8 +169,10 @@ def step(s, jaws, fall, m, dt):
         closing = v[0] * n[0] + v[1] * n[1] + v[2] * n[2]
         p = max(0.0, (math.pi / m.slate_time) ** 2 * (R - d) + m.slate_damping * closing) * dt
         v, w, held = _push(v, w, n, p, m.slate_mu)
+        along = w[0] * n[0] + w[1] * n[1] + w[2] * n[2]
+        less = math.copysign(min(abs(along), m.spin_decel * p / G), along)
+        w, along = (w[0] - less * n[0], w[1] - less * n[1], w[2] - less * n[2]), along - less
         if held:
-            along = w[0] * n[0] + w[1] * n[1] + w[2] * n[2]
             wx, wy, wz = w[0] - along * n[0], w[1] - along * n[1], w[2] - along * n[2]
             spin = math.sqrt(wx * wx + wy * wy + wz * wz)
             if spin > 0.0:
@@ -234,6 +236,7 @@ def _approach(s, jaws, fall, m, dt):
             a = min(m.mu_r * G, speed / dt) / speed
             ax, ay = -a * s[3], -a * s[4]
             s[6], s[7] = -(s[4] + ay * dt) / R, (s[3] + ax * dt) / R
+        s[8] -= math.copysign(min(abs(s[8]), m.spin_decel * dt), s[8])
         for c, a in ((0, ax), (1, ay)):
             s[c] += s[3 + c] * dt + 0.5 * a * dt * dt
             s[3 + c] += a * dt
