@@ -16,12 +16,12 @@ Forces per unit of mass, on a sphere of radius R whose centre is at ``r`` (momen
 * The slate: a plane up to the circle of ``Table.falls``, from there rounded with radius ``edge`` and then a vertical wall. A spring and a
   dashpot that only push, of half period ``slate_time`` and of the damping that gives a given restitution (``damping``: Schwager &
   Poeschel 2007, *Granular Matter* 9, 465, a contact that ends when the force is zero).
-* Coulomb friction at both, ``mu`` times the normal impulse of the step against the slip, at most what ends the slip (2/7 of it); rolling
-  resistance as a torque ``7/5 mu_r N R`` against the spin, where the slate holds the ball without slip, decelerates a rolling ball by
-  ``mu_r g``; the spin about the slate's normal decays by ``spin_decel N / g``.
+* Coulomb friction at both, ``mu`` times the normal impulse of the step against the slip, at most what ends the slip (2/7 of it). Where the
+  slate holds the ball without slip, a torque ``7/5 mu_r N R`` against the spin: it slows a rolling ball by ``mu_r g``. Where the slate
+  touches the ball, the spin about its normal decays at ``spin_decel``.
 
-Left out is the leather: the back of the pocket keeps what reaches it. Below its nose the cushion recedes: by default so far that nothing but
-the nose can be touched (``undercut`` 1), else as a plane face whose normal points down by the angle of that sine.
+Left out is the leather: the back of the pocket keeps what reaches it. Below its nose the cushion recedes: by default so far that nothing
+but the nose can be touched (``undercut`` 1), else as a plane face whose normal points down by the angle of that sine.
 
 Units are SI, spins in rad/s. World frame: right-handed, z up, the slate's top at z = 0; the centre of a ball at rest is at z = R, less the
 40 nm by which its weight presses it into the slate.
@@ -170,7 +170,7 @@ def step(s, jaws, fall, m, dt):
         p = max(0.0, (math.pi / m.slate_time) ** 2 * (R - d) + m.slate_damping * closing) * dt
         v, w, held = _push(v, w, n, p, m.slate_mu)
         along = w[0] * n[0] + w[1] * n[1] + w[2] * n[2]
-        less = math.copysign(min(abs(along), m.spin_decel * p / G), along)
+        less = math.copysign(min(abs(along), m.spin_decel * dt), along)
         w, along = (w[0] - less * n[0], w[1] - less * n[1], w[2] - less * n[2]), along - less
         if held:
             wx, wy, wz = w[0] - along * n[0], w[1] - along * n[1], w[2] - along * n[2]
