@@ -111,6 +111,7 @@ MODELS = {
         "no jaws: only noses and falls", "snooker_env has them on every table",
         table=sn.Table("no jaws", sn.Table.preset("match").noses, np.zeros((0, 6)), sn.Table.preset("match").falls),
     ),
+    "drop takes time": Model("dropped at once at the edge", ALWAYS, _variants.AT_ONCE),
     "Marlow's law": Model("mu_bb 0.05", 'snooker_env has it in "match"; "paper" keeps the paper\'s 0.05', physics={"mu_bb": 0.05}),
     "spin decay": Model("spin about the vertical stays", "snooker_env has it everywhere", physics={"spin_decel": 0.0}),
 }  # fmt: skip

@@ -32,6 +32,7 @@ SHORT = {
     "benchmarks.paper": ["--no-pictures", "--json", "{tmp}/p.json"],
     "benchmarks.tradeoff": ["--impacts", "30", "--shots", "12", "--repeats", "1", "--out", "{tmp}/t.png"],
     "benchmarks.scene": ["--shots", "12", "--repeats", "1", "--models", "spin decay", "jaw arcs", "--out", "{tmp}/s.png"],
+    "benchmarks.pockets": ["--quick", "--out", "{tmp}/pockets.png"],
     "benchmarks.rack": ["--shots", "2", "--orders", "2", "--racks", "2", "--out", "{tmp}/rack.png"],
     "benchmarks.stability": ["--fuzz", "2000", "--out", "{tmp}/stability.png"],
     "benchmarks.speed": [

@@ -304,7 +304,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
             v, u = (flight[i, END_VX], flight[i, END_VY]), flight[i, U1]
             if kind == _JAW:
                 z = flight[i, Z1]
-                _, nx, ny, sin_phi = pocket.jaw_gap(r[0], r[1], z, jaws, j, R, phys[P_SIN], inf)
+                _, nx, ny, sin_phi, _ = pocket.jaw_gap(r[0], r[1], z, jaws, j, R, phys[P_SIN])
                 vx, vy, u, w = pocket.strike_jaw(v[0], v[1], u, w, nx, ny, sin_phi, phys)
                 _fly(motion, state, flight, i, t, r[0], r[1], z, vx, vy, u, w, falls, jaws, phys)
             else:  # back on the bed, which takes its vertical velocity

@@ -12,8 +12,8 @@ World frame; z is the drop of the centre below the height at which it rolls [m],
   sin(phi) = sin_theta + z/R. Nothing presses the ball from below, so this is the impact of a free
   sphere with a fixed body, in closed form: p = (1 + e_j) times the closing speed; friction min(mu_c p, 2/7 of the slip) against the slip
   at the contact. The nose is above the centre and drives the ball down.
-* It is lost when it is below the noses, at z = (1 - sin_theta) R, where the edge, too, sends it inwards, or when it leaves the fall on the
-  side away from where it came in.
+* It is lost when it is below the noses, at z = (1 - sin_theta) R, where the edge, too, sends it inwards; when it touches the throat behind
+  a jaw's arc; or when it leaves the fall on the side away from where it came in.
 
 A ball that clears the edge flies to the first jaw in closed form. One that touches the edge has none: it is followed in steps of ``STEP``,
 each a parabola, with the impacts on the edge at its end. Oracle: a compliant ball in three dimensions (``tests/oracles/pocket_3d.py``).
@@ -76,33 +76,30 @@ def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
 
 
 @kernel
-def jaw_gap(x, y, z, jaws, k, R, sin_theta, wall):
-    """How far a sphere at (x, y), z low is from the nose of jaw k in the plane [m], the unit vector to it, and sin(phi); 1 if out of reach.
+def jaw_gap(x, y, z, jaws, k, R, sin_theta):
+    """How far a sphere at (x, y), z low is from the nose of jaw k in the plane [m], the unit vector to it, sin(phi), the part of it.
 
-    Beyond its ends an arc goes on straight along its tangents for ``wall`` [m]: on one side into the throat, on the other as the nose.
+    Beyond its ends (part 1, else 0) an arc goes on straight along its tangents: on one side into the throat, on the other as the nose. A
+    ball above the nose's height meets it as a wall: none flies over a cushion.
     """
-    sin_phi = sin_theta + z / R
-    if not -1.0 < sin_phi < 1.0:
-        return 1.0, 0.0, 0.0, 0.0
     dx, dy, ux, uy, c = x - jaws[k, 0], y - jaws[k, 1], jaws[k, 3], jaws[k, 4], jaws[k, 5]
-    far, near = dx * dx + dy * dy, jaws[k, 2] + R + wall
+    far, near = dx * dx + dy * dy, jaws[k, 2] + 4.0 * R
     if far > near * near:
-        return 1.0, 0.0, 0.0, 0.0
+        return 1.0, 0.0, 0.0, 0.0, 0
     far = sqrt(far)
-    ahead, aside = dx * ux + dy * uy, dy * ux - dx * uy
+    along, aside, part = dx * ux + dy * uy, dy * ux - dx * uy, 0
     nx, ny = dx / far, dy / far
-    if ahead < c * far:
-        s = sqrt(1.0 - c * c)
-        beyond = c * abs(aside) - s * ahead
-        far = c * ahead + s * abs(aside)
-        if not (beyond < wall and far > jaws[k, 2]):
-            return 1.0, 0.0, 0.0, 0.0
+    if along < c * far:
+        s, part = sqrt(1.0 - c * c), 1
+        far = c * along + s * abs(aside)
+        if far <= jaws[k, 2]:
+            return 1.0, 0.0, 0.0, 0.0, 0
         s = s if aside > 0.0 else -s
         nx, ny = c * ux - s * uy, c * uy + s * ux
     # the nose is where a ball on the bed is R from the table's arc; one that has dropped is held as far off, so that it comes back free
-    nose = jaws[k, 2] + R * (1.0 - sqrt(1.0 - sin_theta * sin_theta))
-    high = min(abs(sin_phi), sin_theta)
-    return far - nose - R * sqrt(1.0 - high * high), -nx, -ny, sin_phi
+    sin_phi = min(1.0, max(0.0, sin_theta + z / R))
+    high = min(sin_phi, sin_theta)
+    return far - jaws[k, 2] - R * (1.0 - sqrt(1.0 - sin_theta * sin_theta) + sqrt(1.0 - high * high)), -nx, -ny, sin_phi, part
 
 
 @kernel
@@ -133,7 +130,6 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
     it takes [s], and x, y, z, vx, vy, u then (before the impact with the jaw; on the bed for ``BACK``).
     """
     R, sin_theta, drop = phys[P_R], phys[P_SIN], phys[P_G] * STEP
-    wall = 2.0 * falls[pocket, 2]
     if z == 0.0 and u == 0.0:  # just over the edge: if it clears it, on to the first jaw
         t, jaw = ahead(x, y, vx, vy, falls, pocket, jaws, phys)
         if 0.0 <= t < inf:
@@ -157,7 +153,9 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
         jaw, deepest, hard, touches = -1, 0.0, 0.0, False
         px, py, pz = 0.0, 0.0, 0.0
         for k in range(jaws.shape[0]):
-            gap, nx, ny, sin_phi = jaw_gap(x, y, z, jaws, k, R, sin_theta, wall)
+            gap, nx, ny, sin_phi, part = jaw_gap(x, y, z, jaws, k, R, sin_theta)
+            if gap < 0.0 and part == 1 and depth > 0.0:
+                return LOST, -1, n * STEP, x, y, z, vx, vy, u  # through the throat
             touches = touches or gap < 0.0
             if gap < deepest:
                 cos_phi = sqrt(1.0 - sin_phi * sin_phi)
