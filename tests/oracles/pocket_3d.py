@@ -77,9 +77,9 @@ class Model(NamedTuple):
 def stiff(speed: float, **fields) -> Model:
     """A model for balls of about this speed [m/s] that comes near rigid surfaces: the nose is compressed by 0.3 mm at most, for 0.5 ms.
 
-    The slate must be much stiffer than the nose that presses the ball on to it, else it throws the ball up: at a slate_time of 0.4
-    nose_time with a fifth of its speed, at a twelfth with 1 % of it. And a contact must be too short for the cloth's friction under the
-    ball's weight: one of 2 ms takes 15 mm/s of slip, which turns the path of a slow ball that grazes a rail.
+    The slate must be much stiffer than the nose that presses the ball on to it, else it throws the ball up: off a rail with 8 % of its
+    speed at a slate_time of 0.4 nose_time, with less than 1 % at a twelfth. And a contact must be too short for the cloth's friction under
+    the ball's weight: one of 2 ms takes 15 mm/s of slip, which turns the path of a slow ball that grazes a rail.
     """
     time = 1e-3 / max(speed, 2.0)
     return Model(**{"nose_time": time, "slate_time": time / 12.0, "slate_damping": damping(0.5, time / 12.0), **fields})
