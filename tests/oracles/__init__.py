@@ -6,6 +6,7 @@
 ``march``            how the float oracles pass an impact's changes of slip and stick; ``vectors`` is their arithmetic.
 ``paper_tables``     the rows of the paper's tables.
 ``tiny_steps``       a whole shot on an unbounded cloth by small fixed steps of the forces.
+``pocket_3d``        one ball in a pocket in three dimensions, by small fixed steps of the forces.
 ``motions``          what the oracles' own tests share.
 
 The oracles are derived from rigid-body mechanics alone and share no code, formula or constant with ``snooker_env.physics``.
