@@ -121,12 +121,12 @@ class Rolls:
         return sqrt(squares.sum()), *np.sqrt(squares).tolist()
 
 
-def played(pot, stroke, n, world, table, *, aims=0.0, hand=None, seed=0):
+def played(pot, stroke, n, world, table, *, aims: float | np.ndarray = 0.0, hand: str | Noise = "none", seed=0):
     """(made (n,), where the cue ball stops (n, 2)) of n strokes at a pot, turned by ``aims`` [rad], with the errors of ``hand``."""
     strokes = np.repeat(stroke[None], n, 0)
     strokes[:, 1] += aims
     shots = Shots(np.repeat(pot.positions[None], n, 0), strokes, np.ones(n, int), world)
-    state = shots.struck(None if hand is None else seed, hand=hand)
+    state = shots.struck(seed, hand=hand)
     end = sn.simulate_batch(shots.positions, *state, table=table, physics=world)
     cue = np.where(end.on_table[:, :1], end.positions[:, 0], np.nan)
     return (end.potted[:, 1] == pot.pocket) & end.on_table[:, 0], cue

@@ -35,7 +35,7 @@ class Shots:
     """(n,) the ball to be potted or hit."""
     world: sn.Physics
 
-    def struck(self, seed=None, aim=0.0, hand="professional"):
+    def struck(self, seed=None, aim=0.0, hand: str | Noise = "professional"):
         """Velocities (n, b, 2) and spins (n, b, 3) just after the strokes, each turned by ``aim`` [rad]; with the errors of ``hand``, any
         ``noise``, if seeded."""
         n, b = self.positions.shape[:2]
