@@ -2,7 +2,8 @@
 
 The log holds each ball's motion as closed forms, so what lies between two events is checked as well as the events: for every pair the
 gap is followed by steps no longer than the gap allows (at least ``LEAST``, which can hide 2e-10 m at the most), and so are jaws.
-Energies are kinetic, of translation and rotation, per unit mass.
+Energies are kinetic, of translation and rotation, per unit mass. A ball in the air over a pocket is judged by what it brings back: it may
+return with no more energy than it had at the edge.
 """
 
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ import numba
 import numpy as np
 
 from snooker_env.physics import cloth
-from snooker_env.physics.cloth import AX, AY, COLUMNS, GONE, REST, T0, T_END, VX, VY, X, Y
+from snooker_env.physics.cloth import AX, AY, COLUMNS, FALLING, GONE, REST, T0, T_END, VX, VY, X, Y
 from snooker_env.physics.engine import EventKind, Status
 from snooker_env.physics.parameters import P_MU_A, P_MU_B, P_MU_S, P_R, P_SPIN
 from snooker_env.simulation import MAX_EVENTS, _run
@@ -34,6 +35,7 @@ WHAT = {
 }
 LEAST = 1e-5
 _BALL_BALL, _CUSHION, _JAW, _POT = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW), int(EventKind.POT)
+_DROP, _RETURN = int(EventKind.DROP), int(EventKind.RETURN)
 
 
 @numba.njit(nogil=True, error_model="numpy")
@@ -117,6 +119,7 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
     D = 2.0 * R
     rows, state = np.zeros((n, COLUMNS)), np.zeros(n, np.int64)
     old, old_state = np.zeros((n, COLUMNS)), np.zeros(n, np.int64)
+    brought = np.zeros(n)  # energy of the balls in the air when they came to the edge
     for i in range(n):
         rows[i] = segments[i, :COLUMNS]
         state[i] = int(segments[i, COLUMNS + 1])
@@ -149,7 +152,8 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
                 _note(worst, PHASE, (ended - begun) / begun)
             before += ended
             _note(worst, JUMP, hypot(r[0] - new[X], r[1] - new[Y]))
-            _note(worst, CUSHION, _along_boundary(rows, state, b, t, noses, jaws, R, phys))
+            if state[b] != FALLING:
+                _note(worst, CUSHION, _along_boundary(rows, state, b, t, noses, jaws, R, phys))
             for other in range(n):
                 if other != b and state[other] != GONE and not (state[other] == REST and state[b] == REST):
                     _note(worst, OVERLAP, _follow(rows, state, b, other, max(rows[b, T0], rows[other, T0]), t, D, phys))
@@ -161,7 +165,12 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
                 _, v, w = cloth.evaluate(rows, state, b, t, phys)
                 after += _energy(v, w, R)
         at += balls
-        if before > 0.0:
+        in_air = old_state[i] == FALLING or (balls == 2 and old_state[j] == FALLING)
+        if kind == _DROP:
+            brought[i] = before
+        elif kind == _RETURN:
+            _note(worst, ENERGY, (after - brought[i]) / brought[i])
+        elif before > 0.0 and not in_air:
             _note(worst, ENERGY, (after - before) / before)
         if kind == _BALL_BALL:
             r1, v1, _ = cloth.evaluate(old, old_state, i, t, phys)
@@ -174,12 +183,12 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
             impulse = max(hypot(a1, a2), hypot(b1, b2))
             size = hypot(v1[0], v1[1]) + hypot(v2[0], v2[1])
             share = phys[P_MU_S] * (phys[P_MU_A] + phys[P_MU_B])
-            if impulse > 0.0:
+            if impulse > 0.0 and not in_air:
                 _note(worst, MOMENTUM, (push - share * (impulse + push) - 1e-14 * size) / impulse)
             still = (rows[i, VX] - rows[j, VX]) * nx + (rows[i, VY] - rows[j, VY]) * ny
-            if closing > 0.0:
+            if closing > 0.0 and not in_air:
                 _note(worst, PARTING, (still - 1e-14 * size) / closing)
-        elif kind == _CUSHION or kind == _JAW:
+        elif (kind == _CUSHION or kind == _JAW) and not in_air:
             if kind == _CUSHION:
                 nx, ny = (noses[j, 1], 0.0) if noses[j, 0] == 0.0 else (0.0, noses[j, 1])
             else:
@@ -190,7 +199,7 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
             closing = v[0] * nx + v[1] * ny
             if closing > 0.0:
                 _note(worst, PARTING, (rows[i, VX] * nx + rows[i, VY] * ny - 1e-14 * hypot(v[0], v[1])) / closing)
-        elif kind == _POT:
+        elif kind == _DROP or (kind == _POT and not in_air):
             far = hypot(rows[i, X] - falls[j, 0], rows[i, Y] - falls[j, 1])
             _note(worst, JUMP, abs(far - falls[j, 2]))
     if at != n_segments:

@@ -9,10 +9,11 @@ from tests.refusals import INF, NAN, batch, case, cushion, impact, refused, shot
 RANGES = {
     "R": ("[0.001, 1]", 0, -1, 1.1, 1e-300), "M": ("(0, inf)", 0, -0.1), "g": ("(0, inf)", 0, -9.81), "mu_s": ("[0, 1]", -0.1, 1.1),
     "mu_r": ("[0, 1]", -0.01, 1.01), "spin_decel": ("[0, inf)", -1), "e_b": ("[0, 1]", -0.1, 1.01), "e_c": ("[0, 1]", -0.1, 1.01),
-    "e_c_knee": ("[0, inf)", -1), "e_c_slope": ("[0, inf)", -1), "mu_c": ("[0, 1]", -0.1, 2), "sin_theta": ("[0, 0.95]", -0.1, 0.96),
-    "end_mass_ratio": ("[0, inf)", -1), "max_offset": ("(0, 0.999]", 0, 1.0),
+    "e_c_knee": ("[0, inf)", -1), "e_c_power": ("[0, 0.8]", -0.1, 0.81), "mu_c": ("[0, 1]", -0.1, 2),
+    "sin_theta": ("[0, 0.95]", -0.1, 0.96), "end_mass_ratio": ("[0, inf)", -1), "max_offset": ("(0, 0.999]", 0, 1.0),
 }  # fmt: skip
 SHARE = "must be a finite number in [0, 1]"
+KNEE = "must be at least 0.001 m/s where e_c_power > 0: above it e(v) = e_c (v / e_c_knee)^(-e_c_power)"
 MU_BB = 'must be a number in [0, 1], "marlow", or (a, b, c) with a, b, c >= 0 and a + b <= 1'
 WAYS = {
     "Physics": lambda name, value: lambda: sn.Physics(**{name: value}),
@@ -35,6 +36,10 @@ PHYSICS = [
             ("Marlow", MU_BB), ((0.1, 0.2), MU_BB), ((0.5, 0.6, 1.0), MU_BB), ([0.1] * 4, MU_BB),
         ]
     ],
+    case(lambda: sn.Physics(e_c_power=0.25), "physics.e_c_knee", "0.0", KNEE, "power without a knee"),
+    case(lambda: sn.Physics(e_c_power=1e-9, e_c_knee=9e-4), "physics.e_c_knee", "0.0009", KNEE, "knee too low"),
+    case(lambda: sn.Physics.preset("match", e_c_knee=0), "physics.e_c_knee", "0.0", KNEE, "preset-no-knee"),
+    case(strike(physics={"e_c_power": 0.1}), "physics.e_c_knee", "0.0", KNEE, "dict-no-knee"),
     *[case(lambda v=v: sn.Physics(mu_bb=v), "physics.mu_bb", str(bad), "must be a finite number in [0, inf)", f"mu_bb={v}")
       for v, bad in [((-0.1, 0.1, 1.0), -0.1), ((0.1, -0.1, 1.0), -0.1), ((0.1, 0.1, -1.0), -1.0), ((0.1, NAN, 1.0), NAN)]],
     *[
@@ -74,4 +79,5 @@ def test_an_unknown_field_of_physics_itself_is_refused_as_python_does():
 def test_physics_cannot_be_changed_and_its_range_ends_are_allowed():
     with pytest.raises(AttributeError):
         sn.Physics().e_b = 0.5
+    sn.Physics(e_c_power=0.8, e_c_knee=1e-3)
     sn.Physics(R=1, mu_s=0, mu_r=1, spin_decel=0, e_b=1, e_c=0, mu_c=1, sin_theta=0.95, end_mass_ratio=0, max_offset=0.999, mu_bb=(0, 1, 0))

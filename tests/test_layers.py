@@ -234,17 +234,19 @@ def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
 
     places = {
         "R": [p.P_R], "M": [p.P_M], "g": [p.P_G], "mu_s": [p.P_MU_S], "mu_r": [p.P_MU_R], "spin_decel": [p.P_SPIN], "e_b": [p.P_E_B],
-        "e_c": [p.P_E_C], "e_c_knee": [p.P_E_KNEE], "e_c_slope": [p.P_E_SLOPE], "mu_c": [p.P_MU_W], "sin_theta": [p.P_SIN],
+        "e_c": [p.P_E_C], "e_j": [p.P_E_J], "e_c_knee": [p.P_E_KNEE], "e_c_power": [p.P_E_POWER], "mu_c": [p.P_MU_W], "sin_theta": [p.P_SIN],
         "end_mass_ratio": [], "max_offset": [],
     }  # fmt: skip
-    base = Physics().pack()
+    base = Physics(e_c_knee=1.0, e_j=0.9)  # where the power may be changed, and a jaw has a restitution of its own
     for field in dataclasses.fields(Physics):
         if field.name == "mu_bb":
             continue
-        changed = Physics(**{field.name: getattr(Physics(), field.name) + 1e-3}).pack()
-        assert np.flatnonzero(changed != base).tolist() == places[field.name], field.name
+        value = getattr(base, field.name) + 1e-3
+        changed = dataclasses.replace(base, **{field.name: value}).pack()
+        assert np.flatnonzero(changed != base.pack()).tolist() == places[field.name], field.name
         for k in places[field.name]:
-            assert changed[k] == getattr(Physics(), field.name) + 1e-3
+            assert changed[k] == value
+    assert Physics(e_c=0.7).pack()[p.P_E_J] == 0.7
     law = [p.P_MU_A, p.P_MU_B, p.P_MU_C]
     assert Physics(mu_bb=(0.01, 0.1, 2.0)).pack()[law].tolist() == [0.01, 0.1, 2.0]
     assert Physics(mu_bb=0.07).pack()[law].tolist() == [0.07, 0.0, 0.0]

@@ -4,6 +4,8 @@
 direction is constant and the path a parabola (curved when the spin is not about the axis of rolling: the masse curve). Slip ends
 after T = 2 |u| / (7 mu_s g); rolling decelerates by mu_r g; spin about the vertical decays by ``spin_decel`` in every state.
 
+A ball over a pocket (``FALLING``) moves straight and evenly, see ``pocket.py``.
+
 A ball's motion is one row of ``motion`` (float64, columns below), valid from its time T0 to T_END, and one code in ``state``. LO_X to
 HI_Y bound its whole path in that time: whatever they do not come near, the ball does not meet.
 """
@@ -13,7 +15,7 @@ from math import copysign, sqrt
 from .._jit import kernel
 from .parameters import P_G, P_MU_R, P_MU_S, P_R, P_SPIN
 
-GONE, REST, ROLL, SLIDE = range(4)
+GONE, REST, ROLL, SLIDE, FALLING = range(5)
 X, Y, VX, VY, AX, AY, WX, WY, WZ, T0, T_END, LO_X, HI_X, LO_Y, HI_Y = range(15)
 COLUMNS = 15
 
@@ -79,7 +81,7 @@ def evaluate(motion, state, i, t, phys):
     x, y = motion[i, X] + (motion[i, VX] + 0.5 * ax * dt) * dt, motion[i, Y] + (motion[i, VY] + 0.5 * ay * dt) * dt
     R = phys[P_R]
     wz = spin_after(motion[i, WZ], dt, phys[P_SPIN])
-    if state[i] == SLIDE:  # friction at the cloth turns the ball: dw = (5/2) z x (-a) / R
+    if state[i] >= SLIDE:  # friction at the cloth turns the ball: dw = (5/2) z x (-a) / R; in the air a is 0
         wx, wy = motion[i, WX] + 2.5 * ay * dt / R, motion[i, WY] - 2.5 * ax * dt / R
     else:
         wx, wy = -vy / R, vx / R

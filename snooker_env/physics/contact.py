@@ -10,7 +10,7 @@ from .._check import refuse
 from .._jit import kernel
 from . import euler
 from .impulse import OK, friction_coefficient, solve
-from .parameters import P_E_C, P_E_KNEE, P_E_SLOPE, P_MU_A, P_MU_B, P_MU_C, P_MU_S, P_MU_W, P_R, P_SIN
+from .parameters import P_E_C, P_E_KNEE, P_E_POWER, P_MU_A, P_MU_B, P_MU_C, P_MU_S, P_MU_W, P_R, P_SIN
 
 FAST, STANDARD, REFERENCE, EULER = range(4)
 FIDELITIES = ("fast", "standard", "reference", "euler:N")
@@ -42,8 +42,14 @@ def parse_fidelity(fidelity):
 
 @kernel
 def cushion_restitution(speed, phys):
-    """e(v) = max(0, e_c - slope max(0, v - knee)), v the horizontal speed into the cushion [m/s]."""
-    return max(0.0, phys[P_E_C] - phys[P_E_SLOPE] * max(0.0, speed - phys[P_E_KNEE]))
+    """e(v) = e_c up to the knee, e_c (v / knee)^(-power) above; v the horizontal speed into the cushion [m/s], power < 1: v e(v) rises.
+
+    Source of the form: an impact that loses energy by yielding has e ~ v^(-1/4) (Johnson, Contact Mechanics, 1985, 11.5); power and knee
+    are fitted (``Physics.preset``). A law of one contact: it knows the speed straight into the cushion, not the spin.
+    """
+    if phys[P_E_POWER] > 0.0 and speed > phys[P_E_KNEE]:
+        return phys[P_E_C] * (speed / phys[P_E_KNEE]) ** -phys[P_E_POWER]
+    return phys[P_E_C]
 
 
 @kernel

@@ -15,11 +15,11 @@ from math import inf, sqrt
 import numpy as np
 
 from .._jit import entry, inlined, kernel
-from . import cloth
-from .cloth import GONE, REST, T0, T_END, WZ, X, Y
+from . import cloth, pocket
+from .cloth import AX, AY, FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, VX, VY, WX, WY, WZ, X, Y
 from .contact import collide_balls, collide_cushion, cushion_restitution
 from .detection import TOUCH, boundary_event, clear_box, may_meet, pair_time
-from .parameters import P_E_B, P_R, P_SPIN
+from .parameters import P_E_B, P_E_J, P_R, P_SIN, P_SPIN
 from .polynomial import WORK
 
 PART = 2e-3  # m/s; below what a shot can show: a ball at this speed rolls 16 micrometres
@@ -36,6 +36,10 @@ class EventKind(IntEnum):
     """Ball i stopped sliding; it rolls from now on."""
     STOP = 5
     """Ball i stopped (it may still spin on the spot)."""
+    DROP = 6
+    """Ball i flies over the edge of pocket j towards a jaw: a POT or a RETURN follows. A ball with no jaw on its way is potted at once."""
+    RETURN = 7
+    """Ball i comes back on to the bed, over the edge of pocket j."""
 
 
 class Status(IntEnum):
@@ -47,7 +51,8 @@ class Status(IntEnum):
     IMPACT_UNSOLVED = 3
 
 
-_BALL_BALL, _POT, _ROLL, _STOP = int(EventKind.BALL_BALL), int(EventKind.POT), int(EventKind.ROLL), int(EventKind.STOP)
+_BALL_BALL, _CUSHION, _JAW, _POT = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW), int(EventKind.POT)
+_ROLL, _STOP, _DROP, _RETURN = int(EventKind.ROLL), int(EventKind.STOP), int(EventKind.DROP), int(EventKind.RETURN)
 _OK, _TOO_MANY, _FULL, _UNSOLVED = int(Status.OK), int(Status.TOO_MANY_EVENTS), int(Status.LOG_FULL), int(Status.IMPACT_UNSOLVED)
 
 
@@ -89,14 +94,14 @@ def _meet(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps, work):
 
 
 @inlined
-def _rebound(v, w, nx, ny, phys, fidelity, n_steps, work):
-    """Ball-cushion impact inside a shot, by the same rules; (nx, ny) points into the cushion."""
+def _rebound(v, w, nx, ny, jaw, phys, fidelity, n_steps, work):
+    """Impact with a nose or a jaw inside a shot, by the same rules; (nx, ny) points into the cushion."""
     closing = v[0] * nx + v[1] * ny
     if closing <= PART:
         parting, k = _hop(closing, _spin_energy(w, phys[P_R]))
         dv = closing + parting
         return (v[0] - dv * nx, v[1] - dv * ny), _scaled(w, k), True
-    e = max(cushion_restitution(closing, phys), PART / closing)
+    e = max(phys[P_E_J] if jaw else cushion_restitution(closing, phys), PART / closing)
     a, wa, solved = collide_cushion((v[0], v[1], 0.0), w, nx, ny, phys, e, fidelity, n_steps, work)
     return (a[0], a[1]), wa, solved
 
@@ -104,6 +109,38 @@ def _rebound(v, w, nx, ny, phys, fidelity, n_steps, work):
 @kernel
 def _begin(motion, state, i, t, r, v, w, phys):
     cloth.begin(motion, state, i, t, r[0], r[1], v[0], v[1], w[0], w[1], w[2], phys)
+
+
+# Columns of ``flight``, what a falling ball has besides its motion: where it came in, seen from the pocket's centre, and the pocket; the
+# drop of its centre and the rate of that, at the start and the end of this leg; velocity, kind of event and its index at the end
+IN_X, IN_Y, POCKET, Z0, U0, Z1, U1, END_VX, END_VY, KIND, INDEX = range(11)
+
+
+@kernel
+def _fly(motion, state, flight, i, t, x, y, z, vx, vy, u, w, falls, jaws, phys):
+    """Ball i is over a pocket, in the air: write its next leg, a straight line to where something happens to it."""
+    here = int(flight[i, POCKET])
+    end, jaw, T, x1, y1, z1, vx1, vy1, u1 = pocket.fly(x, y, z, vx, vy, u, flight[i, IN_X], flight[i, IN_Y], falls, here, jaws, phys)
+    state[i] = FALLING
+    motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY] = x, y, (x1 - x) / T, (y1 - y) / T
+    motion[i, AX] = motion[i, AY] = 0.0
+    motion[i, WX], motion[i, WY], motion[i, WZ] = w
+    motion[i, T0], motion[i, T_END] = t, t + T
+    motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y] = min(x, x1), max(x, x1), min(y, y1), max(y, y1)
+    flight[i, Z0], flight[i, U0], flight[i, Z1], flight[i, U1], flight[i, END_VX], flight[i, END_VY] = z, u, z1, u1, vx1, vy1
+    flight[i, KIND] = _JAW if end == pocket.JAW else _RETURN if end == pocket.BACK else _POT
+    flight[i, INDEX] = jaw if end == pocket.JAW else here
+
+
+@kernel
+def _begin_again(motion, state, flight, i, t, r, v, w, falls, jaws, phys):
+    """Ball i has new velocities at time t, after a meeting with another ball: on the bed or on its way down."""
+    if state[i] == FALLING:
+        s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
+        z, u = flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0]), flight[i, U0] + s * (flight[i, U1] - flight[i, U0])
+        _fly(motion, state, flight, i, t, r[0], r[1], z, v[0], v[1], u, w, falls, jaws, phys)
+    else:
+        _begin(motion, state, i, t, r, v, w, phys)
 
 
 @kernel
@@ -118,7 +155,7 @@ def _rescan(pair, best_time, best_ball, i):
 
 
 @kernel
-def _predict(motion, state, i, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index):
+def _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index):
     """Ball i has a new motion at time t: predict all its events, and mend the rows of its partners."""
     n = pair.shape[0]
     still = state[i] == REST
@@ -139,7 +176,9 @@ def _predict(motion, state, i, t, noses, jaws, falls, clear, R, pair, best_time,
             _rescan(pair, best_time, best_ball, j)
     best_time[i], best_ball[i] = time, ball
     own_time[i], own_kind[i], own_index[i] = inf, 0, -1
-    if not still:
+    if state[i] == FALLING:
+        own_time[i], own_kind[i], own_index[i] = motion[i, T_END], int(flight[i, KIND]), int(flight[i, INDEX])
+    elif not still:
         s, kind, index = boundary_event(motion, state, i, noses, jaws, falls, clear, R)
         if s > motion[i, T_END] or kind == 0:
             s, index = motion[i, T_END], -1
@@ -181,7 +220,8 @@ def _record(segments, n_segments, motion, state, i):
 
 @inlined
 def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, fidelity, n_steps, max_events,
-        event_time, event_what, segments, motion, state, pair, best_time, own_time, best_ball, own_kind, own_index, work):  # fmt: skip
+        event_time, event_what, segments, motion, state, flight, pair, best_time, own_time, best_ball, own_kind, own_index,
+        work):  # fmt: skip
     """One shot to rest. In place: positions, velocities, spins become the final ones, on_table and potted are updated.
 
     event_time (m,), event_what (m, 3): the log (kind, i, j); with m = 0 nothing is logged. segments (k, COLUMNS + 2): the paths, or
@@ -205,7 +245,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
         n_segments = _record(segments, n_segments, motion, state, i)
     for i in range(n):
         if state[i] > REST:
-            _predict(motion, state, i, 0.0, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
+            _predict(motion, state, flight, i, 0.0, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
     status = _OK
     end = 0.0
     while True:
@@ -219,6 +259,10 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
                 t, kind, i, j = s, own_kind[k], k, own_index[k]
         if t == inf:
             break
+        if kind == _POT and state[i] != FALLING:
+            r, v, w = cloth.evaluate(motion, state, i, t, phys)
+            if pocket.meets_jaw(r[0], r[1], v[0], v[1], jaws, R):
+                kind = np.int64(_DROP)
         if n_events == max_events:
             status = _TOO_MANY
             break
@@ -236,8 +280,8 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
             nx, ny = r2[0] - r1[0], r2[1] - r1[1]
             d = sqrt(nx * nx + ny * ny)
             v1, w1, v2, w2, solved = _meet(v1, w1, v2, w2, nx / d, ny / d, phys, fidelity, n_steps, work)
-            _begin(motion, state, i, t, r1, v1, w1, phys)
-            _begin(motion, state, j, t, r2, v2, w2, phys)
+            _begin_again(motion, state, flight, i, t, r1, v1, w1, falls, jaws, phys)
+            _begin_again(motion, state, flight, j, t, r2, v2, w2, falls, jaws, phys)
         elif kind == _ROLL or kind == _STOP:
             cloth.next_phase(motion, state, i, phys)
             solved = True
@@ -249,24 +293,40 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
             motion[i, T0], motion[i, T_END] = t, inf
             n_segments = _record(segments, n_segments, motion, state, i)
             continue
+        elif kind == _DROP:
+            r, v, w = cloth.evaluate(motion, state, i, t, phys)
+            flight[i, IN_X], flight[i, IN_Y], flight[i, POCKET] = r[0] - falls[j, 0], r[1] - falls[j, 1], j
+            _fly(motion, state, flight, i, t, r[0], r[1], 0.0, v[0], v[1], 0.0, w, falls, jaws, phys)
+            solved = True
+        elif state[i] == FALLING:
+            r, _, w = cloth.evaluate(motion, state, i, t, phys)
+            v, u = (flight[i, END_VX], flight[i, END_VY]), flight[i, U1]
+            if kind == _JAW:
+                z = flight[i, Z1]
+                _, nx, ny, sin_phi = pocket.jaw_gap(r[0], r[1], z, jaws, j, R, phys[P_SIN], inf)
+                vx, vy, u, w = pocket.strike_jaw(v[0], v[1], u, w, nx, ny, sin_phi, phys)
+                _fly(motion, state, flight, i, t, r[0], r[1], z, vx, vy, u, w, falls, jaws, phys)
+            else:  # back on the bed, which takes its vertical velocity
+                _begin(motion, state, i, t, r, v, w, phys)
+            solved = True
         else:
             r, v, w = cloth.evaluate(motion, state, i, t, phys)
-            if kind == 1:
+            if kind == _CUSHION:
                 nx, ny = (noses[j, 1], 0.0) if noses[j, 0] == 0.0 else (0.0, noses[j, 1])
             else:
                 nx, ny = jaws[j, 0] - r[0], jaws[j, 1] - r[1]
                 d = sqrt(nx * nx + ny * ny)
                 nx, ny = nx / d, ny / d
-            v, w, solved = _rebound(v, w, nx, ny, phys, fidelity, n_steps, work)
+            v, w, solved = _rebound(v, w, nx, ny, kind == _JAW, phys, fidelity, n_steps, work)
             _begin(motion, state, i, t, r, v, w, phys)
         if not solved:
             status = _UNSOLVED
             break
         n_segments = _record(segments, n_segments, motion, state, i)
-        _predict(motion, state, i, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
+        _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
         if kind == _BALL_BALL:
             n_segments = _record(segments, n_segments, motion, state, j)
-            _predict(motion, state, j, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
+            _predict(motion, state, flight, j, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
     for i in range(n):
         if state[i] == GONE:
             positions[i, 0], positions[i, 1] = motion[i, 0], motion[i, 1]
@@ -286,7 +346,7 @@ def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws,
               event_time, event_what, segments, status, n_events, n_segments, duration, start, stop):  # fmt: skip
     """Shots ``start`` to ``stop`` of a batch; arrays as in ``run`` with a leading batch axis. Work space is made once."""
     n = positions.shape[1]
-    motion = np.zeros((n, cloth.COLUMNS))
+    motion, flight = np.zeros((n, cloth.COLUMNS)), np.zeros((n, INDEX + 1))
     pair = np.full((n, n), inf)
     best_time, own_time = np.full(n, inf), np.full(n, inf)
     state, best_ball = np.zeros(n, np.int64), np.full(n, -1)
@@ -295,5 +355,6 @@ def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws,
     for k in range(start, stop):
         status[k], n_events[k], n_segments[k], duration[k] = run(
             positions[k], velocities[k], spins[k], on_table[k], potted[k], phys, noses, jaws, falls, fidelity, n_steps, max_events,
-            event_time[k], event_what[k], segments[k], motion, state, pair, best_time, own_time, best_ball, own_kind, own_index, work,
+            event_time[k], event_what[k], segments[k], motion, state, flight, pair, best_time, own_time, best_ball, own_kind, own_index,
+            work,
         )  # fmt: skip

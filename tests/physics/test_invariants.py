@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 import snooker_env as sn
 from snooker_env import EventKind
+from tests.flights import calm
 from snooker_env.physics import detection
 from snooker_env.physics.detection import SKIN
 from tests.kernels import from_python
@@ -275,7 +276,7 @@ def test_a_shot_keeps_every_law(shot, table, physics, fidelity):
     r, v, w = end.at(times)
     joules = 0.5 * (v**2).sum((1, 2)) + 0.2 * R * R * (w**2).sum((1, 2))
     if not (fidelity == "euler:1000" and max(physics.e_b, physics.e_c) > 0.99):  # its last step may gain 1/N
-        assert (np.diff(joules) <= 1e-9 * joules[0]).all()
+        assert (np.diff(joules[calm(end, times)]) <= 1e-9 * joules[0]).all()
     for t, now in zip(times, r, strict=True):
         here = in_play(end, t)
         now = now[here]
@@ -303,7 +304,8 @@ def test_a_ball_held_by_its_spin_hops_at_the_spins_expense(angle, axis, spin, ph
     w = np.zeros((2, 3))
     w[0] = spin * np.array(axis)
     end = sn.simulate(p, np.zeros((2, 2)), w, table, physics)
-    _, v, w = end.at(np.append(0.0, end.events["time"]))
+    times = np.append(0.0, end.events["time"])
+    _, v, w = end.at(times[calm(end, times)])
     joules = 0.5 * (v**2).sum((1, 2)) + 0.2 * R * R * (w**2).sum((1, 2))
     assert (np.diff(joules) <= 1e-13 * joules[0]).all()
 

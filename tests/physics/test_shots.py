@@ -8,6 +8,7 @@ import pytest
 import snooker_env as sn
 from snooker_env import EventKind, Table
 from snooker_env.game.balls import SPOTS
+from tests.flights import calm
 from tests.oracles import tiny_steps
 
 R, M = 0.02625, 0.1406
@@ -35,8 +36,9 @@ def gaps(shot, times):
 
 
 def energies(shot):
-    """Energy per mass just after the start and every event."""
-    _, v, w = shot.at(np.concatenate([[0.0], shot.events["time"]]))
+    """Energy per mass just after the start and every event, but while a ball is in the air over a pocket."""
+    times = np.concatenate([[0.0], shot.events["time"]])
+    _, v, w = shot.at(times[calm(shot, times)])
     return 0.5 * (v**2).sum((1, 2)) + 0.2 * R * R * (w**2).sum((1, 2))
 
 
@@ -222,7 +224,8 @@ def test_a_ball_frozen_to_a_cushion(gap):
     assert into.events["kind"][0] == EventKind.CUSHION
     assert into.events["time"][0] <= 1e-9
     along = sn.simulate(p, [(0.0, -1.0)], [(1 / R, 0, 0)])
-    assert along.positions[0, 0] == pytest.approx(p[0, 0], abs=1e-9)
+    edge = along.events["time"][along.events["kind"] == EventKind.DROP]
+    assert along.at(edge)[0][0, 0, 0] == pytest.approx(p[0, 0], abs=1e-9)
     away = sn.simulate(p, [(-1.0, 0.0)], [(0, 0, 0)])
     assert away.events["kind"][0] == EventKind.ROLL
     pressed = sn.simulate(p, [(0.0, -1.0)], [(1 / R, 40.0, 0)])  # its spin drives it into the cushion as it runs along
@@ -345,5 +348,6 @@ def test_a_ball_that_glides_along_a_nose_passes_its_end_without_an_impact():
     velocities = np.stack([np.zeros(n), rng.uniform(0.8, 3, n)], 1)[:, None]
     batch = sn.simulate_batch(positions, velocities, np.zeros((n, 1, 3)), events=True)
     assert batch.events is not None
-    met = np.concatenate(batch.events)["kind"]
-    assert EventKind.POT in met and EventKind.JAW not in met
+    met = [log["kind"][~np.isin(log["kind"], (EventKind.ROLL, EventKind.STOP))] for log in batch.events]
+    assert all(len(log) == 0 or log[0] == EventKind.DROP for log in met)  # past the arc, towards the pocket's other jaw
+    assert sum(len(log) > 0 for log in met) > 100

@@ -1,0 +1,142 @@
+"""What becomes of a ball that goes over the edge of a pocket? It flies, falls, may strike a jaw or the edge, and is lost or comes back.
+
+A slow ball is lost where its centre crosses the edge. A fast one flies on: it meets the jaw beyond before it has fallen, and may bounce
+back on to the bed. Most balls have no jaw on their way and are lost at the edge at once; the others are followed here.
+
+World frame; z is the drop of the centre below the height at which it rolls [m], u its rate [m/s]. In flight no cloth acts.
+
+* Gravity: du/dt = g.
+* The slate's edge is a sharp circle, the pocket's fall. A sphere whose centre is d inside it touches it where d^2 + (R - z)^2 = R^2; the
+  normal runs from the edge to the centre. Restitution ``EDGE``, no friction: below ``SOFT`` the ball stays on the edge and tips over it.
+* A jaw's nose is an arc at the height (1 + sin_theta) R. A ball that has dropped by z touches it at the angle phi above its equator,
+  sin(phi) = sin_theta + z/R. Nothing presses the ball from below, so this is the impact of a free
+  sphere with a fixed body, in closed form: p = (1 + e_j) times the closing speed; friction min(mu_c p, 2/7 of the slip) against the slip
+  at the contact. The nose is above the centre and drives the ball down.
+* It is lost when its centre is R below (the edge then stands in its way) or leaves the fall on the side away from where it came in.
+
+A ball that tips over an edge has no closed form; so this is a walk in steps of ``STEP``, straight and exact within each but for the gravity
+and the edge, which act at its end. Oracle: a compliant ball in three dimensions (``tests/oracles/pocket_3d.py``).
+"""
+
+from math import sqrt
+
+from .._jit import kernel
+from .parameters import P_E_J, P_G, P_MU_W, P_R, P_SIN
+
+JAW, LOST, BACK = range(3)
+"""How a leg of the flight ends."""
+EDGE = 0.5
+"""Restitution of a ball on the slate's edge (a billiard ball dropped on a covered slate rises to about a quarter of its height)."""
+SOFT = 0.05
+"""Closing speed [m/s] below which it bounces neither there nor on a jaw, but stays in touch."""
+STEP = 5e-5
+"""One step of the walk [s]. Measured: an eighth of it changes the width of no window by more than 1 mm, of most by 0.3 mm."""
+_MOST_STEPS = 10_000
+"""A ball that hangs in the mouth for so long, half a second, is counted as lost: wedged in a throat narrower than a ball."""
+
+
+@kernel
+def meets_jaw(x, y, vx, vy, jaws, R):
+    """Does the straight line ahead of a centre at (x, y) pass a jaw's whole circle nearer than a ball may?"""
+    speed2 = vx * vx + vy * vy
+    for k in range(jaws.shape[0]):
+        dx, dy, reach = jaws[k, 0] - x, jaws[k, 1] - y, jaws[k, 2] + R
+        across = dx * vy - dy * vx
+        if dx * vx + dy * vy > 0.0 and across * across < reach * reach * speed2:
+            return True
+    return False
+
+
+@kernel
+def jaw_gap(x, y, z, jaws, k, R, sin_theta, wall):
+    """How far a sphere at (x, y), z low is from the nose of jaw k in the plane [m], the unit vector to it, and sin(phi); 1 if out of reach.
+
+    Beyond its ends an arc goes on straight along its tangents for ``wall`` [m]: on one side into the throat, on the other as the nose.
+    """
+    sin_phi = sin_theta + z / R
+    if not -1.0 < sin_phi < 1.0:
+        return 1.0, 0.0, 0.0, 0.0
+    dx, dy, ux, uy, c = x - jaws[k, 0], y - jaws[k, 1], jaws[k, 3], jaws[k, 4], jaws[k, 5]
+    far = sqrt(dx * dx + dy * dy)
+    ahead, aside = dx * ux + dy * uy, dy * ux - dx * uy
+    nx, ny = dx / far, dy / far
+    if ahead < c * far:
+        s = sqrt(1.0 - c * c)
+        beyond = c * abs(aside) - s * ahead
+        far = c * ahead + s * abs(aside)
+        if not (beyond < wall and far > jaws[k, 2]):
+            return 1.0, 0.0, 0.0, 0.0
+        s = s if aside > 0.0 else -s
+        nx, ny = c * ux - s * uy, c * uy + s * ux
+    # the nose is where a ball on the bed is R from the table's arc; one that has dropped is held as far off, so that it comes back free
+    nose = jaws[k, 2] + R * (1.0 - sqrt(1.0 - sin_theta * sin_theta))
+    high = min(abs(sin_phi), sin_theta)
+    return far - nose - R * sqrt(1.0 - high * high), -nx, -ny, sin_phi
+
+
+@kernel
+def strike_jaw(vx, vy, u, w, nx, ny, sin_phi, phys):
+    """Impact of a free ball with a nose; (nx, ny) points to it in the plane -> vx, vy, u, w."""
+    cos_phi, R = sqrt(1.0 - sin_phi * sin_phi), phys[P_R]
+    x, y, z = nx * cos_phi, ny * cos_phi, sin_phi  # from the centre to the contact, z up
+    closing = vx * x + vy * y - u * z
+    sx = vx + R * (w[1] * z - w[2] * y) - closing * x
+    sy = vy + R * (w[2] * x - w[0] * z) - closing * y
+    sz = -u + R * (w[0] * y - w[1] * x) - closing * z
+    slip = sqrt(sx * sx + sy * sy + sz * sz)
+    p = (1.0 + phys[P_E_J]) * closing
+    f = min(phys[P_MU_W] * p, slip / 3.5) / slip if slip > 0.0 else 0.0
+    fx, fy, fz = -f * sx, -f * sy, -f * sz
+    q = 2.5 / R
+    return (
+        vx - p * x + fx, vy - p * y + fy, u + p * z - fz,
+        (w[0] + q * (y * fz - z * fy), w[1] + q * (z * fx - x * fz), w[2] + q * (x * fy - y * fx)),
+    )  # fmt: skip
+
+
+@kernel
+def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
+    """One leg of a flight over the fall of ``pocket``, until something happens to the ball.
+
+    (in_x, in_y): where it came in, seen from the pocket's centre. Returns how the leg ends (``JAW``, ``LOST``, ``BACK``), the jaw, the time
+    it takes [s], and x, y, z, vx, vy, u then (before the impact with the jaw; on the bed for ``BACK``).
+    """
+    R, sin_theta, drop = phys[P_R], phys[P_SIN], phys[P_G] * STEP
+    for n in range(1, _MOST_STEPS + 1):
+        x, y, z = x + vx * STEP, y + vy * STEP, z + (u + 0.5 * drop) * STEP
+        u += drop
+        if z >= R:
+            return LOST, -1, n * STEP, x, y, z, vx, vy, u
+        dx, dy = x - falls[pocket, 0], y - falls[pocket, 1]
+        far = sqrt(dx * dx + dy * dy)
+        depth, high = falls[pocket, 2] - far, R - z
+        reach2 = depth * depth + high * high
+        if depth > 0.0 and reach2 < R * R:  # in touch with the edge
+            reach = sqrt(reach2)
+            ex, ey, ez = -dx / far * depth / reach, -dy / far * depth / reach, high / reach
+            closing = u * ez - vx * ex - vy * ey
+            if closing > 0.0:
+                p = closing * (1.0 + EDGE if closing > SOFT else 1.0)
+                vx, vy, u = vx + p * ex, vy + p * ey, u - p * ez
+        jaw, deepest, hard, touches = -1, 0.0, 0.0, False
+        px, py, pz = 0.0, 0.0, 0.0
+        for k in range(jaws.shape[0]):
+            gap, nx, ny, sin_phi = jaw_gap(x, y, z, jaws, k, R, sin_theta, 2.0 * falls[pocket, 2])
+            touches = touches or gap < 0.0
+            if gap < deepest:
+                cos_phi = sqrt(1.0 - sin_phi * sin_phi)
+                closing = (vx * nx + vy * ny) * cos_phi - u * sin_phi
+                if closing > 0.0:
+                    jaw, deepest, hard = k, gap, closing
+                    px, py, pz = nx * cos_phi, ny * cos_phi, sin_phi
+        if hard > SOFT:
+            back = min(0.9 * STEP, -deepest * sqrt(1.0 - pz * pz) / hard)  # they met so long ago
+            return JAW, jaw, n * STEP - back, x - vx * back, y - vy * back, z - u * back, vx, vy, u
+        vx, vy, u = vx - hard * px, vy - hard * py, u + hard * pz  # it stays on the jaw
+        if depth < 0.0 and dx * vx + dy * vy > 0.0 and not touches:
+            speed2, climb2 = vx * vx + vy * vy, 2.0 * phys[P_G] * max(z, 0.0)
+            if dx * in_x + dy * in_y > 0.0 and speed2 > climb2:
+                slower = sqrt(1.0 - climb2 / speed2)
+                return BACK, -1, n * STEP, x, y, 0.0, vx * slower, vy * slower, 0.0
+            return LOST, -1, n * STEP, x, y, z, vx, vy, u
+    return LOST, -1, _MOST_STEPS * STEP, x, y, z, vx, vy, u

@@ -1,0 +1,157 @@
+"""Does a faster ball always come off a cushion faster? The law e(v) and the whole impact, and the fit behind ``"match"``."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import snooker_env as sn
+from benchmarks import fit_cushion
+from benchmarks._cushion_lengths import RAMP, lengths, past_pink, path
+from snooker_env.physics import contact
+from tests.kernels import from_python
+from tests.physics.cases import R
+
+cushion_restitution = from_python(contact.cushion_restitution)
+FASTEST = 1000.0
+MOST_POWER = 0.8
+some = settings(max_examples=200, deadline=None, derandomize=True, database=None)
+SPEEDS = np.geomspace(1e-3, FASTEST, 50)
+STRAIGHT, SLANTED = (0.0, 1.0, 0.0), (np.sqrt(0.5), np.sqrt(0.5), 0.0)
+
+laws = st.builds(
+    lambda e_c, knee, power: {"e_c": e_c, "e_c_knee": knee, "e_c_power": power},
+    st.floats(0.05, 1.0), st.floats(-3.0, 3.0).map(lambda x: 10.0**x), st.one_of(st.floats(0.0, MOST_POWER), st.just(MOST_POWER)),
+)  # fmt: skip
+cushions = st.builds(
+    lambda mu_c, mu_s, sin_theta: {"mu_c": mu_c, "mu_s": mu_s, "sin_theta": sin_theta},
+    st.floats(0.0, 0.5), st.floats(0.0, 0.5), st.floats(0.0, 0.5),
+)  # fmt: skip
+
+
+def restitution(physics, speeds):
+    packed = physics.pack()
+    return np.array([cushion_restitution(float(v), packed) for v in speeds])
+
+
+def rebound(physics, speed, direction, rolling, fidelity="reference"):
+    """Normal speed off a cushion along x of a ball that moves along ``direction``."""
+    v = speed * np.array(direction)
+    w = np.array((-v[1], v[0], 0.0)) / R if rolling else np.zeros(3)
+    return -sn.collide_cushion(v, w, (0, 1, 0), physics, fidelity)[0][1]
+
+
+# the law -------------------------------------------------------------------------------------------------------------------------
+
+
+@some
+@given(laws)
+def test_speed_times_restitution_rises_in_every_world(law):
+    physics = sn.Physics(**law)
+    speeds = np.unique(np.concatenate((SPEEDS, law["e_c_knee"] * np.array((1 - 1e-6, 1.0, 1 + 1e-6)))))
+    e = restitution(physics, speeds)
+    assert ((e > 0.0) & (e <= law["e_c"])).all()
+    assert (np.diff(speeds * e) > 0.0).all()
+
+
+def test_the_law_is_what_the_text_says():
+    physics = sn.Physics(e_c=0.9, e_c_knee=2.0, e_c_power=0.5)
+    assert restitution(physics, (1e-9, 1.0, 2.0)).tolist() == [0.9] * 3
+    assert restitution(physics, (8.0, 200.0)) == pytest.approx((0.45, 0.09), rel=1e-15)
+
+
+@some
+@given(laws)
+def test_the_law_is_continuous_at_the_knee(law):
+    knee = law["e_c_knee"]
+    below, above = restitution(sn.Physics(**law), (knee * (1 - 1e-12), knee * (1 + 1e-12)))
+    assert below == law["e_c"] and above == pytest.approx(below, rel=2e-12)
+
+
+def test_an_impact_uses_the_law_at_its_normal_speed():
+    """Without friction a cushion returns e of the normal speed, and the speed along it stays."""
+    physics = sn.Physics(mu_c=0, mu_s=0, e_c=0.9, e_c_knee=2.0, e_c_power=0.5)
+    v, _ = sn.collide_cushion((3.0, 8.0, 0), (0, 0, 0), (0, 1, 0), physics, "reference")
+    assert v[:2] == pytest.approx((3.0, -0.45 * 8.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("fidelity", ["fast", "standard", "reference"])
+def test_a_power_of_0_is_a_constant_to_the_last_bit(fidelity):
+    rng = np.random.default_rng(2)
+    for _ in range(50):
+        v, w = np.array((*rng.uniform(0, 20, 2), 0.0)), rng.normal(size=3) * 80
+        one, two = (sn.collide_cushion(v, w, (0, 1, 0), {"e_c_knee": knee}, fidelity) for knee in (0.0, 2.0))
+        assert np.array_equal(one, two)
+
+
+# the whole impact ----------------------------------------------------------------------------------------------------------------
+
+
+@some
+@given(laws, cushions, st.sampled_from((STRAIGHT, SLANTED)), st.booleans())
+def test_the_rebound_rises_with_speed(law, cushion, direction, rolling):
+    physics = sn.Physics(**law, **cushion)
+    speeds = [v for v in SPEEDS if v < 1e4 * law["e_c_knee"]]  # beyond, e may be under what the solver resolves
+    out = np.array([rebound(physics, v, direction, rolling) for v in speeds])
+    assert (np.diff(out) > 0.0).all()
+
+
+@pytest.mark.parametrize("fidelity", ["fast", "standard", "reference", "euler:400"])
+@pytest.mark.parametrize("rolling", [True, False])
+@pytest.mark.parametrize("direction", [STRAIGHT, SLANTED])
+def test_the_rebound_of_match_rises_with_speed(direction, rolling, fidelity):
+    out = np.array([rebound("match", v, direction, rolling, fidelity) for v in SPEEDS])
+    assert (np.diff(out) > 0.0).all()
+
+
+def test_the_rebound_goes_as_no_higher_power_of_e_than_the_bound_of_the_power_allows():
+    """d log(rebound) / d log(e) <= 1 / 0.8: what ``e_c_power`` <= 0.8 rests on. The largest are near (0.5, 0.45, 0.5), e about 0.1."""
+    rng, largest = np.random.default_rng(8), 0.0
+    for k in range(4000):
+        least = 0.4 if k % 2 else 0.0
+        mu_c, mu_s, sin_theta = rng.uniform(least, 0.5, 3)
+        e, step = 10.0 ** rng.uniform(-2.0, -0.01), 1.003
+        worlds = [sn.Physics(mu_c=mu_c, mu_s=mu_s, sin_theta=sin_theta, e_c=x) for x in (e, e * step)]
+        one, two = (rebound(physics, 1.0, SLANTED if k % 4 else STRAIGHT, k % 3 > 0) for physics in worlds)
+        largest = max(largest, np.log(two / one) / np.log(step))
+    assert 1.05 < largest < 1.0 / MOST_POWER
+
+
+# the preset ----------------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def data():
+    return np.loadtxt(fit_cushion.DATA, delimiter=",", skiprows=2).T
+
+
+def test_match_is_the_fit_to_the_data(data):
+    speed, measured = data
+    preset, ratios = sn.Physics.preset("match"), fit_cushion.Ratios.measured()
+
+    def residuals(law, *x):
+        return speed * np.interp(law(speed, *x), fit_cushion.SHARES, ratios.rolling) - measured
+
+    knee, power = fit_cushion.fitted(fit_cushion.power_law, residuals, free=False)
+    assert (preset.e_c, preset.e_c_knee, preset.e_c_power) == (
+        fit_cushion.E_C,
+        pytest.approx(knee, abs=0.01),
+        pytest.approx(power, abs=0.01),
+    )
+    shipped = np.array([rebound(preset, s, STRAIGHT, True) for s in speed]) - measured
+    assert np.sum(shipped**2) < 1.01 * np.sum(residuals(fit_cushion.power_law, knee, power) ** 2)
+    found = fit_cushion.interval(residuals, len(speed), draws=400)
+    assert found.power == (pytest.approx(0.21, abs=0.01), pytest.approx(0.46, abs=0.01))  # as the docstring of ``preset`` says
+    assert np.abs(found.e.T - ((0.70, 0.80), (0.60, 0.75), (0.51, 0.69))).max() < 0.006
+    assert found.power_bootstrap[0] < found.power[1] and found.power_bootstrap[1] < MOST_POWER
+
+
+def test_a_harder_stroke_travels_further():
+    found = [lengths(v, sn.Physics.preset("match")) for v in (2.0, 4.0, 6.0, 8.0, 10.0, 15.0)]
+    assert (np.diff(found) > 0.1).all()
+    slides, rolls = 12 / 49 / (0.21 * 9.81), 25 / 49 / (2 * 0.0127 * 9.81)  # at 1 m/s it reaches no cushion
+    assert lengths(1.0, sn.Physics()) == pytest.approx((slides + rolls) / 3.569, rel=1e-9)
+    world = dataclasses.replace(sn.Physics(), mu_r=1e-3)
+    assert past_pink(world, 0.05) > past_pink(sn.Physics(), 0.05) and path(RAMP, world, rolling=True).max() < 3.569 / 2 - R + 1e-6
