@@ -31,7 +31,7 @@ def test_noise_has_the_deviations_that_it_says():
 
 @pytest.mark.parametrize("name", LEVELS)
 def test_each_level_is_as_wide_as_written(name):
-    wide = {"none": 0, "professional": 0.025, "amateur": 0.035, "club": 0.08, "robot": 0.033, "olympiad": 0.125}[name]
+    wide = {"none": 0, "professional": 0.025, "amateur": 0.034, "club": 0.08, "robot": 0.033, "olympiad": 0.125}[name]
     rng = np.random.default_rng(1)
     draws = np.array([LEVELS[name].draw(rng, 3.0, 0, 0, 1.0, 0.2, R) for _ in range(4000)])
     assert np.degrees(draws[:, 3].std()) == pytest.approx(wide, rel=0.05, abs=1e-12)

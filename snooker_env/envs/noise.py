@@ -4,11 +4,11 @@ What decides a pot is the total error of the cue ball's direction (``Noise.direc
 the side. No measurement of a snooker player's errors in these units was found. So the levels are set by what players achieve, on these
 pockets; ``python -m benchmarks.hand`` prints their pot rates beside the published figures, ``--fit`` the errors that meet them.
 
-* "professional": PRO deg in all. Professionals pot 50 to 65 % of long pots (match statistics), and so does this level; a player who always
+* "professional": 0.035 deg in all. Professionals pot 50 to 65 % of long pots (match statistics), and so does this level; a player who always
   takes the likeliest pot then scores, in play, about as often as professionals pot what they choose, 88 to 95 %.
-* "amateur", "club": AM and CLUB deg. Published aim errors (0.05 deg good amateur, 0.08 to 0.12 club) were derived as total errors for
+* "amateur", "club": 0.048 and 0.114 deg in all. Published aim errors (0.05 deg good amateur, 0.08 to 0.12 club) were derived as total errors for
   pockets with an effective half window of 22 mm; these errors give the same mean pot rate on these pockets.
-* "robot": 90 % of pots of moderate difficulty, the cue ball 0.15 m from where it would stop without errors. The robot of Mathavan, Jackson
+* "robot": 0.046 deg in all, 90 % of pots of moderate difficulty, the cue ball 0.15 m from where it would stop without errors. The robot of Mathavan, Jackson
   & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and left the cue ball 100 to 200 mm from where it was wanted. No more is in
   its abstract. The pots ("moderate" in benchmarks.hand) are our choice, and so is to put its whole error of position into the speed,
   which so stands for what its plan did not know, too.
@@ -133,7 +133,7 @@ class Noise:
 LEVELS = {
     "none": Noise(),
     "professional": Noise(aim_deg=0.025, speed_rel=0.0175, offset_mm=0.15, elevation_deg=0.1),
-    "amateur": Noise(aim_deg=0.035, speed_rel=0.025, offset_mm=0.22, elevation_deg=0.2),
+    "amateur": Noise(aim_deg=0.034, speed_rel=0.025, offset_mm=0.21, elevation_deg=0.2),
     "club": Noise(aim_deg=0.08, speed_rel=0.04, offset_mm=0.5, elevation_deg=0.3),
     "robot": Noise(aim_deg=0.033, speed_rel=0.08, offset_mm=0.2, elevation_deg=0.1),
     "olympiad": Noise(aim_deg=0.125, speed_abs=0.075, offset_mm=0.5, elevation_deg=0.1),
