@@ -234,8 +234,8 @@ def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
 
     places = {
         "R": [p.P_R], "M": [p.P_M], "g": [p.P_G], "mu_s": [p.P_MU_S], "mu_r": [p.P_MU_R], "spin_decel": [p.P_SPIN], "e_b": [p.P_E_B],
-        "e_c": [p.P_E_C], "e_j": [p.P_E_J], "e_c_knee": [p.P_E_KNEE], "e_c_power": [p.P_E_POWER], "mu_c": [p.P_MU_W], "sin_theta": [p.P_SIN],
-        "end_mass_ratio": [], "max_offset": [],
+        "e_c": [p.P_E_C], "e_c_knee": [p.P_E_KNEE], "e_c_power": [p.P_E_POWER], "e_j": [p.P_E_J], "mu_c": [p.P_MU_W],
+        "sin_theta": [p.P_SIN], "end_mass_ratio": [], "max_offset": [],
     }  # fmt: skip
     base = Physics(e_c_knee=1.0, e_j=0.9)  # where the power may be changed, and a jaw has a restitution of its own
     for field in dataclasses.fields(Physics):

@@ -6,7 +6,8 @@ arrive at the ghost G = b - 2 R d. With theta the cut angle (between d and the c
     tolerance = w(a) / (2 |b pocket|)  *  2 R cos(theta) / |C G|      [rad]
 
 that is: the pocket's half window as an angle of the object ball's path, divided by how much an error of aim is magnified at the impact.
-w(a) is the width of the lateral window that the pocket offers at the angle a off its axis (measured by simulation, jaws included).
+w(a) is the width of the lateral window that the pocket offers at the angle a off its axis, to a ball that rolls at 1.5 m/s on table
+"match", jaws included (``python -m benchmarks.pockets``; a firm ball has less, a dying one more).
 """
 
 from math import acos, hypot, sqrt
@@ -25,8 +26,8 @@ POCKETS = np.array([
 """(6, 5): aim point x, y (where the fall meets the pocket's axis), outward axis, 1 for a middle pocket. Index = pocket."""
 POCKETS.setflags(write=False)
 
-_CORNER_ANGLE, _CORNER_WINDOW = (0.0, 20.0, 40.0, 50.0), (0.057, 0.047, 0.019, 0.0)  # degrees, metres
-_MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 45.0, 60.0, 75.0), (0.086, 0.051, 0.028, 0.003)
+_CORNER_ANGLE, _CORNER_WINDOW = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0)  # degrees, metres
+_MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0), (0.073, 0.071, 0.063, 0.043, 0.018, 0.0)
 
 POT_COLUMNS = 6
 """Columns of a pot: object ball, pocket, ghost x, ghost y, cosine of the cut angle, tolerance [rad]."""
@@ -37,7 +38,7 @@ def window(cos_angle, middle):
     """Width w [m] of the pocket's window at an angle off its axis, by linear interpolation; 0 past the table's end."""
     angle = acos(min(1.0, max(-1.0, cos_angle))) * 57.29577951308232
     angles, widths = (_MIDDLE_ANGLE, _MIDDLE_WINDOW) if middle else (_CORNER_ANGLE, _CORNER_WINDOW)
-    for k in range(3):
+    for k in range(len(angles) - 1):
         if angle <= angles[k + 1]:
             s = (angle - angles[k]) / (angles[k + 1] - angles[k])
             return widths[k] + s * (widths[k + 1] - widths[k])

@@ -122,6 +122,7 @@ def _fly(motion, state, flight, i, t, x, y, z, vx, vy, u, w, falls, jaws, phys):
     here = int(flight[i, POCKET])
     end, jaw, T, x1, y1, z1, vx1, vy1, u1 = pocket.fly(x, y, z, vx, vy, u, flight[i, IN_X], flight[i, IN_Y], falls, here, jaws, phys)
     state[i] = FALLING
+    T = max(T, pocket.SHORTEST)
     motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY] = x, y, (x1 - x) / T, (y1 - y) / T
     motion[i, AX] = motion[i, AY] = 0.0
     motion[i, WX], motion[i, WY], motion[i, WZ] = w
@@ -261,7 +262,7 @@ def run(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls
             break
         if kind == _POT and state[i] != FALLING:
             r, v, w = cloth.evaluate(motion, state, i, t, phys)
-            if pocket.meets_jaw(r[0], r[1], v[0], v[1], jaws, R):
+            if pocket.ahead(r[0], r[1], v[0], v[1], falls, j, jaws, phys)[0] < inf:
                 kind = np.int64(_DROP)
         if n_events == max_events:
             status = _TOO_MANY

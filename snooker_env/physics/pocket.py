@@ -12,13 +12,14 @@ World frame; z is the drop of the centre below the height at which it rolls [m],
   sin(phi) = sin_theta + z/R. Nothing presses the ball from below, so this is the impact of a free
   sphere with a fixed body, in closed form: p = (1 + e_j) times the closing speed; friction min(mu_c p, 2/7 of the slip) against the slip
   at the contact. The nose is above the centre and drives the ball down.
-* It is lost when its centre is R below (the edge then stands in its way) or leaves the fall on the side away from where it came in.
+* It is lost when it is below the noses, at z = (1 - sin_theta) R, where the edge, too, sends it inwards, or when it leaves the fall on the
+  side away from where it came in.
 
-A ball that tips over an edge has no closed form; so this is a walk in steps of ``STEP``, straight and exact within each but for the gravity
-and the edge, which act at its end. Oracle: a compliant ball in three dimensions (``tests/oracles/pocket_3d.py``).
+A ball that clears the edge flies to the first jaw in closed form. One that touches the edge has none: it is followed in steps of ``STEP``,
+each a parabola, with the impacts on the edge at its end. Oracle: a compliant ball in three dimensions (``tests/oracles/pocket_3d.py``).
 """
 
-from math import sqrt
+from math import inf, sqrt
 
 from .._jit import kernel
 from .parameters import P_E_J, P_G, P_MU_W, P_R, P_SIN
@@ -27,24 +28,51 @@ JAW, LOST, BACK = range(3)
 """How a leg of the flight ends."""
 EDGE = 0.5
 """Restitution of a ball on the slate's edge (a billiard ball dropped on a covered slate rises to about a quarter of its height)."""
+SLOW = 0.4
+"""A ball slower than this [m/s] is counted as lost at the edge: it tips in before it could come back."""
 SOFT = 0.05
 """Closing speed [m/s] below which it bounces neither there nor on a jaw, but stays in touch."""
-STEP = 5e-5
-"""One step of the walk [s]. Measured: an eighth of it changes the width of no window by more than 1 mm, of most by 0.3 mm."""
+STEP = 1e-4
+"""One step of the walk [s]. Measured: half of it changes no window by more than 0.7 mm of its width."""
+SHORTEST = 1e-9
+"""No leg is shorter [s]: a jaw may be met right at the edge."""
 _MOST_STEPS = 10_000
 """A ball that hangs in the mouth for so long, half a second, is counted as lost: wedged in a throat narrower than a ball."""
 
 
 @kernel
-def meets_jaw(x, y, vx, vy, jaws, R):
-    """Does the straight line ahead of a centre at (x, y) pass a jaw's whole circle nearer than a ball may?"""
+def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
+    """A ball crosses the edge at (x, y): when does it fly into a jaw [s], and which? inf: never. -1: it may, but the edge touches it
+    before.
+
+    The sphere clears the edge all the way if it does so at the end: over a circle the depth's growth only slows, as a falling sphere
+    needs it to grow evenly (at sqrt(g R)).
+    """
+    R, g = phys[P_R], phys[P_G]
     speed2 = vx * vx + vy * vy
+    best, jaw = inf, -1
+    if speed2 < SLOW * SLOW:
+        return best, jaw
     for k in range(jaws.shape[0]):
-        dx, dy, reach = jaws[k, 0] - x, jaws[k, 1] - y, jaws[k, 2] + R
-        across = dx * vy - dy * vx
-        if dx * vx + dy * vy > 0.0 and across * across < reach * reach * speed2:
-            return True
-    return False
+        px, py, reach = jaws[k, 0] - x, jaws[k, 1] - y, jaws[k, 2] + R
+        towards, beside = px * vx + py * vy, px * vy - py * vx
+        chord2 = reach * reach * speed2 - beside * beside
+        if towards <= 0.0 or chord2 <= 0.0:
+            continue
+        t = max(0.0, (towards - sqrt(chord2)) / speed2)
+        if t < best:
+            qx, qy = vx * t - px, vy * t - py
+            if qx * jaws[k, 3] + qy * jaws[k, 4] >= jaws[k, 5] * sqrt(qx * qx + qy * qy):
+                best, jaw = t, k
+    if best == inf:
+        return best, jaw
+    below = sqrt(2.0 * (1.0 - phys[P_SIN]) * R / g)  # a free fall until it is below the noses
+    t = min(best, below)
+    dx, dy = x + vx * t - falls[pocket, 0], y + vy * t - falls[pocket, 1]
+    depth, high = falls[pocket, 2] - sqrt(dx * dx + dy * dy), R - 0.5 * g * t * t
+    if depth < 0.0 or depth * depth + high * high < R * R:
+        return -1.0, jaw
+    return (best, jaw) if best < below else (inf, -1)
 
 
 @kernel
@@ -57,7 +85,10 @@ def jaw_gap(x, y, z, jaws, k, R, sin_theta, wall):
     if not -1.0 < sin_phi < 1.0:
         return 1.0, 0.0, 0.0, 0.0
     dx, dy, ux, uy, c = x - jaws[k, 0], y - jaws[k, 1], jaws[k, 3], jaws[k, 4], jaws[k, 5]
-    far = sqrt(dx * dx + dy * dy)
+    far, near = dx * dx + dy * dy, jaws[k, 2] + R + wall
+    if far > near * near:
+        return 1.0, 0.0, 0.0, 0.0
+    far = sqrt(far)
     ahead, aside = dx * ux + dy * uy, dy * ux - dx * uy
     nx, ny = dx / far, dy / far
     if ahead < c * far:
@@ -102,10 +133,15 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
     it takes [s], and x, y, z, vx, vy, u then (before the impact with the jaw; on the bed for ``BACK``).
     """
     R, sin_theta, drop = phys[P_R], phys[P_SIN], phys[P_G] * STEP
+    wall = 2.0 * falls[pocket, 2]
+    if z == 0.0 and u == 0.0:  # just over the edge: if it clears it, on to the first jaw
+        t, jaw = ahead(x, y, vx, vy, falls, pocket, jaws, phys)
+        if 0.0 <= t < inf:
+            return JAW, jaw, t, x + vx * t, y + vy * t, 0.5 * phys[P_G] * t * t, vx, vy, phys[P_G] * t
     for n in range(1, _MOST_STEPS + 1):
         x, y, z = x + vx * STEP, y + vy * STEP, z + (u + 0.5 * drop) * STEP
         u += drop
-        if z >= R:
+        if z >= (1.0 - sin_theta) * R:
             return LOST, -1, n * STEP, x, y, z, vx, vy, u
         dx, dy = x - falls[pocket, 0], y - falls[pocket, 1]
         far = sqrt(dx * dx + dy * dy)
@@ -121,7 +157,7 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
         jaw, deepest, hard, touches = -1, 0.0, 0.0, False
         px, py, pz = 0.0, 0.0, 0.0
         for k in range(jaws.shape[0]):
-            gap, nx, ny, sin_phi = jaw_gap(x, y, z, jaws, k, R, sin_theta, 2.0 * falls[pocket, 2])
+            gap, nx, ny, sin_phi = jaw_gap(x, y, z, jaws, k, R, sin_theta, wall)
             touches = touches or gap < 0.0
             if gap < deepest:
                 cos_phi = sqrt(1.0 - sin_phi * sin_phi)

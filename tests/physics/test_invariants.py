@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 import snooker_env as sn
 from snooker_env import EventKind
-from tests.flights import calm
 from snooker_env.physics import detection
 from snooker_env.physics.detection import SKIN
+from tests.flights import calm
 from tests.kernels import from_python
 
 R, g = 0.02625, 9.81

@@ -349,5 +349,5 @@ def test_a_ball_that_glides_along_a_nose_passes_its_end_without_an_impact():
     batch = sn.simulate_batch(positions, velocities, np.zeros((n, 1, 3)), events=True)
     assert batch.events is not None
     met = [log["kind"][~np.isin(log["kind"], (EventKind.ROLL, EventKind.STOP))] for log in batch.events]
-    assert all(len(log) == 0 or log[0] == EventKind.DROP for log in met)  # past the arc, towards the pocket's other jaw
-    assert sum(len(log) > 0 for log in met) > 100
+    first = [log[0] for log in met if len(log)]
+    assert set(first) == {EventKind.POT, EventKind.DROP}  # a fast one drops towards the pocket's other jaw
