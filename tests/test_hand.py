@@ -9,6 +9,7 @@ import snooker_env as sn
 from benchmarks import _hand_play, _hand_published, _hand_shots
 from snooker_env.envs.noise import LEVELS, Noise
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.game.pots import POCKETS
 
 WORLD, TABLE = sn.Physics(), "match"
 
@@ -20,7 +21,7 @@ def shots_of(pots):
 def test_pots_lie_as_they_are_described():
     for pot in _hand_shots.POTS:
         cue, ball = pot.positions
-        aim = _hand_shots.POCKETS[pot.pocket, :2]
+        aim = POCKETS[pot.pocket, :2]
         assert math.dist(cue, ball) == pytest.approx(pot.far) and math.dist(ball, aim) == pytest.approx(pot.run)
         way = (aim - ball) / pot.run
         line = ball - 2 * _hand_shots.R * way - cue
