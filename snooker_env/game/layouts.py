@@ -116,8 +116,8 @@ def _hide(positions, on_table, reds, stream):
 
 
 POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e-3)}
-"""How far the aim of the layout's widest pot may err to either side [rad], by ``game.pots``. Played at 2.3 m/s
-along the solved line, a professional makes 94, 89 and 59 % of them, a club player 91, 62 and 23 % (``python -m benchmarks.hand``)."""
+"""How far the aim of the layout's widest pot may err to either side [rad], by ``game.pots``. Along its solved line at 2.3 m/s a
+professional makes 94, 90 and 61 % of them, a club player 92, 63 and 24 % (``python -m benchmarks.hand --strokes 2000``)."""
 
 
 @kernel
