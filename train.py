@@ -68,7 +68,7 @@ class Settings:
     parallel: str = option("auto", "threads for the tables: auto is one a processor; the same shots come out", choices=("auto", "one"))
     seed: int = option(0, "of tables, weights and exploration")
     layout: str = option("", "where training visits start [the recipe's]")
-    noise: str = option("", "execution noise: none, professional, amateur, club or olympiad [the recipe's]")
+    noise: str = option("", "execution noise: none, professional, amateur, club, robot or olympiad [the recipe's]")
     fidelity: str = option("", "of the simulation: fast, standard, reference or euler:N [the recipe's]")
     physics: str = option("", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]")
     imitate: int = option(-1, "positions on which it is first taught by the search; -1: as many as the recipe says")

@@ -2,14 +2,13 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from math import erf, exp, pi, sqrt
+from math import erf, exp, pi, radians, sqrt
 
 import numpy as np
 
 from snooker_env._jit import entry
 from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
 from snooker_env.envs.choices import POTS, SIZE, chosen, masks
-from snooker_env.envs.noise import N_AIM, N_TIP
 from snooker_env.envs.observations import SIZE as SIZE_SEEN
 from snooker_env.envs.shooting import Shooter
 from snooker_env.envs.visit import BALL_ON, OVER, Returned, Visits, Work
@@ -71,15 +70,9 @@ def _prospects(positions, on_table, game, spread, constants, values, chances):
         values[k] = a + second * b + third * c
 
 
-@entry
-def _squirt(side, end_mass_ratio):
-    return squirt(side, end_mass_ratio)
-
-
 def spread_of(noise, physics):
-    """Standard deviation [rad] of the cue ball's direction under a ``Noise``: the aim's, and the squirt of a tip that is off by its own."""
-    errors = noise.pack(BALL_RADIUS)
-    return max(1e-5, sqrt(errors[N_AIM] ** 2 + _squirt(errors[N_TIP], physics.end_mass_ratio) ** 2))
+    """Standard deviation [rad] of the cue ball's direction under a ``Noise``, tip errors included; at least 1e-5."""
+    return max(1e-5, radians(noise.direction_deg(physics)))
 
 
 def prospects_of(at, spread, constants=BY_HAND, most=POTS):

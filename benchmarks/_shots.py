@@ -35,11 +35,12 @@ class Shots:
     """(n,) the ball to be potted or hit."""
     world: sn.Physics
 
-    def struck(self, seed=None, aim=0.0):
-        """Velocities (n, b, 2) and spins (n, b, 3) just after the strokes, each turned by ``aim`` [rad]; a professional's if seeded."""
+    def struck(self, seed=None, aim=0.0, hand: str | Noise = "professional"):
+        """Velocities (n, b, 2) and spins (n, b, 3) just after the strokes, each turned by ``aim`` [rad]; with the errors of ``hand``, any
+        ``noise``, if seeded."""
         n, b = self.positions.shape[:2]
         v, w = np.zeros((n, b, 2)), np.zeros((n, b, 3))
-        noise, rng = Noise.of("none" if seed is None else "professional"), np.random.default_rng(seed)
+        noise, rng = Noise.of("none" if seed is None else hand), np.random.default_rng(seed)
         for k, (speed, line, side, top) in enumerate(self.stroke):
             speed, side, top, line, elevation = noise.draw(rng, speed, side, top, line, 0.0, R)
             v3, w[k, 0] = sn.strike(speed, line + aim, side, top, elevation, self.world)

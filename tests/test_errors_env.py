@@ -24,7 +24,7 @@ ENV = [
             ("layout", "must be one of 'opened', 'held_out', 'break_off', 'line_up', 'colours', 'snookered', "
              '"pots:easy", "pots:medium", "pots:hard" or "random:N" with N from 0 to 15',
              ("Opened", "Default", "pots", "pots:", "pots:Easy", "random", "random:", "random:-1", "random:3.0", "random: 3", "random:x")),
-            ("noise", "must be one of 'none', 'professional', 'amateur', 'club', 'olympiad' or a dict of ['aim_deg'", ("pro",)),
+            ("noise", "must be one of 'none', 'professional', 'amateur', 'club', 'robot', 'olympiad' or a dict of ['aim_deg'", ("pro",)),
         ]
         for wrong in (*NOT_A_NAME, *wrongs)
     ],

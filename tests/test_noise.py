@@ -9,6 +9,8 @@ from snooker_env.envs.noise import LEVELS, Noise
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BALL_RADIUS as R
 from snooker_env.game.balls import CUE, BallOn
+from snooker_env.physics.cue import strike
+from snooker_env.physics.parameters import Physics
 from tests.tables import after_strike, speed_of, table_state
 
 
@@ -29,12 +31,39 @@ def test_noise_has_the_deviations_that_it_says():
 
 @pytest.mark.parametrize("name", LEVELS)
 def test_each_level_is_as_wide_as_written(name):
-    wide = {"none": 0, "professional": 0.025, "amateur": 0.05, "club": 0.1, "olympiad": 0.125}[name]
+    wide = {"none": 0, "professional": 0.025, "amateur": 0.034, "club": 0.08, "robot": 0.033, "olympiad": 0.125}[name]
     rng = np.random.default_rng(1)
     draws = np.array([LEVELS[name].draw(rng, 3.0, 0, 0, 1.0, 0.2, R) for _ in range(4000)])
     assert np.degrees(draws[:, 3].std()) == pytest.approx(wide, rel=0.05, abs=1e-12)
-    fast = {"none": 0, "professional": 0.0525, "amateur": 0.075, "club": 0.12, "olympiad": 0.075}[name]
+    fast = {"none": 0, "professional": 0.0525, "amateur": 0.075, "club": 0.12, "robot": 0.24, "olympiad": 0.075}[name]
     assert draws[:, 0].std() == pytest.approx(fast, rel=0.05)
+
+
+@pytest.mark.parametrize(("name", "physics"), [*((name, "paper") for name in LEVELS), ("club", {"end_mass_ratio": 15.0})])
+def test_the_total_direction_error_is_that_of_the_balls_struck(name, physics):
+    """Aim and squirt together, as the balls leave; 4000 of them tell a standard deviation to 1.1 %."""
+    world, rng = Physics.of(physics), np.random.default_rng(2)
+    ways = []
+    for _ in range(4000):
+        speed, side, top, aim, elevation = LEVELS[name].draw(rng, 2.0, 0.0, 0.0, 0.0, 0.0, R)
+        v, _ = strike(speed, aim, side, top, elevation, world)
+        ways.append(math.degrees(math.atan2(v[1], v[0])))
+    assert np.std(ways) == pytest.approx(LEVELS[name].direction_deg(physics), rel=0.045, abs=1e-12)
+
+
+def test_the_total_direction_error_in_figures():
+    """TP A.31 for a small offset b: (5/2) b / (1 + m_r + 5/2)."""
+    assert Noise(aim_deg=0.3).direction_deg() == pytest.approx(0.3)
+    assert Noise(offset_mm=1.0).direction_deg() == pytest.approx(math.degrees(2.5 / 26.25 / 33.5))
+    assert Noise(aim_deg=0.3, offset_mm=4.0).direction_deg({"end_mass_ratio": 0.0}) == pytest.approx(
+        math.hypot(0.3, math.degrees(2.5 * 4.0 / 26.25 / 3.5))
+    )
+    assert Noise(offset_mm=300.0).direction_deg() == pytest.approx(
+        300 * Noise(offset_mm=1.0).direction_deg()
+    )  # off the ball: still a number
+    assert LEVELS["olympiad"].direction_deg() == pytest.approx(0.149, abs=5e-4)
+    errors = [LEVELS[name].direction_deg() for name in ("none", "professional", "robot", "amateur", "club", "olympiad")]
+    assert errors == sorted(errors) and errors[1] < 0.05
 
 
 def test_speed_and_elevation_are_never_negative():

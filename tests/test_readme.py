@@ -42,6 +42,7 @@ SHORT = {
     "benchmarks.nap": [],
     "benchmarks.left_out": [],
     "benchmarks.make_opened": ["--tables", "2", "--out", "{tmp}/opened.npz"],
+    "benchmarks.hand": ["--strokes", "40", "--visits", "4", "--levels", "professional", "robot"],
     "benchmarks.frames": ["--frames", "2", "--jobs", "1"],
     "benchmarks.layouts_picture": ["--out", "{tmp}/layouts.png"],
     "benchmarks.pictures": ["--out", "{tmp}/shot.png"],

@@ -100,7 +100,7 @@ class SnookerEnv(gymnasium.Env):
     | action | "box" | or "discrete": one number means a pot, speed, side and top, the aim solved; ``snooker_env.envs.choices`` |
     | aim | "absolute" | or "target" |
     | observation | "flat" | or "balls" |
-    | noise | "none" | "professional", "amateur", "club", "olympiad", or a dict of ``snooker_env.envs.noise.Noise`` |
+    | noise | "none" | "professional", "amateur", "club", "robot", "olympiad", or a dict of ``snooker_env.envs.noise.Noise`` |
     | reward | "points" | see Rewards |
     | elevation, placement | False | longer actions |
     | physics | "paper" | "match", or a dict of overrides of ``snooker_env.Physics`` (not R) |
