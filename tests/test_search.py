@@ -88,7 +88,7 @@ def test_the_second_shot_decides(thought, monkeypatch):
 def test_the_second_shot_one_by_one(thought):
     """Points, plus the share that goes on times the best of the next shots: its chance times points and value, each played by itself."""
     at, mind = thought
-    picks = np.flatnonzero(lookahead.choices_at(at)[0])[[17, 60, 97]]
+    picks = np.flatnonzero(lookahead.choices_at(at)[0])[[17, 55, 102]]
     played = np.repeat(lookahead.as_actions(at, np.zeros(3, np.int64), picks, mind.shooter), 5, 0)
     keys = np.tile(np.arange(5, dtype=np.uint64), 3)
     points, goes_on, left, _ = mind.noisy.play(at, np.zeros(15, np.int64), played, keys)
