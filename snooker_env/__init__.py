@@ -10,7 +10,7 @@ from .physics.table import POCKETS, Table
 from .simulation import Shot, ShotBatch, SimulationError, collide_balls, collide_cushion, simulate, simulate_batch, strike
 from .warm import warmup
 
-__version__ = "0.2.0.dev0"
+__version__ = "0.2.0"
 
 __all__ = [
     "POCKETS", "EventKind", "Physics", "Shot", "ShotBatch", "SimulationError", "Table", "collide_balls", "collide_cushion", "match_env",

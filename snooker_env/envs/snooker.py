@@ -122,7 +122,8 @@ class SnookerEnv(gymnasium.Env):
     seeds, other errors. A state that is not sound is refused, with nothing changed.
 
     ## Version history
-    v0: first version.
+    v0: first version. Results of package versions 0.1 and 0.2 do not compare: the pockets, the cushions of "match" and the levels of noise
+    moved (CHANGELOG.md).
 
     ## References
     S. Mathavan, M. R. Jackson, R. M. Parkin: Numerical simulations of the frictional collisions of solid balls on a rough surface, Sports
