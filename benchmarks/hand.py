@@ -74,7 +74,7 @@ def _rate(row):
 
 def show_pots(rows, levels):
     """Pot rates and placements at every pot."""
-    print(f"{'pot rate [%], 95 % interval (published)':40s}{'m/s':>4s}{'window':>8s}" + "".join(f"{level:>21s}" for level in levels))
+    print(f"{'pot rate [%], 95 % (published; long: mean)':41s}{'m/s':>3s}{'window':>8s}" + "".join(f"{level:>25s}" for level in levels))
     for k, first in enumerate(rows[levels[0]]):
         line = f"{first['pot']:40s}{first['speed']:4.1f}{first['half_window_deg']:8.3f}"
         for level in levels:
@@ -82,7 +82,7 @@ def show_pots(rows, levels):
             says = "{:.0f} [{:.0f}, {:.0f}]".format(*(100 * x for x in (row["rate"], *row["interval"])))
             if row["published"] is not None:
                 says += " ({:.0f}-{:.0f})".format(*(100 * x for x in row["published"]))
-            line += f"{says:>21s}"
+            line += f"{says:>25s}"
         print(line)
     print("window: half the width of the aims that pot without errors [deg]\n")
     print(f"{'placement [mm]: distance (along, across)':40s}")
@@ -90,7 +90,7 @@ def show_pots(rows, levels):
         line = f"{first['pot']:40s}{first['speed']:4.1f}{'':8s}"
         for level in levels:
             place = rows[level][k]["placement_mm"]
-            line += f"{'none potted' if place is None else '{:.0f} ({:.0f}, {:.0f})'.format(*place):>21s}"
+            line += f"{'none potted' if place is None else '{:.0f} ({:.0f}, {:.0f})'.format(*place):>25s}"
         print(line)
 
 
