@@ -134,7 +134,7 @@ class Shot:
         t may be an array of shape (m,): then a leading axis m is added to each. At the time of an impact: just after it. From ``duration``
         on, however late, everything is at rest: the positions are ``positions``, velocities and spins zero (with ``spin_decel`` 0 a spin
         about the vertical stays as it is). A potted ball lies still in its place of ``positions``, without spin, from its pot on, and
-        one that was not on the table where it was given. A ball in the air over a pocket has one velocity from event to event: its mean one.
+        one that was not on the table where it was given. A ball in the air over a pocket has the mean velocity from event to event.
         """
         times = array("t", t if np.ndim(t) else [t], (-1,))
         if times.size and times.min() < 0:

@@ -148,7 +148,7 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
         far = sqrt(dx * dx + dy * dy)
         depth, high = falls[pocket, 2] - far, R - z
         reach2 = depth * depth + high * high
-        if depth > 0.0 and reach2 < R * R and far > 0.0:  # in touch with the edge
+        if depth > 0.0 and reach2 < R * R:  # in touch with the edge
             reach = sqrt(reach2)
             ex, ey, ez = -dx / far * depth / reach, -dy / far * depth / reach, high / reach
             closing = u * ez - vx * ex - vy * ey

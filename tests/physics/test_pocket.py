@@ -61,10 +61,12 @@ def test_a_free_fall_ends_when_the_ball_is_below_the_noses():
     assert (x, y, z, vx, vy, u) == pytest.approx((0.3 * time, 0.01 + 0.1 * time, 0.5 * G * time**2, 0.3, 0.1, G * time), abs=1e-12)
 
 
-def test_a_ball_right_over_the_centre_of_a_fall_narrower_than_itself_stays_finite():
-    fly = from_python(pocket.fly)
-    flown = fly(-1.0 * pocket.STEP, 0.0, 0.001, 1.0, 0.0, 0.0, -0.01, 0.0, np.array([[0.0, 0.0, 0.01]]), 0, NO_JAWS, sn.Physics().pack())
-    assert np.isfinite(flown).all()
+def test_the_way_to_the_first_jaw_is_a_free_fall():
+    fly, physics, jaw = from_python(pocket.fly), sn.Physics(), np.array([[0.03, 0.0, 0.02, -1.0, 0.0, -1.0]])
+    end, k, *flown = fly(-0.1, 0.0, 0.0, 3.0, 0.0, 0.0, -0.1, 0.0, FALL, 0, jaw, physics.pack())
+    time = (0.13 - 0.02 - R) / 3.0
+    assert (end, k) == (pocket.JAW, 0)
+    assert flown == pytest.approx([time, 3.0 * time - 0.1, 0.0, 0.5 * G * time**2, 3.0, 0.0, G * time], abs=1e-12)
 
 
 IN_THE_AIR = (
@@ -80,7 +82,7 @@ def test_what_a_ball_is_given_in_the_air_counts_as_no_gain():
     shot = sn.simulate(*IN_THE_AIR, physics=world)
     kinds = shot.events["kind"].tolist()
     assert kinds.index(EventKind.DROP) < kinds.index(EventKind.BALL_BALL) < kinds.index(EventKind.RETURN)
-    start = [np.array([a]) for a in IN_THE_AIR]
+    p, v, w = (np.array([a]) for a in IN_THE_AIR)
     table, fidelity = sn.Table.preset("match"), contact.parse_fidelity("standard")
-    found = invariants.play(*start, np.ones((1, 2), bool), world, table, fidelity)
+    found = invariants.play(p, v, w, np.ones((1, 2), bool), world, table, fidelity)
     assert found.worst[0, invariants.ENERGY] < 1e-12
