@@ -168,6 +168,9 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
         in_air = old_state[i] == FALLING or (balls == 2 and old_state[j] == FALLING)
         if kind == _DROP:
             brought[i] = before
+        elif balls == 2 and in_air:  # no ball can take more than both have
+            brought[i] += before
+            brought[j] += before
         elif kind == _RETURN:
             _note(worst, ENERGY, (after - brought[i]) / brought[i])
         elif before > 0.0 and not in_air:

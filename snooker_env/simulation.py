@@ -112,7 +112,7 @@ class Shot:
 
     Fields:
 
-    * positions: (n, 2) [m] at rest; of a potted ball: where its centre crossed the fall.
+    * positions: (n, 2) [m] at rest; of a potted ball: where its centre crossed the fall, or where its flight over the pocket ended.
     * potted: (n,) int: pocket index (``snooker_env.POCKETS``), or -1 if not potted in this shot.
     * on_table: (n,) bool: still in play.
     * duration: Time [s] until everything is at rest, spin included (with ``spin_decel`` 0, which ends no spin: until no ball moves across
@@ -133,8 +133,8 @@ class Shot:
 
         t may be an array of shape (m,): then a leading axis m is added to each. At the time of an impact: just after it. From ``duration``
         on, however late, everything is at rest: the positions are ``positions``, velocities and spins zero (with ``spin_decel`` 0 a spin
-        about the vertical stays as it is). A potted ball lies still where it crossed the fall, without spin, from then on, and a ball that
-        was not on the table where it was given.
+        about the vertical stays as it is). A potted ball lies still in its place of ``positions``, without spin, from its pot on, and
+        one that was not on the table where it was given. A ball in the air over a pocket has the mean velocity from event to event.
         """
         times = array("t", t if np.ndim(t) else [t], (-1,))
         if times.size and times.min() < 0:

@@ -37,7 +37,7 @@ STEP = 1e-4
 SHORTEST = 1e-9
 """No leg is shorter [s]: a jaw may be met right at the edge."""
 _MOST_STEPS = 10_000
-"""A ball that hangs in the mouth for so long, half a second, is counted as lost: wedged in a throat narrower than a ball."""
+"""A ball that hangs in the mouth for so long, a second, is counted as lost: wedged in a throat narrower than a ball."""
 
 
 @kernel
@@ -104,10 +104,15 @@ def jaw_gap(x, y, z, jaws, k, R, sin_theta):
 
 @kernel
 def strike_jaw(vx, vy, u, w, nx, ny, sin_phi, phys):
-    """Impact of a free ball with a nose; (nx, ny) points to it in the plane -> vx, vy, u, w."""
+    """Impact of a free ball with a nose; (nx, ny) points to it in the plane -> vx, vy, u, w.
+
+    A ball that falls away from the nose faster than it moves towards it is let pass: the nose does not pull.
+    """
     cos_phi, R = sqrt(1.0 - sin_phi * sin_phi), phys[P_R]
     x, y, z = nx * cos_phi, ny * cos_phi, sin_phi  # from the centre to the contact, z up
     closing = vx * x + vy * y - u * z
+    if not closing > 0.0:
+        return vx, vy, u, w
     sx = vx + R * (w[1] * z - w[2] * y) - closing * x
     sy = vy + R * (w[2] * x - w[0] * z) - closing * y
     sz = -u + R * (w[0] * y - w[1] * x) - closing * z
