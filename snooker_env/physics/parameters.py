@@ -56,8 +56,8 @@ class Physics:
     * e_c_power: How it falls there, in [0, 0.8]: e(v) = e_c for v <= e_c_knee, e_c (v / e_c_knee)^(-e_c_power) above; 0: constant. So
       v e(v) rises with v in every world, and for mu_c, mu_s and sin_theta up to 0.5 so does the rebound of a rolling or a stunned ball.
       A power of 1/4 is that of an impact that loses its energy by yielding (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
-    * e_j: Energetic restitution ball-jaw, at every speed, in [0, 1]; None: e_c. Nothing is measured; the rubber of a jaw is pared thin over
-      its wood, so it gives less than a rail's.
+    * e_j: Energetic restitution ball-jaw, the same at every speed, in [0, 1]; None: e_c, so that a jaw keeps at pace what a rail loses.
+      Nothing is measured. What is lost at a rail comes of its rubber giving way; that of a jaw is pared thin over its wood.
     * mu_c: Sliding friction ball-cushion, in [0, 1] [MJP10].
     * sin_theta: Height of the nose above the ball's centre over R, in [0, 0.95]; nose height 7R/5 gives 0.4 [MJP10].
     * end_mass_ratio: Ball mass over the cue's effective end mass, for squirt, >= 0 [TP A.31].

@@ -15,6 +15,8 @@ World frame; z is the drop of the centre below the height at which it rolls [m],
 * It is lost when it is below the noses, at z = (1 - sin_theta) R, where the edge, too, sends it inwards; when it touches the throat behind
   a jaw's arc; or when it leaves the fall on the side away from where it came in.
 
+Balls meet each other in the plane, whatever their drop. ``SLOW``, ``SOFT`` and ``STEP`` are for snooker's balls under gravity.
+
 A ball that clears the edge flies to the first jaw in closed form. One that touches the edge has none: it is followed in steps of ``STEP``,
 each a parabola, with the impacts on the edge at its end. Oracle: a compliant ball in three dimensions (``tests/oracles/pocket_3d.py``).
 """
@@ -45,8 +47,8 @@ def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
     """A ball crosses the edge at (x, y): when does it fly into a jaw [s], and which? inf: never. -1: it may, but the edge touches it
     before.
 
-    The sphere clears the edge all the way if it does so at the end: over a circle the depth's growth only slows, as a falling sphere
-    needs it to grow evenly (at sqrt(g R)).
+    Whether the sphere clears the edge is asked at the end of the way. Over a circle the depth grows ever more slowly, while a falling sphere
+    needs it to grow almost evenly (at sqrt(g R)): what clears it at the end has cleared it before, but for a graze near that speed.
     """
     R, g = phys[P_R], phys[P_G]
     speed2 = vx * vx + vy * vy
