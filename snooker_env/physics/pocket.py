@@ -47,8 +47,8 @@ def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
     """A ball crosses the edge at (x, y): when does it fly into a jaw [s], and which? inf: never. -1: it may, but the edge touches it
     before.
 
-    Whether the sphere clears the edge is asked at the end of the way. Over a circle the depth grows ever more slowly, while a falling sphere
-    needs it to grow almost evenly (at sqrt(g R)): what clears it at the end has cleared it before, but for a graze near that speed.
+    Whether the sphere clears the edge is asked at the end of the way. Over a circle the depth grows ever more slowly, while a falling
+    sphere needs it to grow almost evenly (at sqrt(g R)): what clears it at the end has cleared it before, but for a graze near that speed.
     """
     R, g = phys[P_R], phys[P_G]
     speed2 = vx * vx + vy * vy
