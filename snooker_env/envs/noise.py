@@ -17,8 +17,10 @@ pockets; ``python -m benchmarks.hand`` prints their pot rates beside the publish
 * "olympiad": the Computer Olympiad's billiards, as defined there: aim 0.125 deg, elevation 0.1 deg, speed 0.075 m/s, offsets 0.5 mm. The
   squirt of the offset comes on top of the aim: 0.149 deg in all.
 
-A pot that loses the cue ball counts as missed, also in the fit: one third of the longest straight pots, without spin, end so. If it
-counted as made, as in that derivation, the fit would give about 0.040, 0.056 and 0.122 deg (``--fit`` prints both).
+A pot that loses the cue ball counts as missed, also in the fit: 17 % of a professional's strokes at the longest straight pot, without spin,
+end so. If it counted as made, as in that derivation, the fit would give about 0.040, 0.056 and 0.122 deg. The aim errors given for
+professionals, 0.02 to 0.03 deg, make 83 to 92 % of those four pots, this level 76 %; both figures cannot be met at once, and we took the
+long pots.
 
 Our choices: aim and squirt have half of the variance each, which no measurement tells apart. The errors are drawn independently, so the tip
 error is small. A real cue turns about the bridge hand; if that is R over the squirt's slope (0.35 m) behind the ball, squirt cancels the
