@@ -2,8 +2,8 @@
 
 World frame: origin at the table's centre, +x to the yellow side, +y to the black end; metres. The nose lines are x = +-0.889 and
 y = +-1.7845 (WPBSA playing area 3569 x 1778 mm). The official pocket templates are secret; this set agrees with the quoted
-openings (3.5 in corner, 4 in middle at the fall of the slate). Straight facings behind the arcs are left out: a ball's centre
-crosses the fall before it could touch one, and one that touches the throat in flight is lost (``pocket``).
+openings (3.5 in corner, 4 in middle at the fall of the slate: ``python -m benchmarks.pockets`` prints ours). What is behind the arcs needs
+no shape: the throat goes on straight, and a ball that touches it there is lost (``pocket.py``).
 """
 
 from dataclasses import dataclass, field
@@ -47,7 +47,8 @@ class Table:
     jaws: np.ndarray
     """(k, 6) jaw arcs: centre x, y, radius [m], unit vector to the arc's middle, cosine of its half angle."""
     falls: np.ndarray
-    """(k, 3) falls: centre x, y, radius [m] of the slate's edge, over which balls drop (``pocket``). Index = pocket, see ``POCKETS``."""
+    """(k, 3) falls: centre x, y, radius [m] of the slate's edge; a ball whose centre crosses it begins to drop. Index = pocket, see
+    ``POCKETS``."""
     _narrowest: tuple[float, int, int] = field(init=False, repr=False)
     _bed: np.ndarray = field(init=False, repr=False)
 
