@@ -6,7 +6,7 @@ pockets; ``python -m benchmarks.hand`` prints their pot rates beside the publish
 
 * "professional": 0.035 deg in all. Professionals are said to pot 50 to 65 % of long pots, and so does this level, as the mean over three
   pots of our choice (26, 62 and 84 %); a player who always takes the likeliest pot then scores, in play, nearly as often as
-  professionals are said to pot what they choose, 88 to 95 %: 87 % of all that it tries, 91 % where its chance is half or more.
+  professionals are said to pot what they choose, 88 to 95 %: about 88 % of all that it tries, 91 % where its chance is half or more.
 * "amateur", "club": 0.048 and 0.114 deg in all. Aim errors given for such players (0.05 deg good amateur, 0.08 to 0.12 club) were derived
   as total errors for pockets with an effective half window of 22 mm; these give the same mean rate of four pots on these pockets.
   All these figures are second-hand: no statistics behind them were found.
