@@ -99,6 +99,8 @@ class Aimed:
     """Where the cue ball stops without errors [m]; NaN in a pocket."""
     meets: np.ndarray
     """Where it lies as it meets the ball [m]."""
+    in_off: bool
+    """Does a pot count although the cue ball is lost?"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +123,8 @@ class Rolls:
         return sqrt(squares.sum()), *np.sqrt(squares).tolist()
 
 
-def played(pot, stroke, n, world, table, *, aims: float | np.ndarray = 0.0, hand: str | Noise = "none", seed=0):
+def played(pot, stroke, n, world, table, *, aims: float | np.ndarray = 0.0, hand: str | Noise = "none", seed=0,
+           in_off=False):  # fmt: skip
     """(made (n,), where the cue ball stops (n, 2)) of n strokes at a pot, turned by ``aims`` [rad], with the errors of ``hand``."""
     strokes = np.repeat(stroke[None], n, 0)
     strokes[:, 1] += aims
@@ -129,10 +132,10 @@ def played(pot, stroke, n, world, table, *, aims: float | np.ndarray = 0.0, hand
     state = shots.struck(seed, hand=hand)
     end = sn.simulate_batch(shots.positions, *state, table=table, physics=world)
     cue = np.where(end.on_table[:, :1], end.positions[:, 0], np.nan)
-    return (end.potted[:, 1] == pot.pocket) & end.on_table[:, 0], cue
+    return (end.potted[:, 1] == pot.pocket) & (end.on_table[:, 0] | in_off), cue
 
 
-def aimed(pot, world, table, speed=None):
+def aimed(pot, world, table, speed=None, in_off=False):
     """The pot with its stroke: no spin, ``speed`` [m/s] or as played."""
     start, aim_point = pot.positions, POCKETS[pot.pocket, :2]
     stroke = np.array([pot.speed if speed is None else speed, 0.0, 0.0, 0.0])
@@ -140,12 +143,12 @@ def aimed(pot, world, table, speed=None):
     if len(settled.ball) == 0:
         raise RuntimeError(f"no aim sends the ball of {pot.name!r} to its pocket")
     stroke, fan = settled.stroke[0], np.linspace(-REACH, REACH, FAN)
-    made, _ = played(pot, stroke, FAN, world, table, aims=fan)
+    made, _ = played(pot, stroke, FAN, world, table, aims=fan, in_off=in_off)
     first, last = _widest(made)
     stroke[1] += 0.5 * (fan[first] + fan[last])
     _, stops = played(pot, stroke, 1, world, table)
     way = aim_point - start[1]
-    return Aimed(pot, stroke, 0.5 * (fan[last] - fan[first] + fan[1] - fan[0]), stops[0], start[1] - 2 * R * way / hypot(*way))
+    return Aimed(pot, stroke, 0.5 * (fan[last] - fan[first] + fan[1] - fan[0]), stops[0], start[1] - 2 * R * way / hypot(*way), in_off)
 
 
 def _widest(made):
@@ -160,7 +163,7 @@ def _widest(made):
 
 def rolls(shot, hand, n, seed, world, table):
     """The ``Rolls`` of n strokes by a hand (any ``noise``)."""
-    made, cue = played(shot.pot, shot.stroke, n, world, table, hand=hand, seed=seed)
+    made, cue = played(shot.pot, shot.stroke, n, world, table, hand=hand, seed=seed, in_off=shot.in_off)
     way = shot.stops - shot.meets
     way = way / max(hypot(*way), 1e-12)
     shift = (cue - shot.stops)[made]

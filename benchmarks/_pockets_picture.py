@@ -10,14 +10,13 @@ def _against_speed(ax, figures, table, pocket):
     """Lateral window of a rolling ball against speed, one colour an angle."""
     rows = [r for r in figures["windows"] if (r["table"], r["pocket"], r["ball"], r["measure"]) == (table, pocket, "rolling", "mm")]
     rows = [r for r in rows if r["distance"] == min(r["distance"] for r in rows)]
+    last = figures["speeds"][-1]
     for k, row in enumerate(rows):
         ax.plot(figures["speeds"], row["after"], "o-", color=f"C{k}", ms=4)
         ax.plot(figures["speeds"], row["before"], ":", color=f"C{k}", lw=1.4)
-        above = k > 0 and abs(row["after"][-1] - rows[k - 1]["after"][-1]) < 6  # else its name would lie on the curve before it
-        name = f"{row['angle']} deg" + (" off the axis" if k == 0 else "")
-        ax.annotate(name, (figures["speeds"][-1], row["after"][-1]), (0, 6 if above else -13), textcoords="offset points", ha="right",
-                    fontsize=9, color=f"C{k}", bbox={"color": "white", "pad": 0.3})  # fmt: skip
-    ax.set(xlabel="speed 0.3 m before the pocket [m/s]", ylabel="window [mm]", ylim=(0, None), xlim=(0, None))
+        ax.annotate(f"{row['angle']} deg", (last, row["after"][-1]), (6, 0), textcoords="offset points", va="center", fontsize=9,
+                    color=f"C{k}")  # fmt: skip
+    ax.set(xlabel="speed 0.3 m before the pocket [m/s]", ylabel="window [mm]", ylim=(0, None), xlim=(0, 1.25 * last))
     ax.set_title(f"{pocket} pocket, table {table!r}", fontsize=11)
     ax.grid(alpha=0.3)
 
@@ -91,6 +90,6 @@ def draw(figures, out):
     _pool(axes[2, 1], figures)
     for ax in axes[0]:
         ax.set_ylim(0, 70)
-    fig.suptitle(f"How wide the pockets are. Solid: {AFTER}; dotted: {BEFORE}", fontsize=12)
+    fig.suptitle(f"How wide the pockets are, by angle off the axis. Solid: {AFTER}; dotted: {BEFORE}", fontsize=12)
     with saved(out) as place:
         fig.savefig(place, dpi=100)

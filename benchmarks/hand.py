@@ -16,7 +16,8 @@ of 22 mm; the pot rates "derived" are computed so, by geometry. A robot, built b
 ball 100 to 200 mm from where it was wanted (doi 10.1109/TMECH.2015.2461547; neither its shots nor its other errors are in its abstract).
 
 ``--fit``: the total direction error, half of its variance aim and half squirt, that meets these figures on the pockets as they are; for
-the robot its speed error, too.
+the robot its speed error, too. A pot that loses the cue ball is a miss, which matters where the cue ball follows a straight long pot; the
+derivation knew no such thing, so the errors are also searched with these pots counted as made.
 """
 
 import numpy as np
@@ -118,7 +119,7 @@ def main():
     if options.fit:
         found = published.fitted(options.strokes, world, table)
         for what, values in found:
-            print(f"{what:90s}" + "  ".join(f"{value:.4f}" for value in values))
+            print(f"{what:94s}" + "  ".join(f"{value:.4f}" for value in values))
         save_json(options.json, {"fit": found})
         return
     shots = [aimed(pot, world, table, speed) for pot in POTS for speed in (None, FIRM)]

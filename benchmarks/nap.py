@@ -7,11 +7,12 @@ last column of the first table says how far the engine's ball is from that. No d
 the nap: rolling decelerations were measured as 0.124 to 0.126 m/s^2. If the nap alone made that range, rolling with it and against it, it
 would be 0.001 m/s^2.
 
-The hand is a professional's: its direction errs by 0.04 deg in all (aim, and squirt of the tip's error), its speed by 2 %.
+The hand is that of ``noise="professional"``: its direction errs by 0.035 deg in all (aim, and squirt of the tip's error), its speed by
+1.75 %.
 
 * Pots: a ball rolls from rest at the start to a pocket and arrives there at the speed given. ``drift``: how far to the side of its line it
-  is at the pocket. ``hand``: the standard deviation of the same, for a straight pot with the cue ball 0.5 m from contact (0.04 deg of the
-  cue ball's direction are 0.5 m / 2R times as many of the object ball's).
+  is at the pocket. ``hand``: the standard deviation of the same, for a straight pot with the cue ball 0.5 m from contact (an error of the
+  cue ball's direction is 0.5 m / 2R times as large in the object ball's).
 * Positions: a ball rolls to rest across the table and along it. ``hand``: the direction's error to the side, the speed's along the way.
 """
 
@@ -21,6 +22,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import snooker_env as sn
+from snooker_env.envs.noise import LEVELS
 from snooker_env.physics.table import UNBOUNDED
 
 from ._command import command, run
@@ -28,7 +30,8 @@ from ._command import command, run
 NAPS = (0.0005, 0.001, 0.002, 0.005)
 BOUND = 0.001
 """The most [m/s^2] that the measured rolling decelerations allow."""
-DIRECTION, SPEED, CUE_BALL = radians(0.04), 0.02, 0.5
+HAND = LEVELS["professional"]
+DIRECTION, SPEED, CUE_BALL = radians(HAND.direction_deg()), HAND.speed_rel, 0.5
 SEEN = 0.010
 """A drift [m] that players see."""
 R, SLOWS = sn.Physics().R, sn.Physics().mu_r * sn.Physics().g

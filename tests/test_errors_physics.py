@@ -40,6 +40,8 @@ PHYSICS = [
     case(lambda: sn.Physics(e_c_power=1e-9, e_c_knee=9e-4), "physics.e_c_knee", "0.0009", KNEE, "knee too low"),
     case(lambda: sn.Physics.preset("match", e_c_knee=0), "physics.e_c_knee", "0.0", KNEE, "preset-no-knee"),
     case(strike(physics={"e_c_power": 0.1}), "physics.e_c_knee", "0.0", KNEE, "dict-no-knee"),
+    *[case(lambda v=v: sn.Physics(e_j=v), "physics.e_j", repr(v), "must be a finite number in [0, 1]", f"e_j={v}")
+      for v in (-0.1, 1.01, NAN, INF, "0.5", True)],
     *[case(lambda v=v: sn.Physics(mu_bb=v), "physics.mu_bb", str(bad), "must be a finite number in [0, inf)", f"mu_bb={v}")
       for v, bad in [((-0.1, 0.1, 1.0), -0.1), ((0.1, -0.1, 1.0), -0.1), ((0.1, 0.1, -1.0), -1.0), ((0.1, NAN, 1.0), NAN)]],
     *[

@@ -115,7 +115,7 @@ def half_window_over_slope(passes, pocket):
 
     assert pocket not in (2, 5)
     angle = np.degrees(np.arccos(passes(0.0)[1] @ POCKETS[pocket, 2:4]))
-    window = np.interp(angle, (0.0, 20.0, 40.0, 50.0), (0.057, 0.047, 0.019, 0.0))  # game.pots, of a corner
+    window = np.interp(angle, (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0))  # game.pots, of a corner
     assert aside(0.0) == pytest.approx(0.0, abs=1e-9)
     return 0.5 * window / abs((aside(1e-6) - aside(-1e-6)) / 2e-6)
 

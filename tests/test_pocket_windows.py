@@ -6,6 +6,8 @@ import pytest
 import snooker_env as sn
 from benchmarks import _pockets_pool, _pockets_rail, _pockets_sizes
 from benchmarks._pockets_windows import CORNER, MIDDLE, Engine, alone, drops, windows
+from snooker_env.game import pots
+from tests.kernels import from_python
 
 ANGLES = {CORNER: (0, 20, 40), MIDDLE: (0, 30, 45, 60)}
 WORLDS, TABLES = ("paper", "match"), ("match", "tight")
@@ -63,6 +65,15 @@ def test_a_window_is_what_a_dense_scan_finds():
         low, high = float(found.low), float(found.high)
         at = np.array([low - 1e-7, low, high, high + 1e-7])
         assert drops(here, angle, 0.3, speed, True, physics, Engine(), at).tolist() == [False, True, True, False]
+
+
+def test_pots_are_offered_by_these_windows():
+    """Of a rolling ball at 1.5 m/s: at the angles of the table of ``game.pots`` to a millimetre, between them to 2.5."""
+    given, physics = from_python(pots.window), sn.Physics.preset("match")
+    for pocket, nodes in ((CORNER, pots._CORNER_ANGLE), (MIDDLE, pots._MIDDLE_ANGLE)):
+        for angles, most in ((np.array(nodes), 1e-3), (0.5 * np.add(nodes[1:], nodes[:-1]), 2.5e-3)):
+            found = windows(alone(sn.Table.preset("match"), pocket), np.radians(angles), 0.3, 1.5, True, False, physics).width
+            assert [given(np.cos(a), pocket == MIDDLE) for a in np.radians(angles)] == pytest.approx(found, abs=most)
 
 
 def test_a_turned_path_and_a_shifted_one_ask_for_the_same_opening():
