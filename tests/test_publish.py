@@ -81,11 +81,11 @@ def published(folder):
 
 
 WEIGHTS = {
-    "ppo_absolute": "67529da87a2b16473f5ec411b665790e933dd6f1234de65e33eb255bf2bb9a5d",
-    "ppo_foresight": "114aaeccdaa2f01d4ba3d1cac4292931d0402127ece1f3061ae661acb22815d7",
-    "ppo_foresight_gamma0": "f7afb6b86e0458b2c9b292b0ea69eddd27e1f766ed92d9090edbc9404195d32e",
-    "ppo_mask": "29bbb22b0327fb9e07bd457709d2e6a718428fddc5e28cf1aa66e27016985dd3",
-    "ppo_target": "06d4428eb0605f9ee959bab5ad16bab8b29ba2d6eae653881502a0cbb06da99c",
+    "ppo_absolute": "611324598b6626e1e5028fa1fb92ba79be5ad1917a6357315dcef1737bdf8702",
+    "ppo_foresight": "7fc358b888bb3d9d96408491715de7b6f720336e5812392120b3da910105445c",
+    "ppo_foresight_gamma0": "86b1104b70879a7b187cc7a73c0d6622de313f04c6952d300a9f17d33c8e4a3d",
+    "ppo_mask": "dfe17966c74afe0d4d1a8cce0d121d1ba2a4ebfbe5091edff517c4f3688fcc36",
+    "ppo_target": "a0d80caf6416d41fab71b6157ba3c380d2e128f98f993adf96ce37bbbe09ff7f",
 }
 """SHA-256 of the weights that the published figures were played with, whatever file holds them."""
 
