@@ -172,11 +172,13 @@ def world(rng, name):
         return sn.Physics(
             mu_s=rng.uniform(0.02, 0.5), mu_r=10 ** rng.uniform(-2.5, -1), spin_decel=rng.uniform(1, 60), e_b=rng.uniform(0, 1),
             mu_bb=rng.uniform(0, 0.3), e_c=rng.uniform(0, 1), mu_c=rng.uniform(0, 0.4), sin_theta=rng.uniform(0, 0.6),
+            e_j=rng.uniform(0, 1), e_c_knee=rng.uniform(0.1, 3.0), e_c_power=rng.uniform(0, 0.8),
         )  # fmt: skip
     pick = lambda *values: float(rng.choice(values))  # noqa: E731
     return sn.Physics(
         mu_s=pick(1e-3, 0.21, 0.5, 0.8), mu_r=pick(1e-3, 0.0127, 0.1, 1.0), spin_decel=pick(0.0, 2.0, 22.0, 500.0), e_b=pick(0.0, 0.5, 1.0),
         mu_bb=pick(0.0, 0.05, 0.5, 1.0), e_c=pick(0.0, 0.5, 1.0), mu_c=pick(0.0, 0.14, 0.5, 1.0), sin_theta=pick(0.0, 0.4, 0.9),
+        e_j=pick(0.0, 0.5, 1.0),
     )  # fmt: skip
 
 
