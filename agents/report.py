@@ -296,9 +296,10 @@ def show(report):
 
 def markdown(report, picture=None):
     """The same as one Markdown text."""
+    version = report.get("version", "of an unknown version")
     out = [
         f"# {title(report)}", "", "Made by", "", "```bash", report["command"], "```", "",
-        f"at commit {report['commit']} on {report['machine']}, Python {report['python']}.", "",
+        f"with snooker_env {version}, at commit {report['commit']} on {report['machine']}, Python {report['python']}.", "",
     ]  # fmt: skip
     if picture:
         out += [f"![where the cue ball stops after a red, and what follows]({picture})", ""]

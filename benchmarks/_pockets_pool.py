@@ -183,8 +183,4 @@ def says(found):
             f" nose takes part of that back; at 6 m/s {fast[least]:+.2f} in at {angles[least]} deg, since the ball meets the facings"
             " beyond the hole's edge before it has fallen."
         )
-    lines.append(
-        "Pool: in flight the engine continues a facing straight behind its end, so the converging facings of the side pocket can wedge a"
-        " ball of 6 m/s where a pool table has none any more."
-    )
     return lines

@@ -40,7 +40,7 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     agents = ["--agent", f"model={models / 'm-*'}", "random", "--against", "ghost_ball", "random"]
     assert evaluate.main([*agents, *options, "--picture", str(tmp_path / "p.png")]) == 0
     found = json.loads((tmp_path / "a" / "r.json").read_text(), parse_constant=lambda text: pytest.fail(f"{text} is not JSON"))
-    assert set(found) == {"command", "commit", "machine", "python", "numpy", "protocol", "agents", "results"}
+    assert set(found) == {"command", "version", "commit", "machine", "python", "numpy", "protocol", "agents", "results"}
     assert found["protocol"]["layouts"] == {"held_out": 12, "colours": 12}
     assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
     first, second = found["agents"][0]["runs"]

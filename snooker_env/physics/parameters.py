@@ -43,7 +43,7 @@ class Physics:
     * M: Ball mass [kg], > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal.
     * g: Gravity [m/s^2], > 0.
     * mu_s: Sliding friction ball-cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
-    * mu_r: Rolling resistance, deceleration over g, in [0, 1] (measured 0.124 to 0.126 m/s^2).
+    * mu_r: Rolling resistance, deceleration over g, in [0, 1] (measured deceleration 0.124 to 0.126 m/s^2, that is 0.0127 g).
     * spin_decel: Decay of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21]. With 0 nothing ends such
       a spin: a shot ends when no ball moves across the table, and what spin is left then stays.
     * nap: Acceleration of a rolling ball along +y [m/s^2] by the cloth's nap, which runs from baulk to the black end; 0 for none, else
@@ -53,11 +53,11 @@ class Physics:
     * mu_bb: Ball-ball friction: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) for mu(s) = a + b exp(-c s), s in m/s.
     * e_c: Energetic restitution ball-cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
     * e_c_knee: Speed straight into the cushion [m/s] above which its restitution falls, >= 0, and >= 0.001 where e_c_power > 0.
-    * e_c_power: How it falls there, in [0, 0.8]: e(v) = e_c for v <= e_c_knee, e_c (v / e_c_knee)^(-e_c_power) above; 0: constant. So
+    * e_c_power: Exponent of that fall, in [0, 0.8]: e(v) = e_c for v <= e_c_knee, e_c (v / e_c_knee)^(-e_c_power) above; 0: constant. So
       v e(v) rises with v in every world, and for mu_c, mu_s and sin_theta up to 0.5 so does the rebound of a rolling or a stunned ball.
       A power of 1/4 is that of an impact that loses its energy by yielding (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
-    * e_j: Energetic restitution ball-jaw, the same at every speed, in [0, 1]; None: e_c, so that a jaw keeps at pace what a rail loses.
-      Nothing is measured. What is lost at a rail comes of its rubber giving way; that of a jaw is pared thin over its wood.
+    * e_j: Energetic restitution ball-jaw, the same at every speed, in [0, 1]; None: the same as e_c, so without the fall with speed that a
+      rail has. There is no measurement. A rail loses energy because its rubber deforms; at a jaw the rubber is cut thin over wood.
     * mu_c: Sliding friction ball-cushion, in [0, 1] [MJP10].
     * sin_theta: Height of the nose above the ball's centre over R, in [0, 0.95]; nose height 7R/5 gives 0.4 [MJP10].
     * end_mass_ratio: Ball mass over the cue's effective end mass, for squirt, >= 0 [TP A.31].

@@ -40,7 +40,7 @@ more than 1.1 mm of its width, most by 0.3 mm."""
 SHORTEST = 1e-9
 """No leg is shorter [s]: a jaw may be met right at the edge."""
 _MOST_STEPS = 10_000
-"""A ball that hangs in the mouth for so long, a second, is counted as lost: wedged in a throat narrower than a ball."""
+"""A ball that hangs in the mouth for so many steps, some seconds, is counted as lost: wedged in a throat narrower than a ball."""
 
 
 @kernel
