@@ -178,7 +178,6 @@ def world(rng, name):
     return sn.Physics(
         mu_s=pick(1e-3, 0.21, 0.5, 0.8), mu_r=pick(1e-3, 0.0127, 0.1, 1.0), spin_decel=pick(0.0, 2.0, 22.0, 500.0), e_b=pick(0.0, 0.5, 1.0),
         mu_bb=pick(0.0, 0.05, 0.5, 1.0), e_c=pick(0.0, 0.5, 1.0), mu_c=pick(0.0, 0.14, 0.5, 1.0), sin_theta=pick(0.0, 0.4, 0.9),
-        e_j=pick(0.0, 0.5, 1.0),
     )  # fmt: skip
 
 

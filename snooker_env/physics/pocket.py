@@ -201,7 +201,7 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
                     px, py, pz = nx * cos_phi, ny * cos_phi, sin_phi
         if hard > SOFT:
             back = min(0.9 * h, -deepest * sqrt(1.0 - pz * pz) / hard)  # they met so long ago
-            return JAW, jaw, T - back, x - vx * back, y - vy * back, z - u * back, vx, vy, u
+            return JAW, jaw, T - back, x - vx * back, y - vy * back, z - (u - 0.5 * g * back) * back, vx, vy, u - g * back
         vx, vy, u = vx - hard * px, vy - hard * py, u + hard * pz  # it stays on the jaw
         if depth < 0.0 and dx * vx + dy * vy > 0.0 and not touches:
             speed2, climb2 = vx * vx + vy * vy, 2.0 * g * max(z, 0.0)
