@@ -20,9 +20,9 @@ from stable_baselines3.common.distributions import Distribution
 from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import nn
 
-from snooker_env.envs.choices import POTS
-from snooker_env.envs.observations import SIZE
 from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS
+from snooker_env.tasks.discrete_actions import POTS
+from snooker_env.tasks.observations import SIZE
 
 from . import view
 from .networks import CONTEXT, POT, TableReader, ValueHead

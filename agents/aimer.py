@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from snooker_env._jit import entry
-from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
-from snooker_env.envs.aiming import solved_aim
-from snooker_env.envs.noise import Noise
-from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import N_BALLS, SPOTS, BallOn
 from snooker_env.physics import cloth
-from snooker_env.physics.polynomial import WORK
+from snooker_env.physics.impact.polynomial import WORK
+from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
+from snooker_env.tasks.noise import Noise
+from snooker_env.tasks.pot_aim import solved_aim
+from snooker_env.tasks.visit import BALL_ON
 
 from .indirect import AIM_X, AIM_Y, BALL, COLUMNS, GHOST_X, GHOST_Y, REACH, direct, direct_pots, indirect
 from .lookahead import Copies, Position

@@ -37,9 +37,9 @@ with needs("agents.evaluate"):
     import snooker_env
     from snooker_env import __version__
     from snooker_env._check import choice, integer, refuse
-    from snooker_env.envs.noise import Noise
     from snooker_env.game.layouts import plan_of
-    from snooker_env.physics.contact import parse_fidelity
+    from snooker_env.physics.impact.contact import parse_fidelity
+    from snooker_env.tasks.noise import Noise
 
     from .commit import commit
     from .contestants import Agent, options_of

@@ -10,10 +10,10 @@ Two pots and a few strokes, with several looks at each: what an error does to th
 import numpy as np
 from gymnasium import spaces
 
-from snooker_env.envs.choices import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from snooker_env.envs.vector import processors
-from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import HALF_LENGTH, HALF_WIDTH, BallOn
+from snooker_env.tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
+from snooker_env.tasks.visit import BALL_ON
 
 from .lookahead import BY_HAND, Copies, Position, prospects_of, spread_of
 from .looks import LOOKS

@@ -18,10 +18,10 @@ from math import asin, atan2, cos, hypot, sin, sqrt
 import numpy as np
 
 from snooker_env._jit import entry, kernel
-from snooker_env.envs.actions import line_of
 from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, BallOn, balls_on_kernel, bits
 from snooker_env.game.pots import POCKETS, POT_COLUMNS, clear_segment, find_pots, window
 from snooker_env.physics.table import OVERLAP_ALLOWED
+from snooker_env.tasks.box_actions import line_of
 
 DIRECT, BANK, PLANT, CANNON = range(4)
 """Kinds of shots."""

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from snooker_env._check import choice, integer, number, refuse
-from snooker_env.envs.saved import PLAIN, by_train, entries, part
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.tasks.saved_models import PLAIN, by_train, entries, part
 
 from .recipes import READ, TRAINING, WORLD, Recipe, names
 from .tables import VIEWS, view_of

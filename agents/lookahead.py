@@ -7,16 +7,16 @@ from math import erf, exp, pi, radians, sqrt
 import numpy as np
 
 from snooker_env._jit import entry
-from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
-from snooker_env.envs.choices import POTS, SIZE, chosen, masks
-from snooker_env.envs.observations import SIZE as SIZE_SEEN
-from snooker_env.envs.shooting import Shooter
-from snooker_env.envs.visit import BALL_ON, OVER, Returned, Visits, Work
 from snooker_env.game.balls import BALL_RADIUS, N_BALLS, VALUES, BallOn, balls_on_kernel, bits
 from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
 from snooker_env.physics.cloth import COLUMNS
 from snooker_env.physics.cue import squirt
-from snooker_env.physics.polynomial import WORK
+from snooker_env.physics.impact.polynomial import WORK
+from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
+from snooker_env.tasks.discrete_actions import POTS, SIZE, chosen, masks
+from snooker_env.tasks.observations import SIZE as SIZE_SEEN
+from snooker_env.tasks.stroke import Shooter
+from snooker_env.tasks.visit import BALL_ON, OVER, Returned, Visits, Work
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
 

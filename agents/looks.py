@@ -1,7 +1,7 @@
 """Which errors should a look ahead try? Five sets of them that together are like all: ``python -m agents.looks`` finds them again.
 
 Where a shot under execution noise leads is a mean over five numbers (errors of speed, side, top, aim, elevation). A mean over a few draws
-is poor when they happen to lie on one side. ``LOOKS`` are keys of streams (``game.stream``) whose errors have been chosen: of each kind
+is poor when they happen to lie on one side. ``LOOKS`` are keys of streams (``game.philox``) whose errors have been chosen: of each kind
 they are nearly the five values that are equally likely (-1.28, -0.52, 0, 0.52, 1.28 standard deviations), and one kind says little of
 another. They are the same for all positions and strokes, so strokes differ by their merits.
 Errors of variance 1 would lie further out and, five being few, see more misses than there are.
@@ -17,7 +17,7 @@ with needs("agents.looks"):
     import numpy as np
 
     from snooker_env._jit import entry
-    from snooker_env.envs.noise import Noise, executed
+    from snooker_env.tasks.noise import Noise, executed
 
 LOOKS = (354, 1840, 979, 2326, 3875)
 """Keys of the streams."""

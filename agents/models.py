@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from snooker_env._check import integer, number, refuse
-from snooker_env.envs.observations import OBSERVATIONS
-from snooker_env.envs.saved import Saved, outline
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.tasks.observations import OBSERVATIONS
+from snooker_env.tasks.saved_models import Saved, outline
 
 from .kept import Trained, read
 from .recipes import READ

@@ -14,9 +14,9 @@ from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import nn
 
-from snooker_env.envs.choices import POTS, SIDES, SPEEDS, STROKES, TOPS
-from snooker_env.envs.observations import SIZE
 from snooker_env.game.balls import N_BALLS
+from snooker_env.tasks.discrete_actions import POTS, SIDES, SPEEDS, STROKES, TOPS
+from snooker_env.tasks.observations import SIZE
 
 from .foresight import CUE_X, ENTRIES, PICKS, POTS_SEEN, STROKES_SEEN
 from .view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN

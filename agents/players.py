@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from snooker_env._check import choice, refuse
-from snooker_env.envs.choices import SIDES, SIZE, SPEEDS, TOPS, choice_of
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.tasks.discrete_actions import SIDES, SIZE, SPEEDS, TOPS, choice_of
 
 from .aimer import Aimer
 from .foresight import PICKS, Foresight, worth_by_hand

@@ -1,6 +1,6 @@
 """What is the best of the choices, found by trying them out? Monte Carlo by simulation under execution noise, two shots deep.
 
-From the true state of a table many copies are played, each with errors of its own (``envs.noise``). A shot is worth its points and, if the
+From the true state of a table many copies are played, each with errors of its own (``tasks.noise``). A shot is worth its points and, if the
 visit goes on, the value of the position it leaves. Sequential halving [Karnin, Koren & Somekh 2013] spends the budget: all candidates are
 tried a little, the better part a little more, and so on. The last few are judged by the second shot: from positions that they left, the
 best next shot is sought without errors, worth the chance to make it times what it brings.
@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from snooker_env.envs.choices import STROKES, TOPS, choice_of
-from snooker_env.envs.noise import Noise
-from snooker_env.envs.shooting import mask
 from snooker_env.envs.vector import processors
-from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import BALL_RADIUS, balls_on, ids_of
 from snooker_env.game.pots import pots
+from snooker_env.tasks.discrete_actions import STROKES, TOPS, choice_of
+from snooker_env.tasks.noise import Noise
+from snooker_env.tasks.stroke import mask
+from snooker_env.tasks.visit import BALL_ON
 
 from .lookahead import BY_HAND, SURE, Copies, Position, as_actions, choices_at, prospects_of, spread_of
 from .view import with_pots

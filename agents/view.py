@@ -6,10 +6,10 @@ import numpy as np
 from gymnasium import spaces
 
 from snooker_env._jit import entry
-from snooker_env.envs.choices import POTS
-from snooker_env.envs.observations import SIZE, shaped, space
 from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, VALUES
 from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
+from snooker_env.tasks.discrete_actions import POTS
+from snooker_env.tasks.observations import SIZE, shaped, space
 
 POT_ENTRIES = 13
 """Numbers shown of each of the ``choices.POTS`` widest pots, see ``with_pots``."""

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from snooker_env._check import refuse
-from snooker_env.envs.observations import SIZE
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import BallOn
 from snooker_env.game.layouts import deal_tables, plan_of
-from snooker_env.game.stream import stream_of
+from snooker_env.game.philox import stream_of
+from snooker_env.tasks.observations import SIZE
+from snooker_env.tasks.visit import BALL_ON
 
 from .view import TOLERANCE, tolerance_of, with_pots
 

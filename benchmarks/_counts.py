@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 import snooker_env as sn
-from snooker_env.physics import contact, detection, impulse
+from snooker_env.physics import detection
+from snooker_env.physics.impact import contact, impulse
 from snooker_env.simulation import _run
 
 FOLDER = str(Path(contact.__file__).parent)

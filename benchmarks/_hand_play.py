@@ -5,7 +5,7 @@ import numpy as np
 from agents.lookahead import Copies, Position
 from agents.players import GhostBall
 from agents.visits import play
-from snooker_env.envs.choices import POTS, SIDES, SPEEDS, TOPS, choice_of
+from snooker_env.tasks.discrete_actions import POTS, SIDES, SPEEDS, TOPS, choice_of
 
 PICKS = np.array([
     choice_of(pot, speed, SIDES.index(0.0), TOPS.index(0.0)) for pot in range(POTS) for speed in range(len(SPEEDS)) if 1 < SPEEDS[speed] < 4

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from snooker_env.envs.noise import Noise
+from snooker_env.tasks.noise import Noise
 
 from ._hand_shots import DERIVED, LONG, MODERATE, aimed, of_direction, rolls
 

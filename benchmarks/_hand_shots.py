@@ -6,10 +6,10 @@ from math import degrees, erf, hypot, radians, sqrt
 import numpy as np
 
 import snooker_env as sn
-from snooker_env.envs.noise import Noise
 from snooker_env.game.balls import BLACK, BLUE, SPOTS
 from snooker_env.game.pots import POCKETS
 from snooker_env.physics.table import UNBOUNDED
+from snooker_env.tasks.noise import Noise
 
 from ._shots import R, Shots, _settled, _turned
 

@@ -14,7 +14,7 @@ import numpy as np
 import snooker_env as sn
 from snooker_env import simulation
 from snooker_env.game.pots import POCKETS
-from snooker_env.physics import contact
+from snooker_env.physics.impact import contact
 
 STANDARD = contact.parse_fidelity("standard")[0]
 CORNER, MIDDLE = 3, 2

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 import snooker_env as sn
-from snooker_env.physics.impulse import friction_coefficient
+from snooker_env.physics.impact.impulse import friction_coefficient
 
 R, M = sn.Physics().R, sn.Physics().M
 REDUCED = M / 2

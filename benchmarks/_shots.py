@@ -1,7 +1,7 @@
 """Which shots do the comparisons play? Pots on two balls and on full tables, kicks and head-on stun shots, aimed as a player would.
 
 A pot is aimed so that the object ball, alone with the cue ball on unbounded cloth, leaves exactly towards the pocket: throw, squirt and
-swerve are allowed for, as good players do. It is then struck with a professional's errors (``envs.noise``), so that some pots are
+swerve are allowed for, as good players do. It is then struck with a professional's errors (``tasks.noise``), so that some pots are
 centred, some rattle and some miss.
 """
 
@@ -10,11 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 import snooker_env as sn
-from snooker_env.envs.noise import Noise
 from snooker_env.game.layouts import layout as deal
 from snooker_env.game.pots import POCKETS, pots
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.table import UNBOUNDED
+from snooker_env.tasks.noise import Noise
 
 R, HALF_WIDTH, HALF_LENGTH = 0.02625, 0.889, 1.7845
 TOLERANCE = 5e-4

@@ -20,9 +20,10 @@ from numba.extending import intrinsic
 
 import snooker_env as sn
 from snooker_env._jit import entry
-from snooker_env.physics import contact, engine
+from snooker_env.physics import engine
+from snooker_env.physics.impact import contact
+from snooker_env.physics.impact.polynomial import WORK
 from snooker_env.physics.parameters import P_E_B
-from snooker_env.physics.polynomial import WORK
 from snooker_env.simulation import MAX_EVENTS, _run
 
 HAS_COUNTER = platform.machine().lower() in ("x86_64", "amd64")

@@ -6,7 +6,7 @@ import time
 import numpy as np
 
 import snooker_env as sn
-from snooker_env.physics import contact
+from snooker_env.physics.impact import contact
 from snooker_env.simulation import MAX_EVENTS, _run
 
 from ._command import pyplot, saved

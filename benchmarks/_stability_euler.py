@@ -8,8 +8,8 @@ import numpy as np
 import snooker_env as sn
 from snooker_env import Table
 from snooker_env.game.balls import SPOTS
-from snooker_env.physics import contact
 from snooker_env.physics.engine import Status
+from snooker_env.physics.impact import contact
 from snooker_env.simulation import _run
 
 from ._stability_impacts import any_impacts, collide, impact_figures

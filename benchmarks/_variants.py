@@ -61,7 +61,7 @@ def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, work):
 def load():
     """The copy's ``simulation`` module."""
     texts = _copies.texts()
-    texts["physics/contact.py"] += _ADDED
+    texts["physics/impact/contact.py"] += _ADDED
     if texts["physics/engine.py"].count(_FLIES) != 1:
         raise RuntimeError(f"engine.py has changed: {_FLIES!r} is not in it once")
     texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES[:-1]} and fidelity != {AT_ONCE}:")

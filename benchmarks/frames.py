@@ -19,11 +19,11 @@ from multiprocessing import get_context
 
 import numpy as np
 
-from snooker_env.envs.frame_table import FrameTable
-from snooker_env.envs.opponents import GhostBall, RandomPlayer
-from snooker_env.envs.shooting import mask, shooter_of
 from snooker_env.game.balls import BALL_RADIUS, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of
 from snooker_env.game.layouts import break_off
+from snooker_env.tasks.frame_table import FrameTable
+from snooker_env.tasks.opponents import GhostBall, RandomPlayer
+from snooker_env.tasks.stroke import mask, shooter_of
 
 from ._command import at_least, command, run
 

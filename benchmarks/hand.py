@@ -22,9 +22,9 @@ derivation knew no such thing, so the errors are also searched with these pots c
 
 import numpy as np
 
-from snooker_env.envs.noise import LEVELS, Noise
 from snooker_env.game.layouts import POT_WINDOWS
 from snooker_env.physics.parameters import Physics
+from snooker_env.tasks.noise import LEVELS, Noise
 
 from . import _hand_published as published
 from ._command import at_least, command, run, save_json, writable

@@ -22,8 +22,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import snooker_env as sn
-from snooker_env.envs.noise import LEVELS
 from snooker_env.physics.table import UNBOUNDED
+from snooker_env.tasks.noise import LEVELS
 
 from ._command import command, run
 

@@ -28,8 +28,9 @@ import numpy as np
 
 import snooker_env as sn
 from snooker_env import simulation
-from snooker_env.physics import contact, table
+from snooker_env.physics import table
 from snooker_env.physics.engine import PART, EventKind
+from snooker_env.physics.impact import contact
 
 from . import _machine, _shots, _variants
 from ._command import at_least, command, pyplot, run, save_json, saved, writable

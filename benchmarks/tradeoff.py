@@ -5,7 +5,7 @@
 Truth is ``reference``. Impacts: errors of direction and speed, the worse of the two balls, just after the impact and once both roll (the
 direction a player sees; where a ball is all but stopped by its own spin, its direction means little). Shots: how far from the truth the
 cue ball and the object ball stop, if they stay on the table, and how often the pot's outcome changes. The yardstick is a professional's
-hand: the same intended stroke, played twice by the truth with the errors of ``envs.noise``.
+hand: the same intended stroke, played twice by the truth with the errors of ``tasks.noise``.
 """
 
 from pathlib import Path
@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 import snooker_env as sn
-from snooker_env.physics import contact
 from snooker_env.physics.engine import EventKind
+from snooker_env.physics.impact import contact
 
 from . import _machine, _shots
 from ._command import at_least, command, pyplot, run, save_json, saved, writable

@@ -21,7 +21,7 @@ from gymnasium.vector import AutoresetMode
 import snooker_env
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.envs.visit import Visits, Work
+from snooker_env.tasks.visit import Visits, Work
 
 from ._command import at_least, command, run, save_json, writable
 

@@ -3,14 +3,14 @@
 from gymnasium.envs import registration as _gymnasium
 
 from ._registration import register as _register
+from ._warmup import warmup
 from .match import match_env
 from .physics.engine import EventKind
 from .physics.parameters import Physics
 from .physics.table import POCKETS, Table
 from .simulation import Shot, ShotBatch, SimulationError, collide_balls, collide_cushion, simulate, simulate_batch, strike
-from .warm import warmup
 
-__version__ = "0.2.0"
+__version__ = "0.3.0.dev0"
 
 __all__ = [
     "POCKETS", "EventKind", "Physics", "Shot", "ShotBatch", "SimulationError", "Table", "collide_balls", "collide_cushion", "match_env",

@@ -20,7 +20,7 @@ except ModuleNotFoundError as error:
 
 from ._check import choice, integer, refuse
 from .envs.vector import SnookerVectorEnv
-from .envs.visit import COUNTS, REALS
+from .tasks.visit import COUNTS, REALS
 
 
 class SnookerVecEnv(VecEnv):

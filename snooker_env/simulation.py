@@ -8,10 +8,11 @@ import numpy as np
 
 from ._check import array, flags, integer, refuse, refuse_what
 from ._jit import entry
-from .physics import cloth, contact, cue, engine, trajectory
+from .physics import cloth, cue, engine, trajectory
 from .physics.engine import EventKind, Status
+from .physics.impact import contact
+from .physics.impact.polynomial import WORK
 from .physics.parameters import FASTEST, FASTEST_IMPACT, MOST_SPIN, MOST_SPIN_IMPACT, P_E_B, Physics
-from .physics.polynomial import WORK
 from .physics.table import Table
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])

@@ -80,7 +80,9 @@ def shots(physics, fidelity):
         r, here = env.positions, env.on_table
         here[22 - k % 15 :] = False
         v, w = np.zeros((22, 2)), np.zeros((22, 3))
-        speed, spin = sn.strike(rng.uniform(0.3, 6.5), rng.uniform(-np.pi, np.pi), *rng.uniform(-0.3, 0.3, 2), elevation=0.1, physics=physics)
+        speed, spin = sn.strike(
+            rng.uniform(0.3, 6.5), rng.uniform(-np.pi, np.pi), *rng.uniform(-0.3, 0.3, 2), elevation=0.1, physics=physics
+        )
         v[0], w[0] = speed[:2], spin
         if k % 4 == 3:
             v[5], w[5] = (0.7, -0.4), (10.0, 20.0, 30.0)
@@ -112,7 +114,9 @@ def visits(options):
         for _ in range(6):
             a = rng.uniform(-1, 1, 7).astype(np.float32)
             masks = env.unwrapped.action_masks() if options.get("action") == "discrete" else None
-            action = a[: env.action_space.shape[0]] if masks is None else int(np.flatnonzero(masks)[int((a[0] + 1) * 0.5 * (masks.sum() - 1))])
+            action = (
+                a[: env.action_space.shape[0]] if masks is None else int(np.flatnonzero(masks)[int((a[0] + 1) * 0.5 * (masks.sum() - 1))])
+            )
             observation, reward, ended, cut, info = env.step(action)
             out.add(observation, reward, ended, cut, info)
             if ended:

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from snooker_env.envs.actions import MAX_SPEED, MIN_SPEED
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, PINK, SPOTS
 from snooker_env.game.frame import Frame
+from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
 
 LAYOUTS = ("opened", "held_out", "break_off", "line_up", "colours", "random:0", "random:1", "random:15")
 INFO = {

@@ -14,12 +14,12 @@ from stable_baselines3 import PPO
 from agents import absolute, recipes, view
 from agents.absolute import LINE, OFFERED, THROW_UNIT, TOLERANCE, AbsolutePolicy, nearest_image
 from agents.tables import training_tables
-from snooker_env.envs.actions import line
-from snooker_env.envs.choices import POTS
-from snooker_env.envs.observations import SIZE, observe
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import N_BALLS, mask_of
 from snooker_env.game.pots import POCKETS, pots
+from snooker_env.tasks.box_actions import line
+from snooker_env.tasks.discrete_actions import POTS
+from snooker_env.tasks.observations import SIZE, observe
 
 R = 0.02625
 

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from snooker_env.envs.actions import MAX_ELEVATION, TARGET_SPAN
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BALL_RADIUS as R
 from snooker_env.game.balls import BAULK_Y, BLACK, CUE, D_RADIUS, N_BALLS, SPOTS, BallOn
 from snooker_env.game.pots import POCKETS, pots
+from snooker_env.tasks.box_actions import MAX_ELEVATION, TARGET_SPAN
 from tests.tables import after_strike, speed_of, table_state
 
 

@@ -6,11 +6,11 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
-from snooker_env.envs import choices
-from snooker_env.envs.choices import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game import pots
 from snooker_env.game.balls import mask_of
+from snooker_env.tasks import discrete_actions
+from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 
 R = 0.02625
 
@@ -144,4 +144,4 @@ def test_what_does_not_go_together_is_refused():
         SnookerEnv(action="plain")
     with pytest.raises(ValueError, match="a Box has no masks"):
         SnookerEnv().action_masks()
-    assert SnookerEnv(action="discrete").action_space.n == choices.SIZE
+    assert SnookerEnv(action="discrete").action_space.n == discrete_actions.SIZE

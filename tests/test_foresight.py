@@ -7,9 +7,9 @@ from agents import foresight, lookahead, view
 from agents.looks import LOOKS, errors_of, find, unevenness
 from agents.players import DISCRETE, GhostBall, player_of
 from agents.visits import play, summary
-from snooker_env.envs.choices import SIZE
-from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import BallOn
+from snooker_env.tasks.discrete_actions import SIZE
+from snooker_env.tasks.visit import BALL_ON
 
 
 def rows_of(seen):

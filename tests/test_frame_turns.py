@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from benchmarks import frames
-from snooker_env.envs.frame_table import FrameTable
-from snooker_env.envs.shooting import shooter_of
 from snooker_env.game.balls import BLACK, BLUE, CUE, D_RADIUS, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import Foul
+from snooker_env.tasks.frame_table import FrameTable
+from snooker_env.tasks.stroke import shooter_of
 from tests.tables import PLACES, frame_env, frame_state
 
 TO_BLUE = 0.0

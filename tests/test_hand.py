@@ -7,9 +7,9 @@ import pytest
 
 import snooker_env as sn
 from benchmarks import _hand_play, _hand_published, _hand_shots
-from snooker_env.envs.noise import LEVELS, Noise
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.pots import POCKETS
+from snooker_env.tasks.noise import LEVELS, Noise
 
 WORLD, TABLE = sn.Physics(), "match"
 

@@ -9,7 +9,7 @@ from agents.imitate import Teacher, Teaching, to_try
 from agents.lookahead import Position, prospects_of, spread_of
 from agents.recipes import Recipe
 from agents.tables import training_tables
-from snooker_env.envs.choices import SIZE, STROKES
+from snooker_env.tasks.discrete_actions import SIZE, STROKES
 
 
 def tables(n, noise="professional"):

@@ -11,13 +11,13 @@ from agents.aimer import Aimer, widest_run
 from agents.indirect import AIM_X, AIM_Y, BALL, BANK, CANNON, GHOST_X, GHOST_Y, KIND, OTHER, PLANT, POCKET, TOLERANCE
 from agents.players import player_of
 from agents.visits import play
-from snooker_env.envs.actions import line
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BALL_RADIUS, BLACK, BLUE, CUE, GREEN, N_BALLS, PINK, YELLOW, BallOn, mask_of
 from snooker_env.game.pots import POCKETS, pots
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.parameters import Physics
 from snooker_env.physics.table import HALF_WIDTH, Table
+from snooker_env.tasks.box_actions import line
 
 R = BALL_RADIUS
 MATCH, PAPER = Table.preset("match"), Physics.of("paper")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.envs.noise import Noise
 from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.tasks.noise import Noise
 
 Z = (0.0, 0.0, 0.0)
 

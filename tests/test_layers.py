@@ -9,10 +9,10 @@ import pytest
 
 import snooker_env
 from snooker_env import Physics, Table
-from snooker_env.envs import observations
-from snooker_env.envs.actions import Actions
 from snooker_env.game import balls, in_hand, layouts, pots, snookered
 from snooker_env.physics import table
+from snooker_env.tasks import observations
+from snooker_env.tasks.box_actions import Actions
 
 PACKAGE = Path(snooker_env.__file__).resolve().parent
 FILES = sorted(PACKAGE.rglob("*.py"))
@@ -30,16 +30,17 @@ ALLOWED = {
     "physics": BASE,
     "simulation": BASE | {"physics"},
     "game": BASE,
-    "envs": BASE | {"physics", "simulation", "game", "render"},
+    "tasks": BASE | {"physics", "simulation", "game"},
+    "planning": BASE | {"physics", "simulation", "game", "tasks"},
+    "envs": BASE | {"physics", "simulation", "game", "tasks", "render"},
     "render": {"_check", "physics.table", "physics.engine", "game.balls", "simulation"},
-    "sb3": BASE | {"physics", "simulation", "game", "envs"},
-    "play": BASE | {"physics", "simulation", "game", "envs", "render"},
+    "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"envs"},
-    "warm": {"_jit", "_notices", "simulation", "game", "envs"},
-    "__init__": {"physics", "simulation", "envs", "match", "warm", "_registration"},
+    "_warmup": {"_jit", "_notices", "simulation", "game", "tasks", "envs"},
+    "__init__": {"physics", "simulation", "envs", "match", "_warmup", "_registration"},
 }
-OUTSIDE = {"gymnasium": {"envs", "__init__", "sb3", "play"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
-OUTSIDE |= {"stable_baselines3": {"sb3", "envs"}, "sb3_contrib": {"envs"}}
+OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
+OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
@@ -75,8 +76,8 @@ def imports(name):
 
 
 def test_the_reader_of_imports_sees_every_kind():
-    seen = dict(imports("envs/shooting.py"))
-    assert seen[".physics.cue"] and seen[".envs.noise"] and seen["numpy"]
+    seen = dict(imports("tasks/stroke.py"))
+    assert seen[".physics.cue"] and seen[".tasks.noise"] and seen["numpy"]
     assert dict(imports("envs/pictures.py"))[".render.pygame_view"] is False
     assert dict(imports("render/pygame_view.py"))["pygame"] is False
     assert dict(imports("__init__.py"))[".physics.engine"]
@@ -109,7 +110,7 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
             assert not top, f"{name} imports {library} when it is imported, not when it is wanted"
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if part_of(n) in ("envs", "warm")])
+@pytest.mark.parametrize("name", [n for n in NAMES if part_of(n) in ("envs", "_warmup")])
 def test_pictures_and_environments_are_loaded_only_when_asked(name):
     late = ".render" if part_of(name) == "envs" else ".envs"
     assert not [t for t, top in imports(name) if top and t.startswith(late)]

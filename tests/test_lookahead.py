@@ -10,12 +10,12 @@ from scipy.stats import norm
 from agents import lookahead
 from agents.lookahead import Copies
 from agents.players import DISCRETE
-from snooker_env.envs.choices import choice_of
-from snooker_env.envs.noise import Noise
-from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import BLACK, CUE, PINK, BallOn, mask_of
 from snooker_env.game.pots import POCKETS, pots
 from snooker_env.physics.parameters import Physics
+from snooker_env.tasks.discrete_actions import choice_of
+from snooker_env.tasks.noise import Noise
+from snooker_env.tasks.visit import BALL_ON
 
 VALUE = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 """Points of each ball."""

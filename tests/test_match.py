@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.envs import observations
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, PINK, SPOTS
 from snooker_env.game.frame import Frame
 from snooker_env.render import pygame_view
+from snooker_env.tasks import observations
 
 pytest.importorskip("pettingzoo")
 from pettingzoo.test import api_test, render_test, seed_test

@@ -7,9 +7,9 @@ import torch
 from agents.foresight import CUE_X, ENTRIES, PICKS, SPACE, STROKES_SEEN
 from agents.networks import BALL, CONTEXT, POT, ForesightReader, OutcomeHead, StrokeHead, TableReader, ValueHead
 from agents.view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN, VIEW_SPACE, with_pots
-from snooker_env.envs.choices import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
-from snooker_env.envs.observations import SIZE as SEEN
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
+from snooker_env.tasks.observations import SIZE as SEEN
 
 N = 40
 

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from snooker_env.envs.noise import LEVELS, Noise
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BALL_RADIUS as R
 from snooker_env.game.balls import CUE, BallOn
 from snooker_env.physics.cue import strike
 from snooker_env.physics.parameters import Physics
+from snooker_env.tasks.noise import LEVELS, Noise
 from tests.tables import after_strike, speed_of, table_state
 
 

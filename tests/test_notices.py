@@ -109,8 +109,8 @@ def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
 
 LONG = {
     "snooker_env.physics.engine": ["run_batch"], "snooker_env.simulation": ["_collide_balls", "_collide_cushion"],
-    "snooker_env.envs.visit": ["_address", "_conclude", "_begin"], "snooker_env.game.layouts": ["deal_tables"],
-    "snooker_env.game.settle": ["settle_one"], "snooker_env.game.paths": ["_paths"], "snooker_env.game.snookered": ["_snookered"],
+    "snooker_env.tasks.visit": ["_address", "_conclude", "_begin"], "snooker_env.game.layouts": ["deal_tables"],
+    "snooker_env.game.apply_ruling": ["settle_one"], "snooker_env.game.paths": ["_paths"], "snooker_env.game.snookered": ["_snookered"],
     "agents.view": ["_add_pots"], "agents.indirect": ["_indirect"], "agents.aimer": ["_solved"], "agents.lookahead": ["_as_actions"],
 }  # fmt: skip
 """The kernels that were seen to take over a second, each compiled first in a fresh process."""

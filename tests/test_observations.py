@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
-from snooker_env.envs import observations
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import N_BALLS, BallOn
+from snooker_env.tasks import observations
 from tests.tables import INFO, LAYOUTS
 
 

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
-from snooker_env.envs.frame_table import FrameTable
-from snooker_env.envs.opponents import GhostBall
-from snooker_env.envs.saved import Saved
-from snooker_env.envs.shooting import shooter_of
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.layouts import layout
+from snooker_env.tasks.frame_table import FrameTable
+from snooker_env.tasks.opponents import GhostBall
+from snooker_env.tasks.saved_models import Saved
+from snooker_env.tasks.stroke import shooter_of
 from tests.bombs import bombed, rezipped, told
 from tests.tables import PLACES, frame_env, frame_state
 

@@ -215,7 +215,7 @@ print(repr(shot.positions.tolist()))
     ("file", "old", "new"),
     [
         ("physics/cloth.py", None, None),
-        ("physics/contact.py", "phys[P_E_C] - phys[P_E_SLOPE]", "0.5 * phys[P_E_C] - phys[P_E_SLOPE]"),
+        ("physics/impact/contact.py", "phys[P_E_C] - phys[P_E_SLOPE]", "0.5 * phys[P_E_C] - phys[P_E_SLOPE]"),
     ],
 )
 def test_a_shot_is_never_computed_by_old_code(tmp_path, file, old, new):

@@ -13,8 +13,8 @@ from stable_baselines3.common.evaluation import evaluate_policy
 from agents import view
 from agents.tables import training_tables
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.envs.visit import COUNTS, REALS
 from snooker_env.sb3 import SnookerVecEnv
+from snooker_env.tasks.visit import COUNTS, REALS
 from tests.processes import python
 from tests.refusals import refused
 

@@ -8,8 +8,8 @@ from agents import lookahead, view
 from agents.players import DISCRETE, GhostBall, Random, player_of
 from agents.search import Search, _Mind
 from agents.visits import play, summary
-from snooker_env.envs.choices import STROKES
-from snooker_env.envs.noise import Noise
+from snooker_env.tasks.discrete_actions import STROKES
+from snooker_env.tasks.noise import Noise
 
 
 def test_search_beats_the_widest_pot_by_far():

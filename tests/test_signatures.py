@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.envs.actions import Actions
-from snooker_env.envs.choices import Choices
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.tasks.box_actions import Actions
+from snooker_env.tasks.discrete_actions import Choices
 from tests.processes import python
 
 INPUTS = """

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.envs.frame_table import FrameTable
-from snooker_env.envs.shooting import shooter_of
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.frame import Frame, Saved
 from snooker_env.game.referee import FULL_TABLE, Stroke
+from snooker_env.tasks.frame_table import FrameTable
+from snooker_env.tasks.stroke import shooter_of
 from tests.mutations import at, frozen, kind_of, mutations, names_it
 from tests.refusals import refused
 from tests.tables import PLACES, frame_env, frame_state

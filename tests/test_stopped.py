@@ -10,11 +10,11 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
-from snooker_env.envs.frame_table import MAX_STROKES
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.frame import Frame
 from snooker_env.game.referee import Stroke
+from snooker_env.tasks.frame_table import MAX_STROKES
 from tests.refusals import refused
 
 FOUL = np.array([-1.0, 0, 0, -0.5, 0, 0, -1], np.float32)

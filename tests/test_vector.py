@@ -13,9 +13,10 @@ from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode
 
 import snooker_env as sn
-from snooker_env.envs import vector, visit
+from snooker_env.envs import vector
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.tasks import visit
 
 MODES = list(AutoresetMode)
 

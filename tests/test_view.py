@@ -7,13 +7,13 @@ import pytest
 from positions import position, tables
 
 from agents import view
-from snooker_env.envs.actions import line
-from snooker_env.envs.choices import POTS
-from snooker_env.envs.observations import SIZE, observe
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.envs.visit import BALL_ON
 from snooker_env.game.balls import BALL_RADIUS, BLACK, CUE, HALF_LENGTH, HALF_WIDTH, BallOn, mask_of
 from snooker_env.game.pots import POCKETS, pots
+from snooker_env.tasks.box_actions import line
+from snooker_env.tasks.discrete_actions import POTS
+from snooker_env.tasks.observations import SIZE, observe
+from snooker_env.tasks.visit import BALL_ON
 
 VALUES = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from benchmarks import frames
-from snooker_env.envs.frame_table import FrameTable
-from snooker_env.envs.opponents import GhostBall
-from snooker_env.envs.shooting import shooter_of
 from snooker_env.game.balls import BLACK, PINK
+from snooker_env.tasks.frame_table import FrameTable
+from snooker_env.tasks.opponents import GhostBall
+from snooker_env.tasks.stroke import shooter_of
 
 
 @pytest.mark.parametrize(("kind", "miss", "count"), [("random", "off", 30), ("random", "clear_path", 10), ("ghost_ball", "off", 10)])

@@ -58,7 +58,8 @@ def counted():
 
     import snooker_env as sn
     from benchmarks.speed import shots
-    from snooker_env.physics import contact, detection, engine, roots
+    from snooker_env.physics import detection, engine, roots
+    from snooker_env.physics.impact import contact
     from snooker_env.simulation import MAX_EVENTS, _run
 
     watched = {

@@ -8,13 +8,13 @@ from pettingzoo import AECEnv
 
 from .._check import choice, refuse
 from ..game.layouts import layout as deal
-from . import observations
-from .bed import fitted
-from .frame_table import MAX_STROKES, FrameTable
-from .frame_task import frame_text
+from ..tasks import observations
+from ..tasks.frame import frame_text
+from ..tasks.frame_table import MAX_STROKES, FrameTable
+from ..tasks.rewards import FRAME_REWARDS
+from ..tasks.stroke import shooter_of
+from ..tasks.table_fit import fitted
 from .pictures import FPS, MODES, Pictures
-from .rewards import FRAME_REWARDS
-from .shooting import shooter_of
 
 PLAYERS = ("player_0", "player_1")
 
@@ -28,7 +28,7 @@ class MatchEnv(AECEnv):
 
     ## Action space
     ``Box(-1, 1, (7,), float32)`` for both: cue speed, side, top, aim, the place in the D (2), the decision; with ``elevation=True`` the
-    elevation stands before the place. See ``snooker_env.envs.actions.Actions``. The *place* counts only when the cue ball is in hand (a
+    elevation stands before the place. See ``tasks.box_actions.Actions``. The *place* counts only when the cue ball is in hand (a
     place that is taken becomes the nearest free one). The *decision* counts only when the other has just fouled: below -1/3 the offender
     must play again from where the balls lie, above 1/3 the balls are first replaced as they were (if a miss was called), between or without
     that option the player plays himself, with the rest of this same action. The first two play no stroke: the step only turns the table

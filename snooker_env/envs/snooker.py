@@ -7,16 +7,16 @@ import numpy as np
 
 from .._check import choice, refuse, truth
 from ..game.balls import REDS_MASK, BallOn, balls_on
-from . import observations
-from .bed import fitted
-from .choices import Choices
-from .frame_table import MAX_STROKES
-from .frame_task import AGENT, FrameTask
+from ..tasks import observations
+from ..tasks.discrete_actions import Choices
+from ..tasks.frame import AGENT, FrameTask
+from ..tasks.frame_table import MAX_STROKES
+from ..tasks.rewards import REWARDS
+from ..tasks.states import checked
+from ..tasks.stroke import mask, shooter_of
+from ..tasks.table_fit import fitted
+from ..tasks.visit import BALL_ON, IN_HAND, OVER, POINTS, Returned, Rules, Visits, Work
 from .pictures import FPS, MODES, Pictures
-from .rewards import REWARDS
-from .shooting import mask, shooter_of
-from .state import checked
-from .visit import BALL_ON, IN_HAND, OVER, POINTS, Returned, Rules, Visits, Work
 
 TASKS = ("visit", "frame")
 FRAME_ONLY = {"opponent": "none", "trust": False, "miss": "off", "decision": False, "max_strokes": MAX_STROKES}
@@ -50,7 +50,7 @@ class SnookerEnv(gymnasium.Env):
     Python code, which runs when it is loaded, and so needs ``trust=True``; a model that does not fit is refused before any of it runs.
 
     ## Action space
-    ``Box(-1, 1, (4,), float32)``: cue speed, side spin, top/back spin, aim; see ``snooker_env.envs.actions.Actions`` for every component
+    ``Box(-1, 1, (4,), float32)``: cue speed, side spin, top/back spin, aim; see ``tasks.box_actions.Actions`` for every component
     and formula. ``aim="absolute"`` reads the aim as an angle of the full circle, ``aim="target"`` as up to 3 degrees left or right of the
     best potting line. ``elevation=True`` appends the cue's elevation, ``placement=True`` two numbers for the place in the D. After a red,
     the colour first struck is the one nominated; so is the free ball. In a frame ``decision=True`` appends what to do when the opponent has
@@ -97,10 +97,10 @@ class SnookerEnv(gymnasium.Env):
     | opponent, miss, decision | "none", "off", False | of a frame only; miss: "off" or "clear_path" (``snooker_env.game.frame``) |
     | max_strokes | 1000 | of a frame only: see Episode end; None: it is never stopped |
     | trust | False | of a frame only; may the code in an opponent's ``.zip`` run? |
-    | action | "box" | or "discrete": one number means a pot, speed, side and top, the aim solved; ``snooker_env.envs.choices`` |
+    | action | "box" | or "discrete": one number means a pot, speed, side and top, the aim solved; ``snooker_env.tasks.discrete_actions`` |
     | aim | "absolute" | or "target" |
     | observation | "flat" | or "balls" |
-    | noise | "none" | "professional", "amateur", "club", "robot", "olympiad", or a dict of ``snooker_env.envs.noise.Noise`` |
+    | noise | "none" | "professional", "amateur", "club", "robot", "olympiad", or a dict of ``snooker_env.tasks.noise.Noise`` |
     | reward | "points" | see Rewards |
     | elevation, placement | False | longer actions |
     | physics | "paper" | "match", or a dict of overrides of ``snooker_env.Physics`` (not R) |

@@ -17,13 +17,13 @@ from gymnasium.vector.utils import batch_space
 
 from .._check import choice, integer, refuse, refuse_what
 from ..game.balls import BallOn
-from . import observations
-from .choices import Choices
-from .frame_table import MAX_STROKES
+from ..tasks import observations
+from ..tasks.discrete_actions import Choices
+from ..tasks.frame_table import MAX_STROKES
+from ..tasks.states import checked
+from ..tasks.visit import BALL_ON, COUNTS, NEVER, POINTS, REALS, Returned, Visits, Work
 from .pictures import Pictures
 from .snooker import SnookerEnv
-from .state import checked
-from .visit import BALL_ON, COUNTS, NEVER, POINTS, REALS, Returned, Visits, Work
 
 CHUNK = 128
 """Most tables played in one go: few enough for a work space that stays in the cache, enough to make the calls from Python cheap."""

@@ -13,9 +13,9 @@ from .._check import refuse
 from .._jit import entry, kernel
 from .balls import BALL_RADIUS, BAULK_Y, CUE, D_RADIUS, GREEN, HALF_LENGTH, HALF_WIDTH, N_BALLS, N_REDS, POCKETS, REDS_MASK, SPOTS, YELLOW
 from .opened import NO_BANK, bank_without, kept
+from .philox import normals, pair, stream_of
 from .pots import POT_COLUMNS, find_pots
 from .snookered import NO_JAWS, snookered_from
-from .stream import normals, pair, stream_of
 
 GAP = 0.001
 """Least gap [m] between a ball placed at random and any other."""

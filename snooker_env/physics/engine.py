@@ -17,10 +17,10 @@ import numpy as np
 from .._jit import entry, inlined, kernel
 from . import cloth, pocket
 from .cloth import AX, AY, FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, VX, VY, WX, WY, WZ, X, Y
-from .contact import collide_balls, collide_cushion, cushion_restitution
 from .detection import TOUCH, boundary_event, clear_box, may_meet, pair_time
+from .impact.contact import collide_balls, collide_cushion, cushion_restitution
+from .impact.polynomial import WORK
 from .parameters import P_E_B, P_E_J, P_R, P_SIN, P_SPIN
-from .polynomial import WORK
 
 PART = 2e-3  # m/s; below what a shot can show: a ball at this speed rolls 16 micrometres
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from snooker_env.game import layouts
+from snooker_env.game.apply_ruling import settle_table
 from snooker_env.game.balls import BLACK, BLUE, GREEN, PINK, SPOTS, YELLOW, BallOn, mask_of
 from snooker_env.game.referee import Situation, Stroke, judge
 from snooker_env.game.ruling import Foul, Outcome
-from snooker_env.game.settle import settle_table
 
 
 def table(*balls, **places):

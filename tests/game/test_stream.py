@@ -5,24 +5,24 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from snooker_env.game import stream
+from snooker_env.game import philox
 
 
 @numba.njit
 def block(words):
-    return stream.philox(words[0], words[1], words[2], words[3], words[4], words[5])
+    return philox.philox(words[0], words[1], words[2], words[3], words[4], words[5])
 
 
 @numba.njit
 def pairs(state, out):
     for k in range(len(out)):
-        out[k, 0], out[k, 1] = stream.pair(state)
+        out[k, 0], out[k, 1] = philox.pair(state)
 
 
 @numba.njit
 def gaussians(state, out):
     for k in range(len(out)):
-        out[k, 0], out[k, 1] = stream.normals(state)
+        out[k, 0], out[k, 1] = philox.normals(state)
 
 
 def drawn(fill, key, n, counter=0):
@@ -94,9 +94,9 @@ def test_streams_of_neighbouring_keys_are_unrelated():
 
 
 def test_keys_come_from_the_generator():
-    one, two = stream.stream_of(np.random.default_rng(1)), stream.stream_of(np.random.default_rng(1))
+    one, two = philox.stream_of(np.random.default_rng(1)), philox.stream_of(np.random.default_rng(1))
     assert np.array_equal(one, two) and one.dtype == np.uint64 and one[1] == 0
     rng = np.random.default_rng(1)
-    assert stream.stream_of(rng)[0] != stream.stream_of(rng)[0]
+    assert philox.stream_of(rng)[0] != philox.stream_of(rng)[0]
     with pytest.raises(ValueError, match="Generator"):
-        stream.stream_of(np.random.RandomState(0))
+        philox.stream_of(np.random.RandomState(0))

@@ -9,8 +9,8 @@ import pytest
 
 import snooker_env as sn
 from benchmarks import _hand_shots
-from snooker_env.envs.noise import LEVELS
 from snooker_env.game.pots import POCKETS
+from snooker_env.tasks.noise import LEVELS
 
 R, END_MASS_RATIO, MU_ROLL, G = 0.02625, 30.0, 0.0127, 9.81
 POTS = {pot.name: pot for pot in _hand_shots.POTS}

@@ -6,9 +6,10 @@ from scipy.integrate import solve_ivp
 
 import snooker_env as sn
 from snooker_env import EventKind, Table
-from snooker_env.envs.aiming import solved_aim
-from snooker_env.physics import cloth, contact
-from snooker_env.physics.polynomial import WORK
+from snooker_env.physics import cloth
+from snooker_env.physics.impact import contact
+from snooker_env.physics.impact.polynomial import WORK
+from snooker_env.tasks.pot_aim import solved_aim
 from tests.kernels import from_python
 from tests.physics.test_shots import check_shot, random_table
 

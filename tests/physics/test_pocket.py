@@ -6,7 +6,8 @@ import pytest
 import snooker_env as sn
 from benchmarks import _invariants as invariants
 from snooker_env import EventKind
-from snooker_env.physics import contact, pocket
+from snooker_env.physics import pocket
+from snooker_env.physics.impact import contact
 from tests.kernels import from_python
 
 R, G, SIN = 0.02625, 9.81, 0.4

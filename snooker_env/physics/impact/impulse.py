@@ -24,7 +24,7 @@ ends of compression and restitution are found. All speeds are divided by y_0 fir
 
 from math import hypot, sqrt
 
-from .._jit import kernel
+from ..._jit import kernel
 from . import dormand_prince, taylor
 from .coulomb import CREEP, GRIPS, KB, SLIDES, SLIP, STARTS, STICK, friction_coefficient, grip_holds, held, rates, settled, slips, wedged
 from .polynomial import ROW, W, Y, state_at, time_of, value_at

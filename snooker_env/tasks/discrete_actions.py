@@ -12,8 +12,8 @@ from .._jit import entry, kernel
 from ..game.balls import BALL_RADIUS, balls_on_kernel, bits
 from ..game.pots import POCKETS, POT_COLUMNS, find_pots
 from ..physics.cue import squirt
-from .actions import line_of
-from .aiming import solved_aim
+from .box_actions import line_of
+from .pot_aim import solved_aim
 
 POTS = 4
 """Pots to choose from, widest first."""

@@ -5,7 +5,7 @@ The equations and their names are those of ``impulse.py``. Each contact is in on
 
 from math import exp, hypot, sqrt
 
-from .._jit import kernel
+from ..._jit import kernel
 
 SLIP, STICK, CREEP = 0, 1, 2  # what contact A does
 SLIDES, STARTS, GRIPS = 0, 1, 2  # what the cloth contact does: slips; is about to slip, from zero; holds

@@ -9,15 +9,15 @@ from .._jit import entry, kernel
 from ..game.balls import BALL_RADIUS, CUE, N_BALLS, TOUCH, bits
 from ..game.referee import Stroke
 from ..physics import cue
-from ..physics.contact import parse_fidelity
 from ..physics.engine import EventKind
+from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..simulation import play
-from .actions import AIMS, Actions, tip
-from .bed import bed_of
-from .choices import Choices
+from .box_actions import AIMS, Actions, tip
+from .discrete_actions import Choices
 from .noise import Noise
+from .table_fit import bed_of
 
 ACTIONS = ("box", "discrete")
 AT_ONCE = 1e-9

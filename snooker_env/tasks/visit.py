@@ -2,7 +2,7 @@
 
 A step is: ``_address`` (action, noise, strike), ``engine.run_batch`` (the shot), ``_conclude`` (what was seen, the referee, reward,
 observation), and for tables that start anew ``layouts.deal_tables`` and ``_begin``. The single environment calls them with one table, the
-vector environment with slices of many: so both play the same, bit for bit. Each table draws from its own stream (``game.stream``).
+vector environment with slices of many: so both play the same, bit for bit. Each table draws from its own stream (``game.philox``).
 """
 
 from dataclasses import dataclass
@@ -10,23 +10,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._jit import entry, kernel
+from ..game.apply_ruling import settle_visit
 from ..game.balls import BALL_RADIUS, CUE, N_BALLS, balls_on_kernel, bits, next_on_kernel
 from ..game.in_hand import nearest_place
 from ..game.layouts import Plan, deal_tables
+from ..game.philox import stream_of
 from ..game.pots import POT_COLUMNS
 from ..game.ruling import VISIT
-from ..game.settle import settle_visit
-from ..game.stream import stream_of
 from ..physics import cloth, cue, engine
 from ..physics.engine import Status
-from ..physics.polynomial import WORK
+from ..physics.impact.polynomial import WORK
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
-from . import choices
-from .actions import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, place_of, shot_of, tip_on_disc
+from . import discrete_actions
+from .box_actions import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, place_of, shot_of, tip_on_disc
 from .noise import executed
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
-from .shooting import Shooter, first_struck, touching_balls
+from .stroke import Shooter, first_struck, touching_balls
 
 # Columns of the game's state. STEPS counts the strokes of the visit, for a limit on them.
 (BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
@@ -48,10 +48,10 @@ _WHY = {
 }
 
 
-@entry(what="the strokes of the environment", seconds=3, uses=(choices.chosen,))
+@entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen,))
 def _address(actions, waiting, positions, on_table, game, streams, options, noise, phys, fidelity, n_steps, r, v, w, here, shots):
     """Carry the actions (m, k) out up to the strike; tables ``waiting`` for a new layout play no shot."""
-    found = np.empty((choices.POTS if options[A_DISCRETE] else 1, POT_COLUMNS))
+    found = np.empty((discrete_actions.POTS if options[A_DISCRETE] else 1, POT_COLUMNS))
     motion, phase, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
     for k in range(actions.shape[0]):
         a, p, on = actions[k], positions[k], on_table[k]
@@ -67,7 +67,9 @@ def _address(actions, waiting, positions, on_table, game, streams, options, nois
                 p[CUE, 0], p[CUE, 1] = x, y
         mask = balls_on_kernel(game[k, BALL_ON], bits(on))
         if options[A_DISCRETE]:
-            intended = choices.chosen(int(a[0]), p, on, mask, phys, options[A_END_MASS], fidelity, n_steps, found, motion, phase, work)
+            intended = discrete_actions.chosen(
+                int(a[0]), p, on, mask, phys, options[A_END_MASS], fidelity, n_steps, found, motion, phase, work
+            )
         else:
             intended = shot_of(a, p, on, mask, options, found)
         speed, side, top, aim, elevation = executed(*intended, noise, streams[k])
@@ -246,9 +248,9 @@ class Visits:
         self.streams[k] = np.array(state.stream, np.uint64)
 
     def action_masks(self):
-        """Which choices there are on each table: bool (n, choices.SIZE)."""
-        out = np.empty((self.n, choices.SIZE), np.bool_)
-        choices.masks(self.positions, self.on_table, self.game[:, BALL_ON].copy(), out)
+        """Which choices there are on each table: bool (n, discrete_actions.SIZE)."""
+        out = np.empty((self.n, discrete_actions.SIZE), np.bool_)
+        discrete_actions.masks(self.positions, self.on_table, self.game[:, BALL_ON].copy(), out)
         return out
 
     def play(self, actions, waiting, out, work, start=0, *, same_step=False):

@@ -11,16 +11,16 @@ from typing import NamedTuple
 import numpy as np
 
 from .._check import choice, integer, refuse
+from ..game.apply_ruling import settle_table
 from ..game.balls import COLOURS_MASK, CUE, CUE_BIT, N_BALLS, SPOTS, balls_on
 from ..game.frame import MISS_RULES, Frame
 from ..game.in_hand import place_cue
 from ..game.paths import paths
 from ..game.referee import Stroke, Verdict
 from ..game.ruling import AUTO
-from ..game.settle import settle_table
 from ..simulation import Shot
-from .shooting import Shooter, mask, stroke_of
-from .state import checked_frame, layout_of
+from .states import checked_frame, layout_of
+from .stroke import Shooter, mask, stroke_of
 
 MAX_STROKES = 1000
 """Strokes of both players after which the referee stops a frame, unless told otherwise. Uniformly random players that aim near a pot needed

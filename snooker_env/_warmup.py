@@ -11,12 +11,12 @@ def warmup():
     Call it in the parent before worker processes start: otherwise each of them compiles for itself. Nothing is said where all comes from
     the cache, or with ``SNOOKER_ENV_QUIET=1``.
     """
-    from .envs.actions import line  # not at the top: this module is part of the light import
     from .envs.snooker import SnookerEnv
     from .game.balls import REDS_MASK
     from .game.pots import pots
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
+    from .tasks.box_actions import line
 
     with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
         simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)

@@ -36,7 +36,7 @@ import numpy as np
 
 from .._check import choice, number, refuse
 from .._jit import entry, kernel
-from ..game.stream import normals
+from ..game.philox import normals
 from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics
 

@@ -4,7 +4,7 @@ Both methods of integration leave their step in this form, in a work array: coef
 seven quantities are the state (F1, F2, G1, G2, p, W, Z); then the closing speed y; the rest is a method's own.
 """
 
-from .._jit import kernel
+from ..._jit import kernel
 
 ROW = 16
 WORK = 21 * ROW  # the size of a work array: a step of degree 20

@@ -13,7 +13,7 @@ B_k and e_k, the latter through the friction -mu_s N e, and the equation is line
 
 from math import exp, log, sqrt
 
-from .._jit import kernel
+from ..._jit import kernel
 from .coulomb import KB, friction_coefficient
 from .polynomial import ROW
 

@@ -6,7 +6,7 @@ the rates are compiled once.
 
 import numpy as np
 
-from .._jit import kernel
+from ..._jit import kernel
 from .coulomb import rates
 from .polynomial import ROW
 

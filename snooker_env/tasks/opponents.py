@@ -13,7 +13,7 @@ from .._check import refuse, truth
 from ..game.balls import BALL_RADIUS, BAULK_Y, CUE, D_RADIUS, N_BALLS
 from ..game.pots import POCKETS, pots
 from . import observations
-from .saved import Saved, outline
+from .saved_models import Saved, outline
 
 OPPONENTS = ("none", "random", "ghost_ball")
 

@@ -10,8 +10,8 @@ from math import atan2, hypot, pi
 
 from .._jit import kernel
 from ..physics import cloth, cue
-from ..physics.contact import collide_balls
 from ..physics.detection import pair_time
+from ..physics.impact.contact import collide_balls
 from ..physics.parameters import P_E_B, P_R
 
 _ENOUGH = 1e-6  # rad that the object ball may pass the aim point by, a hundredth of the best player's error

@@ -7,7 +7,7 @@ which the work has come down to its target. Kept as the paper has it, with its d
 
 from math import hypot, sqrt
 
-from .._jit import kernel
+from ..._jit import kernel
 from .impulse import friction_coefficient
 
 _MAX_OVERRUN = 100  # steps allowed, in units of N, before the scheme is declared lost

@@ -6,11 +6,11 @@ they return their input unchanged.
 
 from math import hypot, sqrt
 
-from .._check import refuse
-from .._jit import kernel
+from ..._check import refuse
+from ..._jit import kernel
+from ..parameters import P_E_C, P_E_KNEE, P_E_POWER, P_MU_A, P_MU_B, P_MU_C, P_MU_S, P_MU_W, P_R, P_SIN
 from . import euler
 from .impulse import OK, friction_coefficient, solve
-from .parameters import P_E_C, P_E_KNEE, P_E_POWER, P_MU_A, P_MU_B, P_MU_C, P_MU_S, P_MU_W, P_R, P_SIN
 
 FAST, STANDARD, REFERENCE, EULER = range(4)
 FIDELITIES = ("fast", "standard", "reference", "euler:N")

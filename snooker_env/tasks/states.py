@@ -9,7 +9,7 @@ from .._check import array, flags, integer, refuse, refuse_what, truth
 from ..game.balls import CUE, CUE_BIT, N_BALLS, REDS_MASK, BallOn, balls_on, next_on
 from ..game.frame import MOST_BREAK, Frame, points_available
 from ..game.in_hand import within_d
-from .shooting import mask
+from .stroke import mask
 
 MOST = 2**53 - 1
 """The highest score and the most strokes of a saved frame: a float, as observations and infos give them, still holds every integer."""
