@@ -57,7 +57,7 @@ def test_train_says_what_is_missing(package):
         ("matplotlib", "test", "curves", ["runs/x"]),
         ("yaml", "train", "curves", ["runs/x"]),
         ("rich", "train", "report", ["--show", "agents/results/147.json"]),
-        ("numba", "train", "looks", []),
+        ("numba", "train", "noise_samples", []),
         ("yaml", "train", "publish", ["runs/x", "--limits", "none"]),
     ],
 )
