@@ -329,7 +329,7 @@ def test_a_pickled_shot_and_world_stay_what_they_are():
 
 def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_folder(tmp_path):
     """A column number baked into a kernel of agents/ comes from another file of agents/."""
-    code = "from agents.players import aim_search\nfrom snooker_env import _jit\nprint(_jit.CACHE_FOLDER, aim_search._solved._cache.cache_path)"
+    code = "from agents.players.aim_search import _solved\nfrom snooker_env import _jit\nprint(_jit.CACHE_FOLDER, _solved._cache.cache_path)"
     copy_of_package(tmp_path)
     shutil.copytree(ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip"))
     seen = []
