@@ -327,9 +327,9 @@ def test_a_pickled_shot_and_world_stay_what_they_are():
     assert pickle.loads(pickle.dumps(sn.Table.preset("tight"))) is sn.Table.preset("tight")
 
 
-def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_folder(tmp_path):
-    """A column number baked into a kernel of agents/ comes from another file of agents/."""
-    code = "from agents.players.aim_search import _solved\nfrom snooker_env import _jit\nprint(_jit.CACHE_FOLDER, _solved._cache.cache_path)"
+def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(tmp_path):
+    """A column number baked into a kernel of agents/ comes from another folder of agents/."""
+    code = "from agents.players.aim_search import _solved as k; from snooker_env import _jit; print(_jit.CACHE_FOLDER, k._cache.cache_path)"
     copy_of_package(tmp_path)
     shutil.copytree(ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip"))
     seen = []
