@@ -63,17 +63,6 @@ def shot_of(a, positions, on_table, on, options, found):
 
 
 @entry
-def tip(side, top, max_offset):
-    """``tip_on_disc`` for Python, all three floats."""
-    return tip_on_disc(side, top, max_offset)
-
-
-@entry
-def _place(a, options):
-    return place_of(a, options)
-
-
-@entry
 def _line(positions, on_table, on):
     return line_of(positions, on_table, on, np.empty((1, POT_COLUMNS)))
 
@@ -148,15 +137,6 @@ class Actions:
         """What the kernels must know: float64, places ``A_*`` of this module."""
         world = self.physics
         return np.array([self.aim == "target", self.elevation, self.placement, world.end_mass_ratio, world.max_offset, False], np.float64)
-
-    def place(self, a):
-        """Where in the D the two components of the placement put the cue ball: (x, y)."""
-        return _place(np.array(a, np.float64), self.pack())
-
-    def decide(self, a):
-        """What an action list says after a foul: "play", "play_again" or "replace"; always "play" without ``decision``."""
-        wish = a[-1] if self.decision else 0.0
-        return "play_again" if wish < -1.0 / 3.0 else "replace" if wish > 1.0 / 3.0 else "play"
 
     def shot(self, a, positions, on_table, on):
         """(speed, side, top, aim, elevation) of an action list, the aim being the cue's direction [rad]."""

@@ -108,8 +108,8 @@ def test_the_tables_that_did_not_fit_can_be_dealt_in_frames_and_matches_too():
         env = SnookerEnv(task=task, layout="opened", table="tight")
         env.reset(seed=1)
         env.set_state(env.get_state())
-        assert env._plan.unfit
-    assert sn.match_env(table="tight", layout="opened").unwrapped._plan.unfit  # pyright: ignore[reportAttributeAccessIssue]
+        assert env.options.rules.plan.unfit
+    assert sn.match_env(table="tight", layout="opened").unwrapped.options.rules.plan.unfit  # pyright: ignore[reportAttributeAccessIssue]
 
 
 NOSES = "in Snooker-v0, whose layouts are made for that bed"
