@@ -19,8 +19,9 @@ from multiprocessing import get_context
 
 import numpy as np
 
-from snooker_env.game.balls import BALL_RADIUS, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of
+from snooker_env.game.balls import COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of
 from snooker_env.game.layouts import break_off
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.frame_table import FrameTable
 from snooker_env.tasks.opponents import GhostBall, RandomPlayer
 from snooker_env.tasks.stroke import mask, shooter_of

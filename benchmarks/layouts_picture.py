@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from snooker_env.game.balls import BALL_RADIUS, REDS_MASK
+from snooker_env.game.balls import REDS_MASK
 from snooker_env.game.layouts import layout
 from snooker_env.game.pots import pots
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import scene
 

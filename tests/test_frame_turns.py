@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from benchmarks import frames
-from snooker_env.game.balls import BLACK, BLUE, CUE, D_RADIUS, PINK, SPOTS, BallOn
+from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import Foul
+from snooker_env.geometry import D_RADIUS
 from snooker_env.tasks.frame_table import FrameTable
 from snooker_env.tasks.stroke import shooter_of
 from tests.tables import PLACES, frame_env, frame_state

@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from .._check import refuse, truth
-from ..game.balls import BALL_RADIUS, BAULK_Y, CUE, D_RADIUS, N_BALLS
-from ..game.pots import POCKETS, pots
+from ..game.balls import CUE, N_BALLS
+from ..game.pots import pots
+from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from . import observations
 from .saved_models import Saved, outline
 
@@ -84,7 +85,7 @@ class GhostBall:
         found = pots(positions, on_table, on, most=1)
         if len(found):
             ball, pocket, gx, gy, cos_cut, _ = found[0]
-            run = hypot(*(POCKETS[int(pocket), :2] - positions[int(ball)]))
+            run = hypot(*(POCKET_AIMS[int(pocket), :2] - positions[int(ball)]))
             needed = _SLIDE * sqrt(_ROLL * (run + 0.6)) / max(cos_cut, 0.2)  # of the cue ball at the impact
             return min(6.0, _SLIDE * sqrt(_ROLL * hypot(gx - x, gy - y) + needed * needed)), atan2(gy - y, gx - x)
         for ball in sorted((i for i in range(1, N_BALLS) if on >> i & 1), key=lambda i: hypot(*(positions[i] - positions[CUE]))):

@@ -6,8 +6,9 @@ import numpy as np
 
 from .._check import choice, refuse
 from .._jit import entry, kernel
-from ..game.balls import BALL_RADIUS, CUE, N_BALLS, TOUCH, bits
+from ..game.balls import CUE, N_BALLS, TOUCH, bits
 from ..game.referee import Stroke
+from ..geometry import BALL_RADIUS
 from ..physics import cue
 from ..physics.engine import EventKind
 from ..physics.impact.contact import parse_fidelity

@@ -11,12 +11,13 @@ import numpy as np
 
 from .._jit import entry, kernel
 from ..game.apply_ruling import settle_visit
-from ..game.balls import BALL_RADIUS, CUE, N_BALLS, balls_on_kernel, bits, next_on_kernel
+from ..game.balls import CUE, N_BALLS, balls_on_kernel, bits, next_on_kernel
 from ..game.in_hand import nearest_place
 from ..game.layouts import Plan, deal_tables
 from ..game.philox import stream_of
 from ..game.pots import POT_COLUMNS
 from ..game.ruling import VISIT
+from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.engine import Status
 from ..physics.impact.polynomial import WORK

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, mask_of
+from snooker_env.game.balls import mask_of
 from snooker_env.game.layouts import deal_tables, plan_of
 from snooker_env.game.philox import stream_of
 from snooker_env.game.pots import pots
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 
 
 def two(cue, red):

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game.balls import BALL_RADIUS, BLACK, BROWN, CUE, GREEN, N_BALLS, PINK, SPOTS, YELLOW
+from snooker_env.game.balls import BLACK, BROWN, CUE, GREEN, N_BALLS, PINK, SPOTS, YELLOW
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.render.ascii_view import ansi
 from snooker_env.render.pygame_view import Window, rgb_array, to_pixels
 from snooker_env.render.scene import COLOURS, ball_paths, outline, scene, shot_scenes
