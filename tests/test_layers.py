@@ -46,8 +46,8 @@ OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools", "hashlib",
-    "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "time", "types", "typing",
-    "warnings", "zipfile", "zlib",
+    "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "time", "types",
+    "typing", "warnings", "zipfile", "zlib",
 }  # fmt: skip
 
 
