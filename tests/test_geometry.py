@@ -1,6 +1,9 @@
 """Is there one geometry? One definition of table and ball, one order of pockets, sizes as published; and what fits nowhere is refused."""
 
 import ast
+import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -178,3 +181,27 @@ NUMBER = "must be a finite number in "
 )  # fmt: skip
 def test_what_does_not_fit_together_is_refused(call, field, value, allowed):
     refused(call, field, value, allowed)
+
+
+DOCUMENT = (PACKAGE.parent / "docs" / "tables.md").read_text()
+BLOCKS = re.findall(r"```python\n(.*?)```", DOCUMENT, re.S)
+SAYS = ("top right", "middle right", "three cushions")
+
+
+@pytest.mark.parametrize("k", range(3))
+def test_the_examples_of_the_document_run(k):
+    assert len(BLOCKS) == 3
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", BLOCKS[k]], cwd=PACKAGE.parent, check=True, timeout=300, capture_output=True
+    )
+    assert SAYS[k] in done.stdout.decode()
+
+
+def test_the_document_names_every_preset_and_the_sizes_that_the_arrays_have():
+    for name, bed in geometry.PRESETS.items():
+        row = next(line for line in DOCUMENT.splitlines() if line.startswith("|") and f'`"{name}"`' in line)
+        length, width = (float(x) for x in re.search(r"([\d.]+) x ([\d.]+)", row).groups())
+        assert (length, width) == pytest.approx((bed.length, bed.width), abs=5e-4)
+        assert float(row.split("|")[3]) == pytest.approx(2e3 * bed.ball["R"], abs=1e-9)
+    assert "83.2 mm" in DOCUMENT and geometry.PRESETS["uk8"].corner.throat == pytest.approx(0.0832, abs=5e-5)
+    assert [geometry.PRESETS["pool9"].corner.mouth, geometry.PRESETS["pool9"].middle.mouth] == pytest.approx([0.1165, 0.1286], abs=5e-5)
