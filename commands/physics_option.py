@@ -1,7 +1,7 @@
 """Which physics does a text on the command line mean? PRESET or PRESET,FIELD=VALUE,... as ``paper,mu_bb=marlow``."""
 
 from snooker_env._check import refuse
-from snooker_env.game.balls import BALL_RADIUS
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.physics.parameters import Physics
 
 

@@ -7,8 +7,9 @@ from math import erf, exp, pi, radians, sqrt
 import numpy as np
 
 from snooker_env._jit import entry
-from snooker_env.game.balls import BALL_RADIUS, N_BALLS, VALUES, BallOn, balls_on_kernel, bits
-from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
+from snooker_env.game.balls import N_BALLS, VALUES, BallOn, balls_on_kernel, bits
+from snooker_env.game.pots import POT_COLUMNS, find_pots
+from snooker_env.geometry import BALL_RADIUS, POCKET_AIMS
 from snooker_env.physics.cloth import COLUMNS
 from snooker_env.physics.cue import squirt
 from snooker_env.physics.impact.polynomial import WORK
@@ -55,7 +56,7 @@ def _prospects(positions, on_table, game, spread, constants, values, chances):
         for j in range(many):
             ball, pocket, gx, gy = int(found[j, 0]), int(found[j, 1]), found[j, 2], found[j, 3]
             path = sqrt((gx - p[0, 0]) ** 2 + (gy - p[0, 1]) ** 2)
-            run = sqrt((POCKETS[pocket, 0] - p[ball, 0]) ** 2 + (POCKETS[pocket, 1] - p[ball, 1]) ** 2)
+            run = sqrt((POCKET_AIMS[pocket, 0] - p[ball, 0]) ** 2 + (POCKET_AIMS[pocket, 1] - p[ball, 1]) ** 2)
             chance = erf(found[j, 5] / (spread * sqrt(2.0))) * exp(-far * (path + run))
             if j < chances.shape[1]:
                 chances[k, j] = chance

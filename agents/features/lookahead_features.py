@@ -11,7 +11,8 @@ import numpy as np
 from gymnasium import spaces
 
 from snooker_env.envs.vector import processors
-from snooker_env.game.balls import HALF_LENGTH, HALF_WIDTH, BallOn
+from snooker_env.game.balls import BallOn
+from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from snooker_env.tasks.visit import BALL_ON
 

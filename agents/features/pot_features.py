@@ -6,8 +6,9 @@ import numpy as np
 from gymnasium import spaces
 
 from snooker_env._jit import entry
-from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, VALUES
-from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
+from snooker_env.game.balls import N_BALLS, VALUES
+from snooker_env.game.pots import POT_COLUMNS, find_pots
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from snooker_env.tasks.discrete_actions import POTS
 from snooker_env.tasks.observations import SIZE, shaped, space
 
@@ -46,12 +47,12 @@ def _add_pots(observations, shown):
             px, py, rx, ry = gx - positions[0, 0], gy - positions[0, 1], bx - gx, by - gy
             away, run = hypot(px, py), hypot(rx, ry)
             px, py, rx, ry = px / away, py / away, rx / run, ry / run
-            to_pocket = hypot(POCKETS[pocket, 0] - bx, POCKETS[pocket, 1] - by)
+            to_pocket = hypot(POCKET_AIMS[pocket, 0] - bx, POCKET_AIMS[pocket, 1] - by)
             row[at], row[at + 1], row[at + 2], row[at + 3], row[at + 4] = 1.0, px, py, px * ry - py * rx, found[p, 4]
             row[at + 5], row[at + 6] = away / HALF_LENGTH - 1.0, to_pocket / HALF_LENGTH - 1.0
             row[at + TOLERANCE], row[at + 8] = 1.0 + log10(found[p, 5]) / 2.0, VALUES[ball] / 7.0
             row[at + 9], row[at + 10] = bx / HALF_WIDTH, by / HALF_LENGTH
-            row[at + 11], row[at + 12] = POCKETS[pocket, 0] / HALF_WIDTH, POCKETS[pocket, 1] / HALF_LENGTH
+            row[at + 11], row[at + 12] = POCKET_AIMS[pocket, 0] / HALF_WIDTH, POCKET_AIMS[pocket, 1] / HALF_LENGTH
             for c in range(at, at + POT_ENTRIES):
                 row[c] = min(1.0, max(-1.0, row[c]))
 

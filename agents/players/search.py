@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from snooker_env.envs.vector import processors
-from snooker_env.game.balls import BALL_RADIUS, balls_on, ids_of
+from snooker_env.game.balls import balls_on, ids_of
 from snooker_env.game.pots import pots
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.discrete_actions import STROKES, TOPS, choice_of
 from snooker_env.tasks.noise import Noise
 from snooker_env.tasks.stroke import mask

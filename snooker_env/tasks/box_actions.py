@@ -7,8 +7,9 @@ from gymnasium import spaces
 
 from .._check import choice, refuse, refuse_what, truth
 from .._jit import entry, kernel
-from ..game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, N_BALLS
+from ..game.balls import N_BALLS
 from ..game.pots import POT_COLUMNS, find_pots
+from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from ..physics.cue import squirt
 
 AIMS = ("absolute", "target")

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import BALL_RADIUS as R
-from snooker_env.game.balls import BAULK_Y, BLACK, CUE, D_RADIUS, N_BALLS, SPOTS, BallOn
-from snooker_env.game.pots import POCKETS, pots
+from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, BallOn
+from snooker_env.game.pots import pots
+from snooker_env.geometry import BALL_RADIUS as R
+from snooker_env.geometry import BAULK_Y, D_RADIUS, POCKET_AIMS
 from snooker_env.tasks.box_actions import MAX_ELEVATION, TARGET_SPAN
 from tests.tables import after_strike, speed_of, table_state
 
@@ -137,7 +138,7 @@ def test_no_placement_overlaps_a_ball(a, b):
 def straight(rng):
     """A straight pot: object ball, cue ball, direction, all clear of the cushions."""
     while True:
-        pocket = POCKETS[rng.integers(6)]
+        pocket = POCKET_AIMS[rng.integers(6)]
         turn = rng.uniform(-0.35, 0.35)
         c, s = math.cos(turn), math.sin(turn)
         d = np.array([pocket[2] * c - pocket[3] * s, pocket[2] * s + pocket[3] * c])

@@ -48,7 +48,7 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         rolls = shot.events[(shot.events["kind"] == sn.EventKind.ROLL) & (shot.events["i"] == 1)]
         assert len(hit) and v.shape == (2,) and w.shape == (3,)
         place, way, _ = (a[1] for a in shot.at(float(rolls["time"][0]) + 1e-9))
-        pocket = pots.POCKETS[int(found[0, 1]), :2]
+        pocket = pots.POCKET_AIMS[int(found[0, 1]), :2]
         if (place - ball) @ (pocket - ball) > 0.9 * (pocket - ball) @ (pocket - ball):
             continue
         to = pocket - place

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game.balls import BLACK, BLUE, CUE, D_RADIUS, PINK, SPOTS, BallOn
+from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import Foul
+from snooker_env.geometry import D_RADIUS
 from tests.tables import PLACES, frame_env, frame_state
 
 TO_BLUE = 0.0

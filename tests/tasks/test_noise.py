@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import BALL_RADIUS as R
 from snooker_env.game.balls import CUE, BallOn
+from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics.cue import strike
 from snooker_env.physics.parameters import Physics
 from snooker_env.tasks.noise import LEVELS, Noise, executed

@@ -10,9 +10,9 @@ import snooker_env as sn
 from snooker_env import Table
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.game.balls import BALL_RADIUS
 from snooker_env.game.layouts import LAYOUTS, deal_tables
 from snooker_env.game.opened import bank, kept
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.table_fit import fitted
 from tests.refusals import case, refused
 
