@@ -42,9 +42,9 @@ with needs("train.py"):
     from agents.learning.imitation import Teaching
     from agents.learning.models import load_weights, zipped
     from agents.learning.run_folder import claimed, go_on, kept, load_model, read_checkpoint
-    from commands.commit import commit
     from commands.files import write_atomic
     from commands.physics_option import world
+    from commands.provenance import commit
     from snooker_env._check import refuse
     from snooker_env.envs.vector import processors
     from snooker_env.game.opened import HELD_OUT

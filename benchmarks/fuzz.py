@@ -24,7 +24,7 @@ from snooker_env.physics.impact import contact
 from snooker_env.physics.table import HALF_LENGTH, HALF_WIDTH, MOUTH
 
 from ._common import invariants as invariants
-from ._common.command import at_least, command, run
+from ._common.command import Command, at_least, run, save_json
 
 R = 0.02625
 D = 2 * R
@@ -299,6 +299,14 @@ def lines(found, seed):
     return text
 
 
+def figures_of(found, seed):
+    """What was found, JSON-able."""
+    worst = {fidelity: dict(zip(invariants.NAMES, x.tolist(), strict=True)) for fidelity, x in found.worst.items()}
+    return {
+        "shots": found.shots, "seconds": found.seconds, "seed": seed, "worst": worst, "events": found.events, "failures": found.failures,
+    }  # fmt: skip
+
+
 def replay(seed, number, index):
     """Play one shot of the fuzz again and print what it breaks; True if nothing."""
     drawn = batch(seed, number)
@@ -316,16 +324,16 @@ def replay(seed, number, index):
 
 def main():
     """Command line."""
-    parser = command("fuzz", __doc__)
-    parser.add_argument("--shots", type=at_least(1), default=1_000_000)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--threads", type=at_least(1), default=2)
+    parser = Command("fuzz", __doc__, seed=0)
+    parser.add_argument("--shots", type=at_least(1), default=1_000_000, help="so many [1000000]")
+    parser.add_argument("--threads", type=at_least(1), default=2, help="[2]")
     parser.add_argument("--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot again")
-    options = parser.parse_args()
+    options = parser.options()
     if options.replay:
         return int(not replay(*options.replay))
     found = fuzz(options.shots, options.seed, options.threads)
     print("\n".join(lines(found, options.seed)))
+    save_json(options.json, figures_of(found, options.seed))
     return int(bool(found.failures))
 
 

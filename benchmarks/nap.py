@@ -1,6 +1,6 @@
 """How far does the cloth's nap turn a slow ball, and does it show beside the errors of the player's hand?
 
-    python -m benchmarks.nap
+    python -m benchmarks.nap [--json FILE] [--out FOLDER]
 
 The equation is dv/dt = -mu_r g v/|v| + nap y (snooker_env/physics/cloth.py). It is integrated here by SciPy, apart from the engine; the
 last column of the first table says how far the engine's ball is from that. No drift was found published, in mm or otherwise. What bounds
@@ -25,7 +25,7 @@ import snooker_env as sn
 from snooker_env.physics.table import UNBOUNDED
 from snooker_env.tasks.noise import LEVELS
 
-from ._common.command import command, run
+from ._common.command import Command, run, save_json
 
 NAPS = (0.0005, 0.001, 0.002, 0.005)
 BOUND = 0.001
@@ -111,7 +111,8 @@ def positions():
 
 def main():
     """Command line: print both tables and the verdict."""
-    command("nap", __doc__).parse_args()
+    options = Command("nap", __doc__).options()
+    found = {"naps": NAPS, "pots": [], "positions": []}
     naps = "".join(f"{nap:8g}" for nap in NAPS)
     print("POTS: drift to the side at the pocket [mm] by nap [m/s^2]; the nap for 10 mm; the hand's scatter there [mm]")
     print(f"{'':28s} at m/s{naps}   10 mm at    hand  drift/hand at {BOUND:g}   engine off [mm]")
@@ -120,6 +121,7 @@ def main():
         values = "".join(f"{1e3 * d:8.2f}" for d in drifts)
         share = drifts[NAPS.index(BOUND)] / hand
         over.append(share > 0.1)
+        found["pots"].append({"pot": name, "arrives": arrives, "drifts": drifts, "nap for 10 mm": seen, "scatter": hand, "engine off": off})
         print(f"{name:28s} {arrives:6.1f}{values}{seen:11.4f}{1e3 * hand:8.2f}{share:21.2f}{1e3 * off:18.4f}")
     print(f"{sum(over)} of {len(over)} of them drift by more than a tenth of the hand's scatter at nap {BOUND:g}.")
     print("\nPOSITIONS: place at rest less that without a nap [mm], to the side (across) or along the way; the hand's scatter of the same")
@@ -128,7 +130,9 @@ def main():
         values = "".join(f"{1e3 * d:8.2f}" for d in shifts)
         v = sqrt(2 * SLOWS * length) * np.array([(1.0, 0.0), (0.0, 1.0)][name != "across"])
         pieces = len(played(v, BOUND).events)
+        found["positions"].append({"way": name, "length": length, "shifts": shifts, "scatter": hand})
         print(f"{name:14s}{length:10.1f}{values}{1e3 * hand:8.2f}{abs(shifts[NAPS.index(BOUND)]) / hand:20.2f}{pieces:8d}")
+    save_json(options.json, found)
 
 
 if __name__ == "__main__":

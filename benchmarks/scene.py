@@ -1,12 +1,13 @@
 """What does a scene require? Each model left out in turn: where balls stop, whether they drop, what it costs; what runs in which scene.
 
-    python -m benchmarks.scene [--shots 600] [--repeats 5] [--physics match] [--models NAME ...] [--json FILE] [--out FILE]
+    python -m benchmarks.scene [--shots 600] [--repeats 5] [--physics match] [--models NAME ...] [--seed 0] [--json FILE]
+        [--out FOLDER]
 
 The same strokes are played at ``standard`` with every model and without one; times are taken in turn, each shot's best of the repeats.
 A shot ends otherwise if other balls drop, or if the ball aimed at is hit in one case only. The cost is that of the whole shot: a ball that
 goes another way meets other things, which counts too; a model's own cost shows best where it does nothing. The first run compiles a copy
-of the package (``_variants``). Two rows measure the measure: a professional's hand (the stroke played again with other errors) and the
-aim turned by 1e-9 rad, which shows how much of an effect is chaos.
+of the package (``_common/variants.py``). Two rows measure the measure: a professional's hand (the stroke played again with other errors)
+and the aim turned by 1e-9 rad, which shows how much of an effect is chaos.
 
 The hop is not modelled, so its effect is computed. Friction at an impact throws the upper ball up at v_z. In the air nothing slows it;
 where it lands the cloth stops v_z, and friction comes all at once. However often it bounces, the cloth's normal impulse falls short of the
@@ -27,13 +28,14 @@ from pathlib import Path
 import numpy as np
 
 import snooker_env as sn
+from commands import provenance
 from snooker_env import simulation
 from snooker_env.physics import table
 from snooker_env.physics.engine import PART, EventKind
 from snooker_env.physics.impact import contact
 
-from ._common import machine, shot_sets, variants
-from ._common.command import at_least, command, pyplot, run, save_json, saved, writable
+from ._common import shot_sets, variants
+from ._common.command import Command, at_least, pyplot, run, save_figure, save_json
 
 STANDARD = contact.parse_fidelity("standard")[0]
 FULL, HAND, CHAOS, HOP = "everything", "a professional's hand", "aim turned by 1e-9 rad", "hop of the lifted ball"
@@ -47,22 +49,24 @@ NOTHING = 1e-3
 """A model that moves no ball by more than this [mm] did nothing in the scene."""
 FREE = 0.05
 """Costs within this share of 1 are not told from none on a shared machine."""
-FILE = Path(__file__).parent / "pictures" / "scene.png"
+FILE = "scene.png"
 
 
-def head_on_stun(n, w):
+def head_on_stun(n, w, seed):
     """Full-ball shots without spin at the impact, far from every cushion and jaw, played without errors."""
-    return shot_sets.head_on(n, w)
+    return shot_sets.head_on(n, w, seed)
 
 
 SCENES = {
     "head-on stun": head_on_stun,
-    "straight pots": lambda n, w: shot_sets.two_ball(n, w, cut=(0.0, 1.0), speed=(1.0, 3.0)),
-    "cut pots, soft": lambda n, w: shot_sets.two_ball(n, w, cut=(10.0, 60.0), speed=(1.0, 2.0)),
-    "cut pots, firm": lambda n, w: shot_sets.two_ball(n, w, cut=(10.0, 60.0), speed=(3.0, 5.0)),
-    "cushion first": lambda n, w: shot_sets.kicks(n, w),
-    "by the rail": lambda n, w: shot_sets.two_ball(n, w, place=shot_sets.by_the_rail, run=(0.15, 0.65), cut=(5.0, 50.0), speed=(1.0, 3.0)),
-    "full tables": lambda n, w: shot_sets.full_table(n, w),
+    "straight pots": lambda n, w, seed: shot_sets.two_ball(n, w, seed, cut=(0.0, 1.0), speed=(1.0, 3.0)),
+    "cut pots, soft": lambda n, w, seed: shot_sets.two_ball(n, w, seed, cut=(10.0, 60.0), speed=(1.0, 2.0)),
+    "cut pots, firm": lambda n, w, seed: shot_sets.two_ball(n, w, seed, cut=(10.0, 60.0), speed=(3.0, 5.0)),
+    "cushion first": lambda n, w, seed: shot_sets.kicks(n, w, seed),
+    "by the rail": lambda n, w, seed: shot_sets.two_ball(
+        n, w, seed, place=shot_sets.by_the_rail, run=(0.15, 0.65), cut=(5.0, 50.0), speed=(1.0, 3.0)
+    ),
+    "full tables": lambda n, w, seed: shot_sets.full_table(n, w, seed),
 }
 
 
@@ -197,10 +201,10 @@ def counts(starts, physics, most=40):
     return json.loads(done.stdout)
 
 
-def study(make, n, repeats, physics, chosen):
+def study(make, n, repeats, physics, chosen, seed):
     """Everything about one scene, and its strokes."""
     world, match = sn.Physics.preset(physics), sn.Table.preset("match")
-    shots = make(n, world)
+    shots = make(n, world, seed)
     run = variants.load()._run if any(MODELS[m].code != STANDARD for m in chosen) else simulation._run
     here = np.ones(shots.positions.shape[:2], bool)
 
@@ -208,7 +212,7 @@ def study(make, n, repeats, physics, chosen):
         v, w = shots.struck(**how)
         return shots.positions, v, w, here
 
-    errors = {} if make is head_on_stun else {"seed": 1}  # with a professional's errors no shot is exactly head-on
+    errors = {} if make is head_on_stun else {"seed": seed + 1}  # with a professional's errors no shot is exactly head-on
     start = started(**errors)
     ways = {FULL: (run, world, match, STANDARD)}
     for name in chosen:
@@ -217,7 +221,7 @@ def study(make, n, repeats, physics, chosen):
     ends = {name: played(way[0], start, *way[1:]) for name, way in ways.items()}
     truth = ends.pop(FULL)
     rows = {name: effect(end, truth, start, shots.ball) for name, end in ends.items()}
-    for name, how in ((HAND, {"seed": 2}), (CHAOS, {**errors, "aim": 1e-9})):
+    for name, how in ((HAND, {"seed": seed + 2}), (CHAOS, {**errors, "aim": 1e-9})):
         rows[name] = effect(played(run, started(**how), world, match, STANDARD), truth, start, shots.ball)
     took = times(ways, start, repeats)
     for name in chosen:
@@ -322,28 +326,22 @@ def draw(scenes, names, out):
         ax.set_xticks(range(len(scenes)), list(scenes), rotation=25, ha="right", fontsize=9)
         ax.set_yticks(range(len(mixed)), mixed, fontsize=9)
         ax.tick_params(length=0)
-    fig.suptitle(f"What a scene requires: each model left out in turn; bold where it matters.  {machine.line()}", fontsize=10)
-    with saved(out) as place:
-        fig.savefig(place, dpi=90)
+    fig.suptitle(f"What a scene requires: each model left out in turn; bold where it matters.  {provenance.line()}", fontsize=10)
+    save_figure(fig, out, dpi=90)
 
 
 def main():
     """Command line."""
-    parser = command("scene", __doc__)
+    parser = Command("scene", __doc__, pictures=(FILE,), seed=0)
     parser.add_argument("--shots", type=at_least(2), default=600, help="shots in each scene")
     parser.add_argument("--repeats", type=at_least(1), default=5, help="timed runs of every shot; the best counts")
     parser.add_argument("--physics", default="match", help="the world with every model: match, or paper")
     parser.add_argument("--models", nargs="+", choices=list(MODELS), default=list(MODELS), help="only these")
-    parser.add_argument("--json", type=Path, help="also write every figure there")
-    parser.add_argument("--out", type=Path, default=FILE, help="the picture")
-    options = parser.parse_args()
-    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
-    writable(options.out, options.json)
-
-    print(f"{machine.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters")
+    options = parser.options()
+    print(f"{provenance.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters")
     scenes, starts = {}, []
     for scene, make in SCENES.items():
-        s, start = study(make, options.shots, options.repeats, options.physics, options.models)
+        s, start = study(make, options.shots, options.repeats, options.physics, options.models, options.seed)
         scenes[scene] = s
         starts.append(start)
         print(f"\n{scene}: {s['us']:.1f} us a shot")
@@ -368,10 +366,11 @@ def main():
     print("\nWhat follows")
     for sentence in lines:
         print(f"* {sentence}")
-    figures = {"machine": machine.machine(), "physics": options.physics, "shots": options.shots, "scenes": scenes, "says": lines}
+    figures = {"machine": provenance.machine(), "physics": options.physics, "shots": options.shots, "scenes": scenes, "says": lines}
     save_json(options.json, figures)
-    draw(scenes, options.models, options.out)
-    print(f"\n{options.out}")
+    if options.pictures:
+        draw(scenes, options.models, options.folder / FILE)
+        print(f"\n{options.folder / FILE}")
 
 
 if __name__ == "__main__":

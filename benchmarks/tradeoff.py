@@ -1,6 +1,7 @@
 """What does each fidelity cost and how far is it from the truth? Impacts, then whole pots; a picture; which fidelity for which use.
 
-    python -m benchmarks.tradeoff [--impacts 2000] [--shots 1000] [--repeats 3] [--physics paper] [--json FILE] [--out FILE]
+    python -m benchmarks.tradeoff [--impacts 2000] [--shots 1000] [--repeats 3] [--physics paper] [--seed 0] [--json FILE]
+        [--out FOLDER]
 
 Truth is ``reference``. Impacts: errors of direction and speed, the worse of the two balls, just after the impact and once both roll (the
 direction a player sees; where a ball is all but stopped by its own spin, its direction means little). Shots: how far from the truth the
@@ -8,16 +9,15 @@ cue ball and the object ball stop, if they stay on the table, and how often the 
 hand: the same intended stroke, played twice by the truth with the errors of ``tasks.noise``.
 """
 
-from pathlib import Path
-
 import numpy as np
 
 import snooker_env as sn
+from commands import provenance
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 
-from ._common import machine, shot_sets
-from ._common.command import at_least, command, pyplot, run, save_json, saved, writable
+from ._common import shot_sets
+from ._common.command import Command, at_least, pyplot, run, save_figure, save_json
 from .speed.command import impacts, median_impact, one_by_one, results
 
 OWN = ("fast", "standard", "reference")
@@ -30,7 +30,7 @@ SHARE = 0.1
 """A fidelity is good enough for play if it moves balls and changes pots at most this share of what a professional's hand does."""
 STORED = 1e-3
 """... and for results that are kept and compared if it changes at most this share of pots."""
-FILE = Path(__file__).parent / "pictures" / "tradeoff.png"
+FILE = "tradeoff.png"
 
 
 def spread(values):
@@ -56,9 +56,9 @@ def impact_errors(found, truth):
     return dict(zip(names, map(spread, (*errors, object_angle)), strict=True))
 
 
-def play_impacts(n):
+def play_impacts(n, seed):
     """Figures of every fidelity on the set of impacts."""
-    x, normals = impacts(n)
+    x, normals = impacts(n, seed)
     phys, truth, rows = sn.Physics.preset("paper").pack(), results(x, normals, "reference"), {}
     for fidelity in IMPACTS:
         code, steps = contact.parse_fidelity(fidelity)
@@ -78,11 +78,11 @@ def compare(end, truth, ball):
     return *shifts, (end.potted[rows, ball] >= 0) != (truth.potted[rows, ball] >= 0)
 
 
-def play_shots(make, n, repeats, physics):
+def play_shots(make, n, repeats, physics, seed):
     """Figures of every fidelity, and of the hand, on one set of shots."""
     world = sn.Physics.preset(physics)
-    shots = make(n, world)
-    v, w = shots.struck(seed=1)
+    shots = make(n, world, seed)
+    v, w = shots.struck(seed=seed + 1)
 
     def play(state, fidelity, events=False):
         return sn.simulate_batch(shots.positions, *state, physics=world, fidelity=fidelity, events=events)
@@ -93,7 +93,7 @@ def play_shots(make, n, repeats, physics):
     rows = {}
     for name in (*SHOTS, HAND):
         hand = name == HAND
-        end = play(shots.struck(seed=2), "reference") if hand else play((v, w), name)
+        end = play(shots.struck(seed=seed + 2), "reference") if hand else play((v, w), name)
         cue, ball, changed = compare(end, truth, shots.ball)
         groups = [(c, (hits >= c[0]) & (hits <= c[1]) & ~np.isnan(cue)) for c in CONTACTS]
         rows[name] = {
@@ -224,33 +224,27 @@ def draw(figures, out):
     colours = (("tab:blue", "snooker_env"), ("tab:orange", "euler:N, the paper's"))
     handles += [Line2D([], [], marker="o", ls="", color=c, label=t) for c, t in colours]
     axes[0, 1].legend(handles=handles, loc="lower right", fontsize=8)
-    fig.suptitle(f"Time against error, {machine.line()}", fontsize=10)
-    with saved(out) as place:
-        fig.savefig(place, dpi=110)
+    fig.suptitle(f"Time against error, {provenance.line()}", fontsize=10)
+    save_figure(fig, out, dpi=110)
 
 
 def main():
     """Command line."""
-    parser = command("tradeoff", __doc__)
+    parser = Command("tradeoff", __doc__, pictures=(FILE,), seed=0)
     parser.add_argument("--impacts", type=at_least(2), default=2000, help="impacts in the set")
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots in each set")
     parser.add_argument("--repeats", type=at_least(1), default=3, help="timed runs of every shot; the best counts")
     parser.add_argument("--physics", default="paper", help="the world of the shots: paper or match")
-    parser.add_argument("--json", type=Path, help="also write every figure there")
-    parser.add_argument("--out", type=Path, default=FILE, help="the picture")
-    options = parser.parse_args()
-    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
-    writable(options.out, options.json)
-
-    print(machine.line())
-    impact_rows = play_impacts(options.impacts)
+    options = parser.options()
+    print(provenance.line())
+    impact_rows = play_impacts(options.impacts, options.seed)
     print(f"\n{options.impacts} impacts: median us; then median, 99 %, worst of: direction [deg], speed [m/s]; once both roll: the same")
     for fidelity, row in impact_rows.items():
         errors = "   ".join(" ".join(f"{e:7.1e}" for e in row[k]) for k in list(row)[1:5])
         print(f"  {fidelity:12s} {row['us']:8.3f}   {errors}")
     sets = {}
     for name, make in SETS.items():
-        s = sets[name] = play_shots(make, options.shots, options.repeats, options.physics)
+        s = sets[name] = play_shots(make, options.shots, options.repeats, options.physics, options.seed)
         print(f'\n{options.shots} {name}, physics "{options.physics}": {s["potted"]:.0%} potted, {s["contacts"]:.1f} ball-ball hits a shot')
         print("                          us a shot   pots changed   cue ball off by [mm]: median, 99 %, worst   object ball: the same")
         for fidelity, row in s["rows"].items():
@@ -269,10 +263,11 @@ def main():
     print("\nWhich fidelity for which use")
     for sentence in says:
         print(f"* {sentence}")
-    figures = {"machine": machine.machine(), "physics": options.physics, "impacts": impact_rows, "shots": sets, "recommendation": says}
+    figures = {"machine": provenance.machine(), "physics": options.physics, "impacts": impact_rows, "shots": sets, "recommendation": says}
     save_json(options.json, figures)
-    draw(figures, options.out)
-    print(f"\n{options.out}")
+    if options.pictures:
+        draw(figures, options.folder / FILE)
+        print(f"\n{options.folder / FILE}")
 
 
 if __name__ == "__main__":

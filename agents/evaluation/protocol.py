@@ -35,9 +35,9 @@ with needs("agents.evaluate"):
     import numpy as np
 
     import snooker_env
-    from commands.commit import commit
     from commands.files import writable, write_atomic
     from commands.physics_option import world
+    from commands.provenance import commit, processor
     from snooker_env import __version__
     from snooker_env._check import choice, integer, refuse
     from snooker_env.game.layouts import plan_of
@@ -70,9 +70,7 @@ def play_agent(agent, condition, seeds, budget, resamples):
 
 def provenance():
     """What computed these figures: version, commit and machine."""
-    cpuinfo = Path("/proc/cpuinfo")
-    cpus = [line.split(":", 1)[1].strip() for line in cpuinfo.read_text().splitlines() if "model name" in line] if cpuinfo.exists() else []
-    machine = f"{cpus[0] if cpus else platform.processor() or 'unknown'}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
+    machine = f"{processor()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
     where = {"version": __version__, "commit": commit() or "unknown", "machine": machine}
     return where | {"python": platform.python_version(), "numpy": np.__version__}
 

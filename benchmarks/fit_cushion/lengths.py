@@ -43,7 +43,10 @@ def past_pink(physics, start):
 
 
 def print_lengths(ends):
-    """The table of lengths; ends: (knee, power) at the two ends of the interval of the power."""
+    """Print the table of lengths and give it, {speed: {constants: lengths}}.
+
+    ends: (knee, power) at the two ends of the interval of the power.
+    """
     match, (livelier, deader) = sn.Physics.preset("match"), ({"e_c_knee": knee, "e_c_power": power} for knee, power in ends)
     worlds = {
         "paper": sn.Physics(),
@@ -76,3 +79,4 @@ cushion the ramp asks for a rolling resistance of about {QUICK:g}, which gives {
 power's interval as well it is {both[0]} and {both[1]}: the measured lengths, if balls were thrown at 10 to 13 m/s. "paper" has
 {paper[0]} and {paper[1]}, by a restitution that does not fall, which the rebounds above 2.5 m/s contradict.
 The constants are not bent to these lengths.""")
+    return table

@@ -9,7 +9,7 @@ import snooker_env as sn
 from snooker_env.physics.impact import contact
 from snooker_env.simulation import MAX_EVENTS, _run
 
-from .._common.command import pyplot, saved
+from .._common.command import pyplot, save_figure
 
 BALLS = (2, 3, 4, 6, 8, 11, 15, 22)
 BATCHES = tuple(4**k for k in range(9))  # 1 to 65,536
@@ -143,6 +143,4 @@ def draw(found, file):
     for axes in (by_balls, by_event, by_batch, by_thread):
         axes.grid(alpha=0.3)
         axes.legend(frameon=False, fontsize=8)
-    with saved(file) as place:
-        figure.savefig(place, dpi=110)
-    plt.close(figure)
+    save_figure(figure, file, dpi=110)
