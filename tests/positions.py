@@ -11,5 +11,5 @@ def tables(n, seed=0, **options):
 
 
 def position(env):
-    v = env.visits
+    v = env.tables
     return Position(v.positions.copy(), v.on_table.copy(), v.game.copy())

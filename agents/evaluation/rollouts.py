@@ -94,7 +94,7 @@ def tables_of(layout, visits):
     plan, seeds, known = plan_of(layout), [], set()
     for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + 20 * visits):
         positions, on_table = np.zeros((1, 22, 2)), np.zeros((1, 22), bool)
-        deal_tables(np.ones(1, bool), plan.code, plan.tables, stream_of(np.random.default_rng(seed))[None], positions, on_table)
+        deal_tables(np.zeros(1, np.int64), plan.code, plan.tables, stream_of(np.random.default_rng(seed))[None], positions, on_table)
         table = np.sort(np.abs(positions[0, :, 0])).round(9).tobytes()
         if table not in known:
             known.add(table)

@@ -27,7 +27,7 @@ class Likeliest:
 
     def act(self, tables, observations, going):
         """The likeliest pot of each table going."""
-        v = tables.visits
+        v = tables.tables
         if self._rules is not v.rules:
             self._rules, self._copies = v.rules, Copies(v.rules, v.rules.shooter.noise, self._threads)
         at = Position(v.positions[going], v.on_table[going], v.game[going])

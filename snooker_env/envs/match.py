@@ -91,6 +91,16 @@ class MatchEnv(AECEnv):
         self._pictures = Pictures(self.options.rules.table, render_mode)
 
     @property
+    def positions(self):
+        """Where the balls lie: (22, 2) [m]."""
+        return self.tables.positions[0].copy()
+
+    @property
+    def on_table(self):
+        """Which balls are on the table: (22,) bool."""
+        return self.tables.on_table[0].copy()
+
+    @property
     def frame(self):
         """The ``snooker_env.game.frame.Frame`` that is played."""
         return self.tables.frame(0)
@@ -167,7 +177,8 @@ class MatchEnv(AECEnv):
         a = self.options.rules.actions.check(action)
         before = self.tables.lead()[0]
         out = self.tables.output()
-        played = self.tables.turn(np.array([a]), out, Crew(self._buffers, (), self._watch))[0]
+        crew = Crew(self._buffers, (), self._watch)
+        played = self.tables.turn(lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers), out, crew)[0]
         self._last = out if played else None
         if not played:
             self._shot = None

@@ -176,6 +176,21 @@ class SnookerEnv(gymnasium.Env):
         """The ``snooker_env.game.frame.Frame`` that is played; None in a visit."""
         return self.tables.frame(0) if isinstance(self.tables, Frames) else None
 
+    @property
+    def physics(self):
+        """The ``Physics`` it is played by."""
+        return self.options.rules.physics
+
+    @property
+    def table(self):
+        """The ``Table`` it is played on."""
+        return self.options.rules.table
+
+    @property
+    def noise(self):
+        """The ``Noise`` of its strokes."""
+        return self.options.rules.noise
+
     def get_state(self):
         """The whole state as JSON types: table, game and random numbers. ``set_state`` brings it back exactly."""
         return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}

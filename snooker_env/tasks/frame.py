@@ -298,10 +298,13 @@ class Frames(Tables):
             out.counts,
         )  # fmt: skip
 
-    def turn(self, actions, out, crew):
-        """One turn of whoever strikes on each table: a match. ``out`` gets the infos of the strokes; returns where there was one."""
+    def turn(self, prepare, out, crew):
+        """One turn of whoever strikes on each table: a match. ``out`` gets the infos of strokes; returns where there was one, (n,) bool.
+
+        ``prepare(which, buffers)``: decides and plays up to the strike, as the method of that name does; the tables with a stroke.
+        """
         self._played[:] = 0
-        crew(np.arange(self.n), lambda which, b: self.complete(self.prepare(which, actions, b), out, b, crew, own=True))
+        crew(np.arange(self.n), lambda which, b: self.complete(prepare(which, b), out, b, crew, own=True))
         return self._played > 0
 
     # steps and resets of the frame task --------------------------------------------------------------------------------------
