@@ -3,7 +3,7 @@
     python -m benchmarks.left_out [--json FILE] [--out FOLDER]
 
 Each is a closed form or one impact, with its inputs in the line above its figures. What these are set beside: the rolling resistance, and a
-professional's hand whose direction errs by 0.035 deg in all: with the cue ball 0.5 m from contact the object ball's direction errs by 0.33
+professional whose direction errs by 0.035 deg in all: with the cue ball 0.5 m from contact the object ball's direction errs by 0.33
 deg, so much that whatever is below 0.03 deg there is below a tenth of it. The nap has a command of its own: ``python -m benchmarks.nap``.
 """
 
@@ -13,9 +13,9 @@ import snooker_env as sn
 
 from ._common.command import Command, run, save_json
 
-WORLD = sn.Physics()
-R, M, G = WORLD.R, WORLD.M, WORLD.g
-SLOWS = WORLD.mu_r * G
+PAPER = sn.Physics()
+R, M, G = PAPER.R, PAPER.M, PAPER.g
+SLOWS = PAPER.mu_r * G
 LENGTH = 2 * (1.7845 - R)
 """From cushion to cushion along the table [m], for a ball's centre."""
 AIR, VISCOSITY, DRAG = 1.2, 1.5e-5, 0.45
@@ -53,7 +53,7 @@ def level():
 
 def unequal():
     """Balls of different mass and size."""
-    e, lighter, smaller = WORLD.e_b, 0.5e-3, 0.1e-3
+    e, lighter, smaller = PAPER.e_b, 0.5e-3, 0.1e-3
     full, light = (1 + e) / 2, (1 + e) * (M - lighter) / (2 * M - lighter)
     on, back = (1 - e) / 2, (M - lighter - e * M) / (2 * M - lighter)
     print(
@@ -72,7 +72,7 @@ def kicks():
     print("\nKICKS: object ball's throw [deg] and speed by the friction at the contact; stun at 2 m/s, constants of the preset paper")
     print("friction   cut 15  speed   cut 30  speed   cut 45  speed")
     found = {}
-    for mu in (WORLD.mu_bb, 0.1, 0.2, 0.5):
+    for mu in (PAPER.mu_bb, 0.1, 0.2, 0.5):
         row, throws = "", []
         for cut in (15, 30, 45):
             turn = radians(cut)
@@ -114,7 +114,7 @@ def double_hits():
     """A cue of 0.5 kg follows its ball into a ball just ahead."""
     cue, tip = 0.5, 0.73
     ball, left = (1 + tip) * cue / (cue + M), (cue - tip * M) / (cue + M)
-    after = (1 - WORLD.e_b) / 2 * ball
+    after = (1 - PAPER.e_b) / 2 * ball
     print(f"\nDOUBLE HITS: cue of {cue} kg, tip restitution {tip}: ball at {ball:.2f} of the cue's speed, cue at {left:.2f} after it")
     print("gap [mm]: how long after the ball ahead is hit full the tip arrives [ms], if nothing stops the cue, by the ball's speed [m/s]")
     found = {}

@@ -6,7 +6,7 @@
 The same strokes are played at ``standard`` with every model and without one; times are taken in turn, each shot's best of the repeats.
 A shot ends otherwise if other balls drop, or if the ball aimed at is hit in one case only. The cost is that of the whole shot: a ball that
 goes another way meets other things, which counts too; a model's own cost shows best where it does nothing. The first run compiles a copy
-of the package (``_common/variants.py``). Two rows measure the measure: a professional's hand (the stroke played again with other errors)
+of the package (``_common/variants.py``). Two rows measure the measure: a professional's errors (the stroke played again with others)
 and the aim turned by 1e-9 rad, which shows how much of an effect is chaos.
 
 The hop is not modelled, so its effect is computed. Friction at an impact throws the upper ball up at v_z. In the air nothing slows it;
@@ -38,9 +38,9 @@ from ._common import shot_sets, variants
 from ._common.command import Command, at_least, pyplot, run, save_figure, save_json
 
 STANDARD = contact.parse_fidelity("standard")[0]
-FULL, HAND, CHAOS, HOP = "everything", "a professional's hand", "aim turned by 1e-9 rad", "hop of the lifted ball"
+FULL, ERRORS, CHAOS, HOP = "everything", "a professional's errors", "aim turned by 1e-9 rad", "hop of the lifted ball"
 SHARE = 0.1
-"""A model matters in a scene if it moves balls or changes outcomes by more than this share of what a professional's hand does."""
+"""A model matters in a scene if it moves balls or changes outcomes by more than this share of what a professional's errors do."""
 VISIBLE = 1.0
 """... by more than this [mm] in the middle case ..."""
 ENOUGH = 20
@@ -48,7 +48,7 @@ ENOUGH = 20
 NOTHING = 1e-3
 """A model that moves no ball by more than this [mm] did nothing in the scene."""
 FREE = 0.05
-"""Costs within this share of 1 are not told from none on a shared machine."""
+"""Costs within this share of 1 cannot be distinguished from none on a shared machine."""
 FILE = "scene.png"
 
 
@@ -94,7 +94,7 @@ def throats():
 
 
 @dataclass(frozen=True)
-class Model:
+class LeftOut:
     """One model, and what a shot is played with when it is left out."""
 
     instead: str
@@ -107,25 +107,25 @@ class Model:
 
 EVERY, ALWAYS = "snooker_env has it at standard and reference", "snooker_env has it at every fidelity"
 MODELS = {
-    "cloth in a ball-ball impact": Model("two free spheres, closed form", f"{EVERY}, not at fast", variants.FREE_BALLS),
-    "cushion: tight tolerance": Model("the loose tolerance of fast", f"{EVERY}, not at fast", variants.LOOSE_CUSHION),
-    "cushion: cloth (the ODE)": Model("a smooth cloth, closed form", ALWAYS, variants.SMOOTH_CLOTH),
-    "cushion: friction, nose, ODE": Model("a mirror with e_c", ALWAYS, variants.MIRROR),
-    "jaw arcs": Model("the throat's points", "snooker_env has them on every table", table=sharp_jaws()),
-    "jaws at all": Model(
+    "cloth in a ball-ball impact": LeftOut("two free spheres, closed form", f"{EVERY}, not at fast", variants.FREE_BALLS),
+    "cushion: tight tolerance": LeftOut("the loose tolerance of fast", f"{EVERY}, not at fast", variants.LOOSE_CUSHION),
+    "cushion: cloth (the ODE)": LeftOut("a smooth cloth, closed form", ALWAYS, variants.SMOOTH_CLOTH),
+    "cushion: friction, nose, ODE": LeftOut("a mirror with e_c", ALWAYS, variants.MIRROR),
+    "jaw arcs": LeftOut("the throat's points", "snooker_env has them on every table", table=sharp_jaws()),
+    "jaws at all": LeftOut(
         "no jaws: only noses and falls", "snooker_env has them on every table",
         table=sn.Table("no jaws", sn.Table.preset("match").noses, np.zeros((0, 6)), sn.Table.preset("match").falls),
     ),
-    "drop takes time": Model("dropped at once at the edge", ALWAYS, variants.AT_ONCE),
-    "Marlow's law": Model("mu_bb 0.05", 'snooker_env has it in "match"; "paper" keeps the paper\'s 0.05', physics={"mu_bb": 0.05}),
-    "spin decay": Model("spin about the vertical stays", "snooker_env has it everywhere", physics={"spin_decel": 0.0}),
+    "drop takes time": LeftOut("dropped at once at the edge", ALWAYS, variants.AT_ONCE),
+    "Marlow's law": LeftOut("mu_bb 0.05", 'snooker_env has it in "match"; "paper" keeps the paper\'s 0.05', physics={"mu_bb": 0.05}),
+    "spin decay": LeftOut("spin about the vertical stays", "snooker_env has it everywhere", physics={"spin_decel": 0.0}),
 }  # fmt: skip
 
 
-def played(run, start, world, cloth, code):
+def played(run, start, constants, table_, code):
     """The batch played to the end: positions, potted, on table."""
     state = [a.copy() for a in start]
-    out = run(state, world, cloth, (code, 0), 100_000, 0, 0)
+    out = run(state, constants, table_, (code, 0), 100_000, 0, 0)
     if out.status.any():
         raise RuntimeError(f"shots {np.flatnonzero(out.status)} did not come to rest")
     return state[0], out.potted, state[3]
@@ -141,11 +141,11 @@ def times(ways, start, repeats):
     """Mean over shots of each one's best time [us], by way, less the call itself; the ways take turns: all see the same machine."""
     best = {name: np.full(len(start[0]), np.inf) for name in ways}
 
-    def one(k, run, world, cloth, code, here=True):
+    def one(k, run, constants, table_, code, here=True):
         state = [a[k : k + 1].copy() for a in start]
         state[3] &= here
         t = time.perf_counter()
-        run(state, world, cloth, (code, 0), 100_000, 0, 0)
+        run(state, constants, table_, (code, 0), 100_000, 0, 0)
         return time.perf_counter() - t
 
     call = min(one(0, *next(iter(ways.values())), here=False) for _ in range(200))
@@ -169,22 +169,22 @@ def effect(end, truth, start, ball):
     return found
 
 
-def hops(shots, v, w, world):
+def hops(shots, v, w, constants):
     """Shift of the cue ball and of the ball aimed at [mm] by the hops of each shot: v v_z / g, summed over its ball-ball impacts."""
     shifts = np.zeros((len(v), 2))
     for k in range(len(v)):
-        shot = sn.simulate(shots.positions[k], v[k], w[k], physics=world)
+        shot = sn.simulate(shots.positions[k], v[k], w[k], physics=constants)
         for event in shot.events[shot.events["kind"] == EventKind.BALL_BALL]:
             balls = [event["i"], event["j"]]
             r, v0, w0 = (a[balls] for a in shot.at(max(0.0, event["time"] - 1e-9)))
             n = (r[1] - r[0]) / np.hypot(*(r[1] - r[0]))
             if (v0[0] - v0[1]) @ n <= PART:
                 continue
-            after = sn.collide_balls((*v0[0], 0.0), w0[0], (*v0[1], 0.0), w0[1], (*n, 0.0), world)
+            after = sn.collide_balls((*v0[0], 0.0), w0[0], (*v0[1], 0.0), w0[1], (*n, 0.0), constants)
             for i, u in zip(balls, after[::2], strict=True):
                 for column, of in enumerate((0, shots.ball[k])):
                     if i == of and shot.on_table[i]:
-                        shifts[k, column] += 1e3 * np.hypot(u[0], u[1]) * u[2] / world.g
+                        shifts[k, column] += 1e3 * np.hypot(u[0], u[1]) * u[2] / constants.g
     found = {name: np.quantile(shifts[:, c], [0.5, 0.95, 1.0]).tolist() for c, name in enumerate(("cue_mm", "ball_mm"))}
     return {**found, "cue_shots": len(v), "ball_shots": len(v)}
 
@@ -203,8 +203,8 @@ def counts(starts, physics, most=40):
 
 def study(make, n, repeats, physics, chosen, seed):
     """Everything about one scene, and its strokes."""
-    world, match = sn.Physics.preset(physics), sn.Table.preset("match")
-    shots = make(n, world, seed)
+    constants, match = sn.Physics.preset(physics), sn.Table.preset("match")
+    shots = make(n, constants, seed)
     run = variants.load()._run if any(MODELS[m].code != STANDARD for m in chosen) else simulation._run
     here = np.ones(shots.positions.shape[:2], bool)
 
@@ -214,20 +214,20 @@ def study(make, n, repeats, physics, chosen, seed):
 
     errors = {} if make is head_on_stun else {"seed": seed + 1}  # with a professional's errors no shot is exactly head-on
     start = started(**errors)
-    ways = {FULL: (run, world, match, STANDARD)}
+    ways = {FULL: (run, constants, match, STANDARD)}
     for name in chosen:
         m = MODELS[name]
-        ways[name] = run, sn.Physics.preset(physics, **m.physics) if m.physics else world, m.table or match, m.code
+        ways[name] = run, sn.Physics.preset(physics, **m.physics) if m.physics else constants, m.table or match, m.code
     ends = {name: played(way[0], start, *way[1:]) for name, way in ways.items()}
     truth = ends.pop(FULL)
     rows = {name: effect(end, truth, start, shots.ball) for name, end in ends.items()}
-    for name, how in ((HAND, {"seed": seed + 2}), (CHAOS, {**errors, "aim": 1e-9})):
-        rows[name] = effect(played(run, started(**how), world, match, STANDARD), truth, start, shots.ball)
+    for name, how in ((ERRORS, {"seed": seed + 2}), (CHAOS, {**errors, "aim": 1e-9})):
+        rows[name] = effect(played(run, started(**how), constants, match, STANDARD), truth, start, shots.ball)
     took = times(ways, start, repeats)
     for name in chosen:
         rows[name]["cost"] = took[FULL] / took[name]
-    rows[HOP] = hops(shots, start[1], start[2], world)
-    log = sn.simulate_batch(start[0], start[1], start[2], physics=world, events=True).events
+    rows[HOP] = hops(shots, start[1], start[2], constants)
+    log = sn.simulate_batch(start[0], start[1], start[2], physics=constants, events=True).events
     assert log is not None
     kinds = np.concatenate([events["kind"] for events in log])
     ran = {k.name.lower().replace("_", "-"): float((kinds == k).sum() / n) for k in EventKind}
@@ -235,13 +235,13 @@ def study(make, n, repeats, physics, chosen, seed):
 
 
 def reasons(row, rows):
-    """In what a model moves balls or changes outcomes by more than a tenth of what the hand does, and by more than chaos."""
-    hand, chaos, found = rows[HAND], rows[CHAOS], []
+    """In what a model moves balls or changes outcomes by more than a tenth of what a professional's errors do, and by more than chaos."""
+    by_errors, chaos, found = rows[ERRORS], rows[CHAOS], []
     for ball in ("cue", "ball"):
-        most = max(SHARE * hand[f"{ball}_mm"][0], 2 * chaos[f"{ball}_mm"][0], VISIBLE)
+        most = max(SHARE * by_errors[f"{ball}_mm"][0], 2 * chaos[f"{ball}_mm"][0], VISIBLE)
         if row[f"{ball}_mm"][0] > most and row[f"{ball}_shots"] >= ENOUGH:
             found.append(ball)
-    if row.get("changed", 0.0) > max(SHARE * hand["changed"], 2 * chaos["changed"]):
+    if row.get("changed", 0.0) > max(SHARE * by_errors["changed"], 2 * chaos["changed"]):
         found.append("changed")
     return found
 
@@ -252,19 +252,19 @@ def verdict(name, scenes):
     where = [scene for scene, s in scenes.items() if reasons(rows[scene], s["rows"])]
 
     def shares(scene):
-        """Effect over the hand's, by what it is an effect on."""
-        row, hand = rows[scene], scenes[scene]["rows"][HAND]
-        balls = [b for b in ("cue", "ball") if row[f"{b}_shots"] >= ENOUGH and hand[f"{b}_mm"][0]]
-        parts = {b: row[f"{b}_mm"][0] / hand[f"{b}_mm"][0] for b in balls}
-        return {**parts, "changed": row.get("changed", 0.0) / hand["changed"] if hand["changed"] else 0.0}
+        """Effect over that of a professional's errors, by what it is an effect on."""
+        row, by_errors = rows[scene], scenes[scene]["rows"][ERRORS]
+        balls = [b for b in ("cue", "ball") if row[f"{b}_shots"] >= ENOUGH and by_errors[f"{b}_mm"][0]]
+        parts = {b: row[f"{b}_mm"][0] / by_errors[f"{b}_mm"][0] for b in balls}
+        return {**parts, "changed": row.get("changed", 0.0) / by_errors["changed"] if by_errors["changed"] else 0.0}
 
     worst = max(where or rows, key=lambda scene: max(shares(scene).values()))
-    row, hand, share = rows[worst], scenes[worst]["rows"][HAND], shares(worst)
+    row, by_errors, share = rows[worst], scenes[worst]["rows"][ERRORS], shares(worst)
     ball = "ball" if share.get("ball", 0.0) > share.get("cue", 0.0) else "cue"
     mm = row[f"{ball}_mm"]
     figures = (
         f"the {'ball aimed at' if ball == 'ball' else 'cue ball'} stops {mm[0]:.3g} mm off in the middle case, 95 % within {mm[1]:.0f}"
-        f" (hand: {hand[f'{ball}_mm'][0]:.3g})"
+        f" (a professional's errors: {by_errors[f'{ball}_mm'][0]:.3g})"
     )
     if name == HOP:
         events = scenes["full tables"]["ran"] if "full tables" in scenes else scenes[worst]["ran"]
@@ -280,7 +280,7 @@ def verdict(name, scenes):
     costs = {scene: r["cost"] for scene, r in rows.items()}
     dear = max(costs, key=lambda s: costs[s])
     cost = f"It costs at most {costs[dear]:.2f} x ({dear})" if costs[dear] > 1 + FREE else "Its cost is within the noise"
-    changed = f"{row['changed']:.1%} of shots end otherwise (hand: {hand['changed']:.1%})"
+    changed = f"{row['changed']:.1%} of shots end otherwise (by a professional's errors: {by_errors['changed']:.1%})"
     none = [s for s, r in rows.items() if max(r["cue_mm"][2], r["ball_mm"][2]) < NOTHING and not r["changed"]]
     paid = [f"{s} ({costs[s]:.2f} x)" for s in none]
     idle = f" It does nothing in: {', '.join(paid)}." if paid else ""
@@ -302,7 +302,7 @@ def draw(scenes, names, out):
     plt = pyplot()
     from matplotlib.colors import LogNorm, Normalize
 
-    mixed = [*names, HOP, HAND, CHAOS]
+    mixed = [*names, HOP, ERRORS, CHAOS]
     panels = (
         ("cue", "cue ball stops off by, median [mm]", lambda r: r["cue_mm"][0], LogNorm(0.1, 1000), "{:.3g}", "YlOrRd"),
         ("changed", "shots that end otherwise [%]", lambda r: 100 * r.get("changed", np.nan), Normalize(0, 50), "{:.1f}", "YlOrRd"),
@@ -317,7 +317,7 @@ def draw(scenes, names, out):
                 x = grid[i, j]
                 if np.isfinite(x):
                     text = "0" if x < 5e-4 else style.format(x)
-                    bold = name not in (HAND, CHAOS) and reason in reasons(s["rows"][name], s["rows"])
+                    bold = name not in (ERRORS, CHAOS) and reason in reasons(s["rows"][name], s["rows"])
                     dark = x > 0 and (norm(x) > 0.7 if colours == "YlOrRd" else abs(norm(x) - 0.5) > 0.35)
                     ax.text(j, i, text, ha="center", va="center", fontsize=9, color="white" if dark else "black",
                             fontweight="bold" if bold else "normal")  # fmt: skip
@@ -335,7 +335,7 @@ def main():
     parser = Command("scene", __doc__, pictures=(FILE,), seed=0)
     parser.add_argument("--shots", type=at_least(2), default=600, help="shots in each scene")
     parser.add_argument("--repeats", type=at_least(1), default=5, help="timed runs of every shot; the best counts")
-    parser.add_argument("--physics", default="match", help="the world with every model: match, or paper")
+    parser.add_argument("--physics", default="match", help="the constants with every model: match or paper [match]")
     parser.add_argument("--models", nargs="+", choices=list(MODELS), default=list(MODELS), help="only these")
     options = parser.options()
     print(f"{provenance.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters")
@@ -348,7 +348,7 @@ def main():
         print("  without                         cue ball off by [mm]: median, 95 %   ball aimed at: the same   end otherwise   cost")
         for name, row in s["rows"].items():
             mm = "          ".join(" ".join(f"{e:9.3f}" if e < 10 else f"{e:9.0f}" for e in row[k][:2]) for k in ("cue_mm", "ball_mm"))
-            star = "*" if name not in (HAND, CHAOS) and reasons(row, s["rows"]) else " "
+            star = "*" if name not in (ERRORS, CHAOS) and reasons(row, s["rows"]) else " "
             changed = f"{row['changed']:9.1%}" if "changed" in row else f"{'-':>9s}"
             cost = f"{row['cost']:.2f} x" if "cost" in row else "-"
             print(f"{star} {name:30s}     {mm}     {changed}      {cost:>7s}")

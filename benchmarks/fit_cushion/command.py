@@ -62,8 +62,8 @@ class Ratios(NamedTuple):
     @classmethod
     def measured(cls):
         """By the package's impact."""
-        worlds = [sn.Physics.preset("match", e_c=float(e), e_c_power=0.0) for e in SHARES]
-        return cls(*(np.array([impact(1.0, physics, rolling) for physics in worlds]) for rolling in (True, False)))
+        constants = [sn.Physics.preset("match", e_c=float(e), e_c_power=0.0) for e in SHARES]
+        return cls(*(np.array([impact(1.0, physics, rolling) for physics in constants]) for rolling in (True, False)))
 
 
 class Interval(NamedTuple):

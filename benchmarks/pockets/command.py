@@ -148,7 +148,7 @@ def print_sizes(found):
               f" no jaw in the log up to +-{low:.2f} (firm) .. {high:.2f} (soft), before +-{before:.2f}")  # fmt: skip
 
 
-def worlds(physics):
+def variants_of(physics):
     """Variants of jaws and slate: name -> how it is played, (physics, table's changes)."""
     fixed = {"the preset": (physics, {})}
     for e in (0.85, 0.72):  # the second is a rail's at 6 m/s
@@ -163,12 +163,12 @@ def worlds(physics):
 def sensitivity(physics, engine):
     """Lateral windows [mm] of a rolling ball from 0.3 m, at 1 and 6 m/s, by variant and pocket."""
     found = {}
-    for name, (world, change) in worlds(physics).items():
+    for name, (constants, change) in variants_of(physics).items():
         table = openings.moved(sn.Table.preset("match"), **change)
         found[name] = {}
         for pocket, index in INDEX.items():
             angles = np.radians(ANGLES[pocket])[:, None]
-            w = windows(alone(table, index), angles, 0.3, np.array([1.0, 6.0]), True, False, world, engine)
+            w = windows(alone(table, index), angles, 0.3, np.array([1.0, 6.0]), True, False, constants, engine)
             found[name] |= {f"{pocket} {a}": 1e3 * w.width[k] for k, a in enumerate(ANGLES[pocket])}
     return found
 

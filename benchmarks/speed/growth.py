@@ -21,9 +21,9 @@ _LEAST = 256  # shots played for one figure: small batches are played one after 
 def kernel_call(p, v, w, threads=1, fidelity="standard"):
     """The batch through ``_run``: no checks, no result objects."""
     state = [np.array(a) for a in (p, v, w, np.ones(p.shape[:2], bool))]
-    world, table = sn.Physics.of(None), sn.Table.preset("match")
+    physics, table = sn.Physics.of(None), sn.Table.preset("match")
     start = time.perf_counter()
-    _run(state, world, table, contact.parse_fidelity(fidelity), MAX_EVENTS, 0, 0, threads)
+    _run(state, physics, table, contact.parse_fidelity(fidelity), MAX_EVENTS, 0, 0, threads)
     return time.perf_counter() - start
 
 
