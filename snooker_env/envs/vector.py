@@ -16,6 +16,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from .._check import choice, integer, refuse, refuse_what
+from .._processors import processors
 from ..game.balls import BallOn
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
@@ -37,11 +38,6 @@ NOT_OF_A_TABLE = {
     "unwrapped": "this environment", "get_wrapper_attr": "call", "set_wrapper_attr": "another environment",
 }  # fmt: skip
 """What ``call`` does not do for single tables, and what there is instead: the tables play, end and begin together."""
-
-
-def processors():
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 class SnookerVectorEnv(VectorEnv):
