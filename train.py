@@ -8,11 +8,10 @@
 A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; a pickle, and loading one runs what it holds: --resume only your own),
 ``model.zip`` (for ``python -m agents.evaluate`` and --start, which run nothing of it, and for ``PPO.load`` of ``stable_baselines3``, which
 unpickles), ``results.json`` (every figure), ``tb/`` (``tensorboard --logdir runs``) and, while the run goes on, ``train.lock``: no two
-runs share a folder (``agents/lock.py``).
+runs share a folder (``agents/learning/lock.py``).
 
-What an agent sees is in ``agents/view.py``, how it is made in ``agents/hyperparams/``, how it is taught first in ``agents/imitate.py``,
-how its visits are judged in ``agents/visits.py``, what is said of them in ``agents/lesson.py``, what is kept in ``agents/run_folder.py``
-and ``agents/keeper.py``; here follow, top to bottom: settings, the run.
+What an agent sees is in ``agents/features/``, how it is made in ``agents/hyperparams/``, how it learns, from the search first, and what is
+kept of a run in ``agents/learning/``, how its visits are judged in ``agents/evaluation/``; here follow, top to bottom: settings, the run.
 """
 
 import argparse
@@ -28,24 +27,24 @@ from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 
-from agents.command import command, needs, of_disk
+from commands.lifecycle import command, needs, of_disk
 
 with needs("train.py"):
-    import sb3_contrib  # noqa: F401 - agents.recipes would miss it only later
+    import sb3_contrib  # noqa: F401 - agents.learning.hyperparameters would miss it only later
     import tensorboard  # noqa: F401 - and stable_baselines3 this one
     import torch
 
     import snooker_env
-    from agents.commit import commit
-    from agents.files import write_atomic
-    from agents.imitate import Teaching
-    from agents.keeper import Keeper, Stop, goal_of, rollout_of, taught
-    from agents.lesson import evaluate, lesson, show
-    from agents.models import load_weights, zipped
-    from agents.recipes import Recipe, names
-    from agents.run_folder import claimed, go_on, kept, load_model, read_checkpoint
-    from agents.tables import training_tables
-    from agents.world import world
+    from agents.evaluation.training_summary import evaluate, lesson, show
+    from agents.features.views import training_tables
+    from agents.learning.callback import Keeper, Stop, goal_of, rollout_of, taught
+    from agents.learning.hyperparameters import Recipe, names
+    from agents.learning.imitation import Teaching
+    from agents.learning.models import load_weights, zipped
+    from agents.learning.run_folder import claimed, go_on, kept, load_model, read_checkpoint
+    from commands.commit import commit
+    from commands.files import write_atomic
+    from commands.physics_option import world
     from snooker_env._check import refuse
     from snooker_env.envs.vector import processors
     from snooker_env.game.opened import HELD_OUT

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# How were the figures of agents/results*.md made? Trains every agent and compares them: hours. What is there already is kept.
+# How were the figures of agents/results/*.md made? Trains every agent and compares them: hours. What is there already is kept.
 #
 #     bash agents/experiments.sh [FOLDER [JOBS]]     runs/experiments, 2 runs side by side, each on one core
 #
-# The tables again from the figures that are kept, without playing: python -m agents.report agents/results*.json
+# The tables again from the figures that are kept, without playing: python -m agents.report agents/results/*.json
 # Only some of the runs, and no comparison: ONLY='fore-|gamma0-' bash agents/experiments.sh. Say what would be run: ... LIST=1 ...
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -54,23 +54,23 @@ module() { # its name, then its options
 evaluate() { # name of the output, then the options of agents.evaluate
     local name=$1
     shift
-    module agents.evaluate "$@" --json "agents/$name.json" --markdown "agents/$name.md"
+    module agents.evaluate "$@" --json "agents/results/$name.json" --markdown "agents/results/$name.md"
 }
 module agents.curves "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" \
     "ppo_mask=$folder/mask-?" "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?"
-evaluate results --against ghost_ball ppo_foresight_gamma0 --picture agents/pictures/destinations.png --agent \
+evaluate main --against ghost_ball ppo_foresight_gamma0 --picture agents/pictures/destinations.png --agent \
     "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" ghost_ball lookahead ppo_mask "ppo_mask_1M=$folder/mask-?" \
     geometric random
-evaluate results_aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
+evaluate aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
     "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?" ghost_ball random_absolute
-evaluate results_teacher --against lookahead --noise professional --agent "ppo_foresight=$folder/fore-?" lookahead
-evaluate results_curriculum --against ghost_ball ppo_mask_1M --layouts held_out line_up --noise professional --agent \
+evaluate teacher --against lookahead --noise professional --agent "ppo_foresight=$folder/fore-?" lookahead
+evaluate curriculum --against ghost_ball ppo_mask_1M --layouts held_out line_up --noise professional --agent \
     "curriculum=$folder/curriculum-?" "ppo_mask_1M=$folder/mask-[012]" ghost_ball
-evaluate results_fidelity --layouts held_out --noise professional --fidelity fast standard reference --agent \
+evaluate fidelity --layouts held_out --noise professional --fidelity fast standard reference --agent \
     "fast=$folder/fast-?" "standard=$folder/fore-0" "reference=$folder/reference-?"
-evaluate results_physics --layouts held_out --noise professional --physics paper match paper,mu_bb=marlow --agent \
+evaluate physics --layouts held_out --noise professional --physics paper match paper,mu_bb=marlow --agent \
     "paper=$folder/fore-0" "match=$folder/match-?" "marlow=$folder/marlow-?"
-evaluate results_noise --layouts held_out --agent \
+evaluate noise --layouts held_out --agent \
     "none=$folder/none-?" "professional=$folder/fore-0" "amateur=$folder/amateur-?" "club=$folder/club-?"
-evaluate results_search --agent search --layouts held_out=100 --noise professional
-evaluate results_147 --agent search --layouts break_off=50 --noise none
+evaluate search --agent search --layouts held_out=100 --noise professional
+evaluate 147 --agent search --layouts break_off=50 --noise none

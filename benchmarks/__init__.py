@@ -3,6 +3,6 @@
 import sys
 
 if sys.argv[0] == "-m":  # Python is about to load a command: what fails in that is said in one line as well
-    from ._command import in_one_line
+    from ._common.command import in_one_line
 
     sys.excepthook = in_one_line

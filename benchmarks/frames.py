@@ -25,7 +25,7 @@ from snooker_env.tasks.frame_table import FrameTable
 from snooker_env.tasks.opponents import GhostBall, RandomPlayer
 from snooker_env.tasks.stroke import mask, shooter_of
 
-from ._command import at_least, command, run
+from ._common.command import at_least, command, run
 
 MOST_STROKES = 20_000
 """A frame that is longer counts as a failure."""

@@ -1,4 +1,4 @@
-"""Does any shot break? Random shots of every kind, fidelity and physics, each checked against every invariant of ``_invariants.py``.
+"""Does any shot break? Random shots of every kind, fidelity and physics, each checked against every invariant of ``_common/invariants.py``.
 
     python -m benchmarks.fuzz [--shots 1000000] [--seed 0] [--threads 2]
     python -m benchmarks.fuzz --replay SEED BATCH INDEX
@@ -23,8 +23,8 @@ from snooker_env.physics.engine import Status
 from snooker_env.physics.impact import contact
 from snooker_env.physics.table import HALF_LENGTH, HALF_WIDTH, MOUTH
 
-from . import _invariants as invariants
-from ._command import at_least, command, run
+from ._common import invariants as invariants
+from ._common.command import at_least, command, run
 
 R = 0.02625
 D = 2 * R

@@ -13,7 +13,7 @@ from snooker_env.game.pots import pots
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import scene
 
-from ._command import command, run, save_image, writable
+from ._common.command import command, run, save_image, writable
 
 FILE = Path(__file__).parent / "pictures" / "layouts.png"
 HEIGHT, COLUMNS, GAP = 330, 3, 6

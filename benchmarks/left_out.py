@@ -11,7 +11,7 @@ from math import asin, cos, degrees, log, pi, radians, sin, sqrt
 
 import snooker_env as sn
 
-from ._command import command, run
+from ._common.command import command, run
 
 WORLD = sn.Physics()
 R, M, G = WORLD.R, WORLD.M, WORLD.g

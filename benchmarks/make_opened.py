@@ -20,7 +20,7 @@ from snooker_env.physics.parameters import Physics
 from snooker_env.physics.table import Table
 from snooker_env.simulation import play
 
-from ._command import at_least, command, run, saved, writable
+from ._common.command import at_least, command, run, saved, writable
 
 PHYSICS, TABLE, FIDELITY = Physics.preset("match"), Table.preset("match"), parse_fidelity("standard")
 SPREAD = 6.0  # m: mean distance of the reds from their centre of mass, times 15, that counts as opened

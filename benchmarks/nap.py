@@ -25,7 +25,7 @@ import snooker_env as sn
 from snooker_env.physics.table import UNBOUNDED
 from snooker_env.tasks.noise import LEVELS
 
-from ._command import command, run
+from ._common.command import command, run
 
 NAPS = (0.0005, 0.001, 0.002, 0.005)
 BOUND = 0.001

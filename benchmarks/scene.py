@@ -32,8 +32,8 @@ from snooker_env.physics import table
 from snooker_env.physics.engine import PART, EventKind
 from snooker_env.physics.impact import contact
 
-from . import _machine, _shots, _variants
-from ._command import at_least, command, pyplot, run, save_json, saved, writable
+from ._common import machine, shot_sets, variants
+from ._common.command import at_least, command, pyplot, run, save_json, saved, writable
 
 STANDARD = contact.parse_fidelity("standard")[0]
 FULL, HAND, CHAOS, HOP = "everything", "a professional's hand", "aim turned by 1e-9 rad", "hop of the lifted ball"
@@ -52,17 +52,17 @@ FILE = Path(__file__).parent / "pictures" / "scene.png"
 
 def head_on_stun(n, w):
     """Full-ball shots without spin at the impact, far from every cushion and jaw, played without errors."""
-    return _shots.head_on(n, w)
+    return shot_sets.head_on(n, w)
 
 
 SCENES = {
     "head-on stun": head_on_stun,
-    "straight pots": lambda n, w: _shots.two_ball(n, w, cut=(0.0, 1.0), speed=(1.0, 3.0)),
-    "cut pots, soft": lambda n, w: _shots.two_ball(n, w, cut=(10.0, 60.0), speed=(1.0, 2.0)),
-    "cut pots, firm": lambda n, w: _shots.two_ball(n, w, cut=(10.0, 60.0), speed=(3.0, 5.0)),
-    "cushion first": lambda n, w: _shots.kicks(n, w),
-    "by the rail": lambda n, w: _shots.two_ball(n, w, place=_shots.by_the_rail, run=(0.15, 0.65), cut=(5.0, 50.0), speed=(1.0, 3.0)),
-    "full tables": lambda n, w: _shots.full_table(n, w),
+    "straight pots": lambda n, w: shot_sets.two_ball(n, w, cut=(0.0, 1.0), speed=(1.0, 3.0)),
+    "cut pots, soft": lambda n, w: shot_sets.two_ball(n, w, cut=(10.0, 60.0), speed=(1.0, 2.0)),
+    "cut pots, firm": lambda n, w: shot_sets.two_ball(n, w, cut=(10.0, 60.0), speed=(3.0, 5.0)),
+    "cushion first": lambda n, w: shot_sets.kicks(n, w),
+    "by the rail": lambda n, w: shot_sets.two_ball(n, w, place=shot_sets.by_the_rail, run=(0.15, 0.65), cut=(5.0, 50.0), speed=(1.0, 3.0)),
+    "full tables": lambda n, w: shot_sets.full_table(n, w),
 }
 
 
@@ -103,16 +103,16 @@ class Model:
 
 EVERY, ALWAYS = "snooker_env has it at standard and reference", "snooker_env has it at every fidelity"
 MODELS = {
-    "cloth in a ball-ball impact": Model("two free spheres, closed form", f"{EVERY}, not at fast", _variants.FREE_BALLS),
-    "cushion: tight tolerance": Model("the loose tolerance of fast", f"{EVERY}, not at fast", _variants.LOOSE_CUSHION),
-    "cushion: cloth (the ODE)": Model("a smooth cloth, closed form", ALWAYS, _variants.SMOOTH_CLOTH),
-    "cushion: friction, nose, ODE": Model("a mirror with e_c", ALWAYS, _variants.MIRROR),
+    "cloth in a ball-ball impact": Model("two free spheres, closed form", f"{EVERY}, not at fast", variants.FREE_BALLS),
+    "cushion: tight tolerance": Model("the loose tolerance of fast", f"{EVERY}, not at fast", variants.LOOSE_CUSHION),
+    "cushion: cloth (the ODE)": Model("a smooth cloth, closed form", ALWAYS, variants.SMOOTH_CLOTH),
+    "cushion: friction, nose, ODE": Model("a mirror with e_c", ALWAYS, variants.MIRROR),
     "jaw arcs": Model("the throat's points", "snooker_env has them on every table", table=sharp_jaws()),
     "jaws at all": Model(
         "no jaws: only noses and falls", "snooker_env has them on every table",
         table=sn.Table("no jaws", sn.Table.preset("match").noses, np.zeros((0, 6)), sn.Table.preset("match").falls),
     ),
-    "drop takes time": Model("dropped at once at the edge", ALWAYS, _variants.AT_ONCE),
+    "drop takes time": Model("dropped at once at the edge", ALWAYS, variants.AT_ONCE),
     "Marlow's law": Model("mu_bb 0.05", 'snooker_env has it in "match"; "paper" keeps the paper\'s 0.05', physics={"mu_bb": 0.05}),
     "spin decay": Model("spin about the vertical stays", "snooker_env has it everywhere", physics={"spin_decel": 0.0}),
 }  # fmt: skip
@@ -186,12 +186,12 @@ def hops(shots, v, w, world):
 
 
 def counts(starts, physics, most=40):
-    """What runs in the first shots of each scene, by ``_counts`` in a process without numba."""
+    """What runs in the first shots of each scene, by ``_common.counts`` in a process without numba."""
     with tempfile.TemporaryDirectory() as folder:
         files = [Path(folder) / f"{k}.npz" for k in range(len(starts))]
         for file, (positions, velocities, spins, _here) in zip(files, starts, strict=True):
             np.savez(file, positions=positions[:most], velocities=velocities[:most], spins=spins[:most])
-        command = [sys.executable, "-c", "from benchmarks import _counts; _counts.main()", physics, *map(str, files)]
+        command = [sys.executable, "-c", "from benchmarks._common import counts; counts.main()", physics, *map(str, files)]
         root = Path(__file__).parent.parent
         done = subprocess.run(command, cwd=root, env=os.environ | {"NUMBA_DISABLE_JIT": "1"}, check=True, capture_output=True, text=True)
     return json.loads(done.stdout)
@@ -201,7 +201,7 @@ def study(make, n, repeats, physics, chosen):
     """Everything about one scene, and its strokes."""
     world, match = sn.Physics.preset(physics), sn.Table.preset("match")
     shots = make(n, world)
-    run = _variants.load()._run if any(MODELS[m].code != STANDARD for m in chosen) else simulation._run
+    run = variants.load()._run if any(MODELS[m].code != STANDARD for m in chosen) else simulation._run
     here = np.ones(shots.positions.shape[:2], bool)
 
     def started(**how):
@@ -322,7 +322,7 @@ def draw(scenes, names, out):
         ax.set_xticks(range(len(scenes)), list(scenes), rotation=25, ha="right", fontsize=9)
         ax.set_yticks(range(len(mixed)), mixed, fontsize=9)
         ax.tick_params(length=0)
-    fig.suptitle(f"What a scene requires: each model left out in turn; bold where it matters.  {_machine.line()}", fontsize=10)
+    fig.suptitle(f"What a scene requires: each model left out in turn; bold where it matters.  {machine.line()}", fontsize=10)
     with saved(out) as place:
         fig.savefig(place, dpi=90)
 
@@ -340,7 +340,7 @@ def main():
     pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
     writable(options.out, options.json)
 
-    print(f"{_machine.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters")
+    print(f"{machine.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters")
     scenes, starts = {}, []
     for scene, make in SCENES.items():
         s, start = study(make, options.shots, options.repeats, options.physics, options.models)
@@ -368,7 +368,7 @@ def main():
     print("\nWhat follows")
     for sentence in lines:
         print(f"* {sentence}")
-    figures = {"machine": _machine.machine(), "physics": options.physics, "shots": options.shots, "scenes": scenes, "says": lines}
+    figures = {"machine": machine.machine(), "physics": options.physics, "shots": options.shots, "scenes": scenes, "says": lines}
     save_json(options.json, figures)
     draw(scenes, options.models, options.out)
     print(f"\n{options.out}")

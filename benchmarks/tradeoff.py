@@ -16,14 +16,14 @@ import snooker_env as sn
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 
-from . import _machine, _shots
-from ._command import at_least, command, pyplot, run, save_json, saved, writable
-from .speed import impacts, median_impact, one_by_one, results
+from ._common import machine, shot_sets
+from ._common.command import at_least, command, pyplot, run, save_json, saved, writable
+from .speed.command import impacts, median_impact, one_by_one, results
 
 OWN = ("fast", "standard", "reference")
 IMPACTS = (*OWN, *(f"euler:{n}" for n in (10, 30, 100, 200, 300, 1000, 3000, 10000)))
 SHOTS = (*OWN, *(f"euler:{n}" for n in (100, 300, 1000, 3000, 10000)))
-SETS = {"two-ball pots": _shots.two_ball, "full tables": _shots.full_table}
+SETS = {"two-ball pots": shot_sets.two_ball, "full tables": shot_sets.full_table}
 CONTACTS = ((1, 1), (2, 2), (3, 5), (6, 999))
 HAND = "a professional's hand"
 SHARE = 0.1
@@ -224,7 +224,7 @@ def draw(figures, out):
     colours = (("tab:blue", "snooker_env"), ("tab:orange", "euler:N, the paper's"))
     handles += [Line2D([], [], marker="o", ls="", color=c, label=t) for c, t in colours]
     axes[0, 1].legend(handles=handles, loc="lower right", fontsize=8)
-    fig.suptitle(f"Time against error, {_machine.line()}", fontsize=10)
+    fig.suptitle(f"Time against error, {machine.line()}", fontsize=10)
     with saved(out) as place:
         fig.savefig(place, dpi=110)
 
@@ -242,7 +242,7 @@ def main():
     pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
     writable(options.out, options.json)
 
-    print(_machine.line())
+    print(machine.line())
     impact_rows = play_impacts(options.impacts)
     print(f"\n{options.impacts} impacts: median us; then median, 99 %, worst of: direction [deg], speed [m/s]; once both roll: the same")
     for fidelity, row in impact_rows.items():
@@ -269,7 +269,7 @@ def main():
     print("\nWhich fidelity for which use")
     for sentence in says:
         print(f"* {sentence}")
-    figures = {"machine": _machine.machine(), "physics": options.physics, "impacts": impact_rows, "shots": sets, "recommendation": says}
+    figures = {"machine": machine.machine(), "physics": options.physics, "impacts": impact_rows, "shots": sets, "recommendation": says}
     save_json(options.json, figures)
     draw(figures, options.out)
     print(f"\n{options.out}")

@@ -23,7 +23,7 @@ from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.tasks.visit import Visits, Work
 
-from ._command import at_least, command, run, save_json, writable
+from ._common.command import at_least, command, run, save_json, writable
 
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)
 

@@ -4,8 +4,8 @@
   belongs to somebody else or that others can write to is not used. root is trusted: it can do anything anyway.
 * numba notices a change only in the file that *defines* a cached function; a changed callee or constant in another file would
   silently run old machine code. So the cache folder's name is a hash of the whole package source: other source, other folder. Kernels
-  defined outside the package (agents, benchmarks) have a folder in it, named by a hash of the folder that they come from. Where the
-  source lies does not matter: equal copies share their machine code.
+  defined outside the package (agents, benchmarks) have a folder in it, named by a hash of the whole package that they come from. Where
+  the source lies does not matter: equal copies share their machine code.
 * Each file ends with its checksum: a pickle cut short would raise, but damaged machine code would crash the process.
 * Whatever goes wrong, it is compiled again, and said once in a process.
 """
@@ -34,7 +34,12 @@ def source_hash(root=_PACKAGE):
     return h.hexdigest()[:16]
 
 
-_hash_of = cache(source_hash)  # of folders outside the package: what was imported from them stays what it was
+@cache  # what was imported from there stays what it was
+def _hash_of(folder):
+    """The hash of the whole package that a folder outside this one belongs to; of the folder alone if it is in none."""
+    while (folder / "__init__.py").is_file() and (folder.parent / "__init__.py").is_file():
+        folder = folder.parent
+    return source_hash(folder)
 
 
 # Folders that are the user's own

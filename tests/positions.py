@@ -1,6 +1,6 @@
 """How does a test of an agent get tables, and the positions on them to try shots from?"""
 
-from agents.lookahead import Position
+from agents.features.lookahead import Position
 from snooker_env.envs.vector import SnookerVectorEnv
 
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from . import golden
+from tests import golden
 
 KEPT = json.loads(golden.KEPT.read_text(encoding="utf-8"))
 

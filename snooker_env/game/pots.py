@@ -7,7 +7,7 @@ arrive at the ghost G = b - 2 R d. With theta the cut angle (between d and the c
 
 that is: the pocket's half window as an angle of the object ball's path, divided by how much an error of aim is magnified at the impact.
 w(a) is the width of the lateral window that the pocket offers at the angle a off its axis, to a ball that rolls at 1.5 m/s on table
-"match", jaws included, to a millimetre (tests/test_pocket_windows.py; a firm ball has less, a dying one more).
+"match", jaws included, to a millimetre (tests/benchmarks/test_pocket_windows.py; a firm ball has less, a dying one more).
 """
 
 from math import acos, hypot, sqrt

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from benchmarks import _hand_shots
+from benchmarks.hand import pot_shots
 from snooker_env.game.pots import POCKETS
 from snooker_env.tasks.noise import LEVELS
 
 R, END_MASS_RATIO, MU_ROLL, G = 0.02625, 30.0, 0.0127, 9.81
-POTS = {pot.name: pot for pot in _hand_shots.POTS}
+POTS = {pot.name: pot for pot in pot_shots.POTS}
 STRAIGHT, RED, HALF = "long: baulk line, 1 m to go, straight", "red 0.6 m, 20 deg, 1.1 m to go", "half ball 1.2 m, 30 deg, 1.0 m to go"
 N = 4000
 CASES = [(name, level) for name in (STRAIGHT, RED, HALF) for level in ("professional", "club", "olympiad")]
@@ -42,7 +42,7 @@ def close(share, other, n, slack=0.0):
 @pytest.mark.parametrize(("name", "level"), CASES)
 def test_the_same_pots_by_strokes_typed_anew(name, level):
     """Spin (5/2) v b / R about the axis across the cue, the cue raised by the elevation; only the shot itself is the engine's."""
-    shot = _hand_shots.aimed(POTS[name], sn.Physics(), "match")
+    shot = pot_shots.aimed(POTS[name], sn.Physics(), "match")
     speed, aim, side, top, raised = errors(level, shot.stroke[0], N, 11)
     way = shot.stroke[1] + aim + squirt(side)
     ahead = np.column_stack([np.cos(way), np.sin(way), 0 * way])
@@ -54,7 +54,7 @@ def test_the_same_pots_by_strokes_typed_anew(name, level):
     spins[:, 0] = 2.5 * speed[:, None] / R * np.cross(offset, cue)
     end = sn.simulate_batch(np.repeat(shot.pot.positions[None], N, 0), velocities, spins)
     made = (end.potted[:, 1] == 3) & (end.potted[:, 0] < 0)
-    found = _hand_shots.rolls(shot, level, N, 5, sn.Physics(), "match")
+    found = pot_shots.rolls(shot, level, N, 5, sn.Physics(), "match")
     assert close(made.mean(), found.rate, N), (made.mean(), found.rate)
 
 
@@ -74,7 +74,7 @@ def window(ball, speed):
 def test_the_same_pots_by_two_circles(name, level):
     """No shot is played: the direction of the cue ball errs, the line of centres at contact is the object ball's path, and the window is
     that of a ball alone. Left out: what a stroke's spin and speed do to the throw and to the window, less than 4 % of the pots."""
-    shot = _hand_shots.aimed(POTS[name], sn.Physics(), "match")
+    shot = pot_shots.aimed(POTS[name], sn.Physics(), "match")
     cue, ball = shot.pot.positions
     path = math.dist(cue, ball) - 2 * R
     arrives = math.sqrt((5 / 7 * shot.stroke[0]) ** 2 - 2 * MU_ROLL * G * path)
@@ -88,5 +88,5 @@ def test_the_same_pots_by_two_circles(name, level):
     hits = np.abs(across) < 2 * R
     line = way + np.arctan2(across, np.sqrt(np.maximum(4 * R * R - across**2, 0.0)))
     made = hits & (along > 0) & (low <= line) & (line <= high)
-    found = _hand_shots.rolls(shot, level, N, 5, sn.Physics(), "match")
+    found = pot_shots.rolls(shot, level, N, 5, sn.Physics(), "match")
     assert close(made.mean(), found.rate, N, 0.04), (made.mean(), found.rate)

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import snooker_env as sn
-from benchmarks import fit_cushion
-from benchmarks._cushion_lengths import RAMP, lengths, past_pink, path
+from benchmarks.fit_cushion import command as fit_cushion
+from benchmarks.fit_cushion.lengths import RAMP, lengths, past_pink, path
 from snooker_env.physics.impact import contact
 from tests.kernels import from_python
 from tests.physics.cases import R

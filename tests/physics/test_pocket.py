@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from benchmarks import _invariants as invariants
+from benchmarks._common import invariants
 from snooker_env import EventKind
 from snooker_env.physics import pocket
 from snooker_env.physics.impact import contact

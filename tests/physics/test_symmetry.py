@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks import fuzz
-from benchmarks._stability_symmetry import images
+from benchmarks.stability.symmetry import images
 
 AXES = (0, 1)
 

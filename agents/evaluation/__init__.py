@@ -1,0 +1,1 @@
+"""How well agents play: rollouts on held-out tables, metrics with intervals, reports, pictures, and the publishing of models."""

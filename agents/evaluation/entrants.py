@@ -1,0 +1,117 @@
+"""Who is compared? Players by name and trained models, one for each training seed, with what is known of how they were made."""
+
+import glob
+import json
+import zipfile
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from commands.physics_option import text_of
+from snooker_env._check import number, refuse
+from snooker_env.envs.snooker import LAYOUTS
+from snooker_env.envs.vector import SnookerVectorEnv
+
+from ..learning.hyperparameters import READ, value_of
+from ..learning.models import PRETRAINED, file_of, load_any, pretrained
+from ..players.built_in import NAMES, is_player, player_of
+
+
+@dataclass(frozen=True)
+class Agent:
+    """What is compared: a player, or the models of one way to train, one for each seed."""
+
+    label: str
+    runs: tuple
+    """Names, model files or run folders."""
+    trust: bool = False
+    """May code in its files run? Models of Stable-Baselines3 that train.py did not make need it."""
+    options: tuple = ()
+    """How the actions of such models are read: (key, value) of ``recipes.READ``."""
+
+    @classmethod
+    def of(cls, text, trust=False, options=()):
+        """From NAME, PATH or LABEL=PATH,PATH,... Raises ValueError."""
+        label, equals, paths = text.partition("=") if not Path(text).exists() else ("", "", "")
+        if not equals:
+            label, paths = "", text
+        runs = []
+        for path in paths.split(","):
+            if path in pretrained():
+                path = str(PRETRAINED / f"{path}.zip")
+            found = [path] if is_player(path) or Path(path).exists() else sorted(glob.glob(path))
+            if not found:
+                known = ", ".join((*NAMES, *pretrained()))
+                allowed = f"must be {known}, MODULE:CLASS, or name models that are there: a .zip, a run folder, a pattern"
+                raise refuse("agent", path, allowed)
+            runs += found
+        if equals and not label:
+            raise refuse("agent", text, "must have a label before the =")
+        if any(map(is_player, runs)) and not all(map(is_player, runs)):
+            raise refuse("agent", text, "must be players or trained models, not both under one label")
+        if is_player(runs[0]):
+            return cls(label or runs[0].rpartition(":")[2], tuple(runs))
+        path = Path(runs[0])
+        return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs), trust, options)
+
+    def trained(self):
+        """What is known of how each run was made: a dict a run, {} for a player that was not trained."""
+        return [self._training(run) for run in self.runs]
+
+    @property
+    def foreign(self):
+        """Whether a model is among them that train.py did not make."""
+        return not is_player(self.runs[0]) and any(_model(run, self.trust, self.options).foreign for run in self.runs)
+
+    def player(self, k, budget):
+        """A fresh player of its run k, or its model, read once. ``budget``: of a search; its seed is k."""
+        run = self.runs[k]
+        return player_of(run, budget=budget, seed=k) if is_player(run) else _model(run, self.trust, self.options)
+
+    def _training(self, run):
+        if is_player(run):
+            player_of(run)  # one's own may not be there
+            return {}
+        model, path = _model(run, self.trust, self.options).model, Path(run)
+        card, results = path.with_suffix(".json"), (path if path.is_dir() else path.parent) / "results.json"
+        if path.is_file() and card.is_file():
+            seconds, imitated = _told(card, "hours"), _told(card, "imitated")
+            seconds = None if seconds is None else 3600.0 * seconds
+        else:
+            seconds, imitated = _told(results, "seconds"), model.imitated
+        usual = {"layout": LAYOUTS["visit"], "noise": "none", "fidelity": "standard"}
+        return {
+            "recipe": model.recipe, "shots": model.num_timesteps, "imitated": imitated, "seconds": seconds, "seed": model.seed,
+            "gamma": model.gamma, **{key: model.env_options.get(key, value) for key, value in usual.items()},
+            "physics": text_of(model.env_options.get("physics", "paper")),
+        }  # fmt: skip
+
+
+def options_of(changes):
+    """What the "key=value" of --options say, as ``Agent.options``. Raises ValueError."""
+    found = {}
+    for change in changes:
+        key, equals, value = change.partition("=")
+        if not equals or key not in READ or key in found:
+            raise refuse("options", change, f"must be KEY=VALUE, KEY once each of {', '.join(READ)}")
+        found[key] = value_of(value)
+    SnookerVectorEnv(1, **found)  # makes sure of the values
+    return tuple(found.items())
+
+
+@cache
+def _model(path, trust, options):
+    if not zipfile.is_zipfile(file_of(Path(path), "agent")):
+        raise refuse("agent", path, "must be a model's .zip or a folder that holds model.zip")
+    return load_any(Path(path), trust, dict(options))
+
+
+def _told(file, name):
+    """The number of this name that a JSON file holds; None if it holds none. Raises ValueError."""
+    try:
+        told = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    except ValueError as error:
+        raise refuse("agent", str(file), f"must be JSON ({error})") from None
+    if not isinstance(told, dict):
+        raise refuse("agent", str(file), f"must hold {name} in an object")
+    return None if told.get(name) is None else number(f"{file}: {name}", told[name], 0)

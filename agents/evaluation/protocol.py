@@ -1,0 +1,261 @@
+"""How well do agents play, and is it positional play? The project's protocol: held-out tables, every level of noise, several seeds.
+
+    python -m agents.evaluate --agent ghost_ball runs/ppo_mask-0
+    python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against ghost_ball "pots only" \\
+        --json agents/results/main.json --markdown agents/results/main.md --picture
+    python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/reference-*" --fidelity fast reference --noise professional
+    python -m agents.evaluate --agent search --visits 50 --layouts held_out --noise professional
+
+Every agent plays the same tables with the same errors of execution (as far as it plays as many strokes): 2,000 opened tables that no
+training sees, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every agent plays under every value given to
+--noise, --fidelity and --physics: agents that were trained under A and B, played under A and B, make the table of A against B. (The aim
+of a discrete choice is solved in the world that is played.)
+
+Agents are named as ``NAME`` (a player of agents/players/built_in.py, a model of agents/pretrained), as a model's .zip or run folder, as
+LABEL=PATH,PATH,... for one that was trained with several seeds (a PATH may be a pattern), or as MODULE:CLASS for a player of your own,
+whose module is imported and so run. Models of train.py and agents/pretrained are read as plain data. Any other model of
+Stable-Baselines3 or sb3-contrib, trained on a visit by what the environment shows, holds pickled Python code, which runs when it is
+loaded: it needs --trust and, where its actions were not read as usual, --options, as aim=target.
+Intervals are 95 % bootstrap intervals over training seeds and visits (agents/evaluation/statistics.py); the ratios are paired: same
+tables above and below.
+"""
+
+import argparse
+import json
+import os
+import platform
+import shlex
+import sys
+from itertools import product
+from pathlib import Path
+
+from commands.lifecycle import command, needs, of_disk
+
+with needs("agents.evaluate"):
+    import numpy as np
+
+    import snooker_env
+    from commands.commit import commit
+    from commands.files import writable, write_atomic
+    from commands.physics_option import world
+    from snooker_env import __version__
+    from snooker_env._check import choice, integer, refuse
+    from snooker_env.game.layouts import plan_of
+    from snooker_env.physics.impact.contact import parse_fidelity
+    from snooker_env.tasks.noise import Noise
+
+    from ..learning.models import pretrained
+    from ..players.built_in import NAMES
+    from .entrants import Agent, options_of
+    from .metrics import Played, counts
+    from .report import AXES, main_condition, markdown, show
+    from .rollouts import HELD_OUT_SEED, play, tables_of
+    from .statistics import RESAMPLES
+
+PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
+"""Visits on each layout."""
+NOISES = ("none", "professional", "amateur", "club")
+REFERENCE = "ghost_ball"
+PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
+
+
+def play_agent(agent, condition, seeds, budget, resamples):
+    """``Played`` by every run of the agent on the tables with these seeds."""
+    options = {"layout": condition["layout"], "noise": condition["noise"], "fidelity": condition["fidelity"]}
+    physics = world(condition["physics"])
+    runs = [play(agent.player(k, budget), len(seeds), first_seed=seeds, physics=physics, **options) for k in range(len(agent.runs))]
+    each = [counts(strokes) for strokes in runs]
+    return Played(agent, {name: np.stack([one[name] for one in each]) for name in each[0]}, runs, resamples)
+
+
+def provenance():
+    """What computed these figures: version, commit and machine."""
+    cpuinfo = Path("/proc/cpuinfo")
+    cpus = [line.split(":", 1)[1].strip() for line in cpuinfo.read_text().splitlines() if "model name" in line] if cpuinfo.exists() else []
+    machine = f"{cpus[0] if cpus else platform.processor() or 'unknown'}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
+    where = {"version": __version__, "commit": commit() or "unknown", "machine": machine}
+    return where | {"python": platform.python_version(), "numpy": np.__version__}
+
+
+def parser():
+    """The command line."""
+    p = argparse.ArgumentParser("python -m agents.evaluate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument(
+        "--agent",
+        nargs="+",
+        required=True,
+        metavar="AGENT",
+        help=f"NAME, MODEL, LABEL=PATH,PATH,... or MODULE:CLASS; NAME: {', '.join((*NAMES, *pretrained()))}",
+    )
+    p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
+    p.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help="how the actions of such models are read, as aim=target")
+    p.add_argument("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=f"agents to compare the others with [{REFERENCE}]")
+    usual = [f"{name}={n}" for name, n in PROTOCOL.items()]
+    p.add_argument("--layouts", nargs="+", default=usual, metavar="LAYOUT", help=f"LAYOUT=VISITS [{' '.join(usual)}]")
+    p.add_argument("--visits", type=int, help="so many on every layout, for a quick look or a slow player")
+    p.add_argument("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
+    p.add_argument("--fidelity", nargs="+", default=["standard"], help="fast, standard, reference or euler:N [standard]")
+    p.add_argument("--physics", nargs="+", default=["paper"], help="paper, match or with changes as paper,mu_bb=marlow [paper]")
+    p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
+    p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
+    p.add_argument("--json", type=Path, help="write every figure here")
+    p.add_argument("--markdown", type=Path, help="write the tables here")
+    p.add_argument(
+        "--picture",
+        type=Path,
+        nargs="?",
+        const=PICTURE,
+        help="draw where the cue ball goes, for the first three agents [agents/pictures/destinations.png]",
+    )
+    return p
+
+
+def checked(args):
+    """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError before anything is played."""
+    options = options_of(args.options)
+    agents = [Agent.of(text, args.trust, options) for text in args.agent]
+    labels = [agent.label for agent in agents]
+    for label in args.against:
+        if label == REFERENCE and label not in labels:
+            agents.append(Agent(REFERENCE, (REFERENCE,)))
+        elif label not in labels:
+            raise refuse("against", label, f"must be one of {', '.join(labels)}, {REFERENCE}")
+    for label in labels:
+        if labels.count(label) > 1:
+            raise refuse("agent", label, "must be another for each agent: give LABEL=PATH")
+    sizes = {}
+    for text in args.layouts:
+        name, _, n = text.partition("=")
+        plan_of(name)
+        visits = args.visits if args.visits is not None else n or PROTOCOL.get(name, PROTOCOL["line_up"])
+        if isinstance(visits, str) and not visits.isdecimal():
+            raise refuse("layouts", text, "must be LAYOUT or LAYOUT=VISITS")
+        sizes[name] = integer("visits", int(visits), 2, 2**20)
+    for level in args.noise:
+        Noise.of(level)
+    for fidelity in args.fidelity:
+        parse_fidelity(fidelity)
+    for physics in args.physics:
+        world(physics)
+    integer("budget", args.budget, 2, 2**31)
+    integer("resamples", args.resamples, 100, 10**6)
+    if args.picture and "held_out" not in sizes:
+        raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
+    for agent in agents:
+        agent.trained()  # reads its models
+    if options and not any(agent.foreign for agent in agents):
+        raise refuse("options", " ".join(args.options), "must be left out: it is for models that train.py did not make")
+    for name in ("json", "markdown", "picture"):
+        writable(name, getattr(args, name))
+    return agents, list(dict.fromkeys(args.against)), {name: tables_of(name, visits) for name, visits in sizes.items()}
+
+
+def evaluate(report, agents, seeds, tick, shown):
+    """Play everything that the report's protocol says and add the results to it, a whole condition at a time.
+
+    ``shown`` becomes the strokes of the main condition, by label.
+    """
+    p = report["protocol"]
+    for layout, *at in product(seeds, *(p[axis] for axis in AXES)):
+        condition = {"layout": layout, **dict(zip(AXES, at, strict=True))}
+        played = {}
+        for agent in agents:
+            played[agent.label] = play_agent(agent, condition, seeds[layout], p["search_budget"], p["resamples"])
+            tick()
+        others, rows = [played[label] for label in p["against"]], []
+        for one in played.values():
+            about = {"agent": one.agent.label, **condition, "visits": len(seeds[layout]), "runs": len(one.agent.runs)}
+            rows.append(about | one.result([other for other in others if other is not one]))
+        report["results"] += rows
+        if condition == main_condition(report):
+            shown |= {label: one.strokes for label, one in played.items()}
+
+
+def spared(file):
+    """Where incomplete figures go: ``file``, or beside it if it is there already, for it may be whole."""
+    return file.with_name(f"{file.stem}.incomplete{file.suffix}") if file and file.exists() else file
+
+
+@command("agents.evaluate")
+def main(argv=None):
+    """Check, play, tell. Exit code 0; 130 if it was interrupted: what was complete is kept."""
+    p = parser()
+    argv = sys.argv[1:] if argv is None else argv
+    args = p.parse_args(argv)
+    from rich.console import Console
+    from rich.progress import Progress
+
+    try:
+        if args.picture:
+            from .destinations import formats
+
+            choice("picture", args.picture.suffix, formats())
+        agents, references, seeds = checked(args)
+    except ValueError as error:
+        p.error(str(error))
+    snooker_env.warmup()
+    for agent in agents:  # compiled before the clock runs
+        play(agent.player(0, args.budget), 2)
+    report = {
+        "command": "python -m agents.evaluate " + shlex.join(argv), **provenance(),
+        "protocol": {
+            "layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED, "against": references,
+            **{axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}, "resamples": args.resamples, "search_budget": args.budget,
+        },
+        "agents": [
+            {"label": agent.label, "runs": [{"from": run, **how} for run, how in zip(agent.runs, agent.trained(), strict=True)]}
+            for agent in agents
+        ],
+        "results": [],
+    }  # fmt: skip
+    conditions, shown = len(seeds) * int(np.prod([len(report["protocol"][axis]) for axis in AXES])), {}
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("visits", total=conditions * len(agents))
+        try:
+            evaluate(report, agents, seeds, lambda: bar.advance(task), shown)
+        except KeyboardInterrupt:
+            complete = len(report["results"]) // len(agents)
+            what = "the others are lost" if complete else "nothing is kept"
+            report["incomplete"] = f"interrupted when {complete} of {conditions} parts (layouts under one noise) were complete: {what}"
+    if "incomplete" in report:
+        print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
+        if not report["results"]:
+            return 130
+    tell(report, shown, args)
+    return 130 if "incomplete" in report else 0
+
+
+def tell(report, shown, args):
+    """Print the tables and write what was asked for. A file that cannot be written is told at the end: none loses the others."""
+    files, failed = {name: getattr(args, name) for name in ("json", "markdown", "picture")}, []
+    if "incomplete" in report:
+        files = {name: spared(file) for name, file in files.items()}
+    if not shown:
+        files["picture"] = None
+
+    def text(file):
+        picture = files["picture"] and Path(os.path.relpath(files["picture"], file.parent)).as_posix()
+        write_atomic(file, (markdown(report, picture) + "\n").encode())
+
+    def picture(file):
+        from .destinations import draw
+
+        draw(report, shown, file)
+
+    def written(name, write):
+        try:
+            if files[name]:
+                write(files[name])
+        except OSError as error:
+            failed.append(of_disk(error, files[name]))
+            files[name] = None
+
+    written("json", lambda file: write_atomic(file, (json.dumps(report, indent=1) + "\n").encode()))
+    written("markdown", text)
+    written("picture", picture)
+    show(report)  # last: whoever reads it may leave, as head does
+    for name, file in files.items():
+        if file:
+            print(f"{name}: {file}")
+    if failed:
+        raise SystemExit(f"agents.evaluate: {'; '.join(failed)}")

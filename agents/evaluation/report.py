@@ -1,0 +1,349 @@
+"""How is an evaluation told? Its tables and sentences, for a terminal and as Markdown; every word follows from the figures.
+
+``report`` is what agents/evaluation/protocol.py writes as JSON. The Markdown is made again from it, without playing, by
+
+    python -m agents.report agents/results/*.json
+
+which writes ``agents/results/*.md``; --show prints the tables instead.
+"""
+
+import argparse
+import json
+import os
+import shlex
+from pathlib import Path
+
+from commands.lifecycle import command, needs
+
+with needs("agents.report"):
+    from commands.files import write_atomic
+    from snooker_env._check import refuse
+    from snooker_env.game.layouts import POT, plan_of
+
+    from .rollouts import CENTURY, MAXIMUM
+    from .statistics import unseen
+    from .text_tables import Table, say
+
+SEEDS = 5
+"""Fewer training seeds than that are pointed out."""
+SAME = 0.1
+"""Times that differ by less than this share are called equal."""
+AXES = ("noise", "fidelity", "physics")
+USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
+
+
+def _pm(figure, form="{:.2f}", scale=1.0):
+    """A figure with its interval."""
+    if figure["value"] is None:
+        return ""
+    value = form.format(scale * figure["value"])
+    if figure["low"] is None:
+        return value
+    return f"{value} [{form.format(scale * figure['low'])}, {form.format(scale * figure['high'])}]"
+
+
+def _trials(row, below):
+    """How often a run could have done it: the entry ``below`` of what agents/evaluation/metrics.py counts. None if that was not kept."""
+    f, visits = row["figures"], row["visits"]
+    known = {"visits": visits, "strokes": row["strokes"] / row["runs"]}
+    if f["pots_a_visit"]["value"] is not None and f["clearances"]["value"] is not None:
+        known["goes_on"] = visits * (f["pots_a_visit"]["value"] - f["clearances"]["value"])
+    return (known | row.get("counted", {})).get(below)
+
+
+SHARES = {
+    "centuries": "visits", "maximums": "visits", "clearances": "visits", "fouls_a_visit": "visits", "pot_rate": "strokes",
+    "next_pot_after_a_pot": "goes_on", "easy_pot_left_by_a_pot": "goes_on", "high_colours": "colours", "high_colour_after_a_red": "reds",
+}  # fmt: skip
+"""Figures that are shares, and of what. A visit ends with its first foul: those a visit are a share, too."""
+
+
+def _share(row, name, form="{:.1f}", scale=100.0):
+    """A share with its interval; where it was never so, or always, with the exact bound of that."""
+    figure = row["figures"][name]
+    if figure["low"] is None and figure["value"] in (0.0, 1.0):
+        n = _trials(row, SHARES[name])
+        if n:
+            most = unseen(n)
+            figure = figure | ({"low": 0.0, "high": most} if figure["value"] == 0.0 else {"low": 1.0 - most, "high": 1.0})
+    return _pm(figure, form, scale)
+
+
+def most_points(layout):
+    """The most points that a visit on this layout can bring."""
+    kind, reds = (int(x) for x in plan_of(layout).code[:2])
+    return reds if kind == POT else 8 * reds + 27
+
+
+def _between(values, form="{:,.0f}"):
+    """One number, or the least and the most of several."""
+    known = [v for v in values if v is not None]
+    if not known:
+        return ""
+    low, high = form.format(min(known)), form.format(max(known))
+    return low if low == high else f"{low} to {high}"
+
+
+def _picked(report, **condition):
+    return [r for r in report["results"] if all(r[key] == value for key, value in condition.items())]
+
+
+def main_condition(report):
+    """Where the comparison in words, and the picture, are taken: the usual of everything that was played, else its first value."""
+    p = report["protocol"]
+    return {
+        name: USUAL[name] if USUAL[name] in p[key] else next(iter(p[key]))
+        for name, key in (("layout", "layouts"), *zip(AXES, AXES, strict=True))
+    }
+
+
+def _listed(words):
+    """Words as a sentence lists them."""
+    *others, last = map(str, words)
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def title(report):
+    """What is compared: an axis under whose values agents were trained and play, or agents and where they play."""
+    p, layouts = report["protocol"], _listed(report["protocol"]["layouts"])
+    for axis in AXES:
+        made = {str(run[axis]) for agent in report["agents"] for run in agent["runs"] if axis in run}
+        if len(made) > 1 and len(p[axis]) > 1:
+            return f"How agents trained under one {axis} play under another, on {layouts}: {_listed(p[axis])}"
+    under = "" if len(p["noise"]) > 1 or p["noise"] == [USUAL["noise"]] else f", noise {p['noise'][0]}"
+    return f"How {_listed(agent['label'] for agent in report['agents'])} play on {layouts}{under}"
+
+
+def agents_tables(report):
+    """Who plays, how each was trained, and how long."""
+    trained, long = [], []
+    for agent in report["agents"]:
+        runs, label = agent["runs"], agent["label"]
+        if "recipe" not in runs[0]:
+            trained.append([label, "not trained", "", "", "", ""])
+            continue
+        words = [", ".join(sorted({str(run[key]) for run in runs})) for key in ("recipe", "noise", "fidelity", "physics")]
+        rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]
+        numbers = [_between([run[key] for run in runs]) for key in ("imitated", "shots", "seconds")]
+        gammas = ", ".join(sorted({f"{run['gamma']:g}" for run in runs}))
+        trained.append([label, *words, gammas])
+        long.append([label, str(_seeds(runs)), *numbers, _between(rates)])
+    header = ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
+    return [
+        Table("The agents", header, trained, 1, 5),
+        Table("How long they were trained", ["agent", "seeds", "taught", "shots", "seconds", "shots/s"], long, 1, 1),
+    ]
+
+
+def _seeds(runs):
+    """Training seeds of these runs: a model given twice is one."""
+    return len({run["seed"] for run in runs})
+
+
+GIVEN = (("imitated", "positions taught", 0.0), ("shots", "shots", 0.0), ("seconds", "seconds of training", SAME))
+"""What agents are given: how it is kept, how it is called, and by what share it may differ to be called equal."""
+
+
+def fairness(report):
+    """Sentences: were the trained agents given the same, and are the tables new to them?"""
+    trained = [agent for agent in report["agents"] if "recipe" in agent["runs"][0]]
+    said = []
+    for agent in trained:
+        n = _seeds(agent["runs"])
+        if n < SEEDS:
+            few = "1 training seed: its intervals say nothing about other seeds" if n == 1 else f"{n} training seeds, fewer than {SEEDS}"
+            said.append(f"{agent['label']} has {few}.")
+        known = {run["layout"] for run in agent["runs"]} & {*report["protocol"]["layouts"], USUAL["layout"]}
+        said += [f"{agent['label']} was trained on layout {layout}: its tables are not new to it." for layout in sorted(known)]
+    if len(trained) > 1:
+        for key, name, share in GIVEN:
+            given = {agent["label"]: [run[key] for run in agent["runs"]] for agent in trained}
+            unknown = [label for label, values in given.items() if None in values]
+            values = [value for some in given.values() for value in some]
+            if unknown:
+                said.append(f"Whether the trained agents had equal {name} cannot be said: not known of {', '.join(unknown)}.")
+            elif max(values) <= (1 + share) * min(values):
+                said.append(f"The trained agents had equal {name} ({_between(values)}).")
+            else:
+                said.append(f"The trained agents had unequal {name} ({_between(values)}).")
+    return said
+
+
+def comparison(report):
+    """Sentences: each agent against those it is compared with."""
+    at, said, told = main_condition(report), [], set()
+    rows = {r["agent"]: r for r in _picked(report, **at)}
+    for name, row in rows.items():
+        for other, ratios in row["ratios"].items():
+            if (other, name) in told:  # the other way round
+                continue
+            told.add((name, other))
+            ratio, mine, its = ratios["points_a_visit"], row["figures"], rows[other]["figures"]
+            if ratio["value"] is None or ratio["low"] is None:
+                continue
+            apart = ratio["low"] > 1 or ratio["high"] < 1
+            start = f"{name} makes {_pm(ratio)} times the points of {other}"
+            start += "" if apart else f", a difference that {row['visits']:,} visits do not show"
+            shares = [
+                f"{words} {100 * mine[key]['value']:.1f} against {100 * its[key]['value']:.1f} %"
+                for key, words in (
+                    ("next_pot_after_a_pot", "after a pot it pots again:"), ("easy_pot_left_by_a_pot", "an easy pot is left:"),
+                    ("high_colour_after_a_red", "after a red it pots pink or black:"),
+                ) if mine[key]["value"] is not None and its[key]["value"] is not None
+            ]  # fmt: skip
+            said.append(f"{start}; {'; '.join(shares)}." if shares else f"{start}.")
+    where = ", ".join(f"{key} {value}" for key, value in at.items())
+    return [f"On {where}:", *said] if said else []
+
+
+def crossed(report):
+    """Points a visit of every agent under every value of an axis that has more than one."""
+    p, tables = report["protocol"], []
+    at = main_condition(report)
+    for layout in p["layouts"]:
+        for axis in AXES:
+            if len(p[axis]) < 2:
+                continue
+            rest = {key: at[key] for key in AXES if key != axis} | {"layout": layout}
+            rows = []
+            for agent in report["agents"]:
+                made = ", ".join(sorted({str(run[axis]) for run in agent["runs"] if axis in run}))
+                found = [_picked(report, agent=agent["label"], **rest, **{axis: value}) for value in p[axis]]
+                rows.append([agent["label"], made, *(_pm(some[0]["figures"]["points_a_visit"]) if some else "" for some in found)])
+            under = ", ".join(f"{key} {value}" for key, value in rest.items() if key != "layout")
+            title = f"{layout}: points a visit, played under {axis} ..., {under}"
+            tables.append(Table(title, ["agent", "trained under", *p[axis]], rows, 2, 2))
+    return tables
+
+
+def conditions(report):
+    """Tables of every layout and world: what was scored, and how the cue ball was placed."""
+    p, tables = report["protocol"], []
+    for layout, visits in p["layouts"].items():
+        most = most_points(layout)
+        for physics in p["physics"]:
+            for fidelity in p["fidelity"]:
+                rows = _picked(report, layout=layout, physics=physics, fidelity=fidelity)
+                where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}"
+                for name, columns in _columns(p["against"], most).items():
+                    cells = [[r["noise"], r["agent"], *(cell(r) for cell in columns.values())] for r in rows]
+                    tables.append(Table(f"{where}: {name}", ["noise", "agent", *columns], cells, 2, 2, True))
+    return tables
+
+
+def _columns(against, most):
+    """The tables of a condition: name -> {heading: cell of a result}, without breaks of more than ``most`` points, which cannot be."""
+
+    def figure(name):
+        return lambda r: _pm(r["figures"][name])
+
+    def share(name, *more):
+        return lambda r: _share(r, name, *more)
+
+    def times(other):
+        return lambda r: _pm(r["ratios"][other]["points_a_visit"]) if other in r["ratios"] else ""
+
+    breaks = {"centuries %": ("centuries", CENTURY), "147s %": ("maximums", MAXIMUM), "clearances %": ("clearances", 0)}
+    return {
+        "points": {
+            "points a visit": figure("points_a_visit"), "IQM": figure("points_a_visit_iqm"), "best": lambda r: str(r["longest_break"]),
+        },
+        "points against others": {f"times {other}": times(other) for other in against},
+        "pots": {
+            "pots a visit": figure("pots_a_visit"), "IQM": figure("pots_a_visit_iqm"),
+        },
+        "breaks": {heading: share(name) for heading, (name, least) in breaks.items() if least <= most},
+        "potting and position": {
+            "pot rate %": share("pot_rate"), "next pot %": share("next_pot_after_a_pot"), "easy left %": share("easy_pot_left_by_a_pot"),
+        },
+        "fouls and time": {"fouls a visit": share("fouls_a_visit", "{:.2f}", 1.0), "ms": lambda r: f"{r['ms_a_decision']:.2f}"},
+        "colours": {
+            "colour's value": figure("colour_value"), "high colours %": share("high_colours"),
+            "high after red %": share("high_colour_after_a_red"),
+        },
+    }  # fmt: skip
+
+
+LEGEND = (
+    "[low, high]: 95 % bootstrap interval over training seeds and visits. Where a thing was never seen, or always, it is the exact "
+    "one-sided 95 % bound instead (0 of 30 visits: at most 9.5 %): of tables and luck, each trial as likely as the other; runs of several "
+    "seeds on the same tables count once, and other seeds may differ. IQM: inter-quartile mean, that of the middle half of all visits. "
+    "times X: points over those of X on the same tables, paired. next pot: pots that left a ball and were followed by another. easy left: "
+    'of these, those that left a pot whose line may err by 4 mrad, as on "pots:easy". high: pink or black, of all colours potted, and '
+    "after all reds potted. ms: a decision's time, all tables played at once. What cannot be on a layout, and rows and columns without a "
+    "figure, are left out."
+)
+
+
+def parts(report):
+    """Everything in order: ``Table`` (none wider than ``WIDTH``) or str."""
+    told = [*agents_tables(report), *fairness(report), *comparison(report), *crossed(report), *conditions(report), LEGEND]
+    if "incomplete" in report:
+        told.insert(0, f"INCOMPLETE: {report['incomplete']}.")
+    for part in told:
+        yield from [part] if isinstance(part, str) else part.tidy().narrow()
+
+
+def show(report):
+    """Print it."""
+    for part in parts(report):
+        if isinstance(part, str):
+            say(part)
+        else:
+            part.show()
+
+
+def markdown(report, picture=None):
+    """The same as one Markdown text."""
+    version = report.get("version", "of an unknown version")
+    out = [
+        f"# {title(report)}", "", "Made by", "", "```bash", report["command"], "```", "",
+        f"with snooker_env {version}, at commit {report['commit']} on {report['machine']}, Python {report['python']}.", "",
+    ]  # fmt: skip
+    if picture:
+        out += [f"![where the cue ball stops after a red, and what follows]({picture})", ""]
+    for part in parts(report):
+        out += [part if isinstance(part, str) else part.markdown(), ""]
+    return "\n".join(out)
+
+
+def picture_of(report, folder):
+    """The picture that the report's command drew, as seen from ``folder``; None if it drew none."""
+    words = shlex.split(report["command"])
+    if "--picture" not in words:
+        return None
+    named = words[words.index("--picture") + 1 :][:1]
+    file = Path(named[0]) if named and not named[0].startswith("--") else Path(__file__).parents[1] / "pictures" / "destinations.png"
+    return Path(os.path.relpath(file, folder)).as_posix()
+
+
+def read(file):
+    """The report in a JSON file. Raises ValueError."""
+    try:
+        report = json.loads(file.read_text(encoding="utf-8"))
+        list(parts(report))
+        title(report)
+    except (OSError, ValueError, KeyError, TypeError, IndexError, AttributeError):
+        raise refuse("file", str(file), "must be what agents.evaluate writes with --json") from None
+    return report
+
+
+@command("agents.report")
+def main(argv=None):
+    """Make the Markdown again from kept figures, or print them. Exit code 0."""
+    p = argparse.ArgumentParser("python -m agents.report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("files", nargs="+", type=Path, metavar="FILE.json", help="what agents.evaluate wrote with --json")
+    p.add_argument("--show", action="store_true", help="print the tables, write nothing")
+    args = p.parse_args(argv)
+    try:
+        reports = {file: read(file) for file in args.files}
+    except ValueError as error:
+        p.error(str(error))
+    for file, report in reports.items():
+        if args.show:
+            show(report)
+            continue
+        target = file.with_suffix(".md")
+        write_atomic(target, (markdown(report, picture_of(report, target.parent)) + "\n").encode())
+        print(target)
+    return 0

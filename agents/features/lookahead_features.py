@@ -1,0 +1,86 @@
+"""Where would the cue ball go? Some strokes at the two widest pots, played a few times in the mind: the view of an agent that looks ahead.
+
+Behind ``view.with_pots`` come ``STROKES_SEEN`` rows, one for each stroke at each of these pots, with what it would lead to: means over the
+errors of ``looks.LOOKS``, scaled by the execution noise of the tables (one look if there is none). The agent may play these strokes and no
+others. Looking costs 120 simulated shots a decision: the agent is slower than one that only sees the table, far quicker than ``search``.
+
+Two pots and a few strokes, with several looks at each: what an error does to the next pot cannot be told from one outcome.
+"""
+
+import numpy as np
+from gymnasium import spaces
+
+from snooker_env.envs.vector import processors
+from snooker_env.game.balls import HALF_LENGTH, HALF_WIDTH, BallOn
+from snooker_env.tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
+from snooker_env.tasks.visit import BALL_ON
+
+from .lookahead import BY_HAND, Copies, Position, prospects_of, spread_of
+from .noise_samples import LOOKS
+from .pot_features import SHOWN, with_pots
+
+POTS_SEEN = 2
+SEEN_SPEEDS, SEEN_TOPS = (1, 3, 5, 7), (0, 2, 4)
+"""Places in ``SPEEDS`` and ``TOPS``; without side."""
+PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(POTS_SEEN) for s in SEEN_SPEEDS for t in SEEN_TOPS])
+"""The choices looked at."""
+STROKES_SEEN = len(PICKS)
+(THERE, CHANCE, SCORED, GOES_ON, POINTS, CUE_X, CUE_Y, FIRST, SECOND, THIRD, VALUE, SPREAD, SPEED, TOP, RED_ON) = range(15)
+"""Places in a row: 1 if there is such a pot, its chance by its width; share of looks that score, that go on; mean points / 7; of those that
+go on: where the cue ball stops (x, y), chances of the three likeliest next pots; mean value by hand of what is left / 25 (0 for a visit
+that ended), its standard deviation; speed / 6.3, top / 0.4, 1 if a red was on."""
+ENTRIES = RED_ON + 1
+SPACE = spaces.Box(-10.0, 10.0, (SHOWN + STROKES_SEEN * ENTRIES,), np.float32)
+_CHOSEN = np.zeros(SIZE, bool)
+_CHOSEN[PICKS] = True
+_SPEEDS = np.array(SPEEDS)[PICKS % STROKES // (len(SIDES) * len(TOPS))] / SPEEDS[-1]
+_TOPS = np.array(TOPS)[PICKS % len(TOPS)] / TOPS[-1]
+
+
+class Foresight:
+    """Looks ahead on the tables of a ``SnookerVectorEnv``."""
+
+    space = SPACE
+
+    def __init__(self, threads=None):
+        self._threads, self._rules = threads or processors(), None
+
+    def __call__(self, tables, observations, rows=None):
+        """What is seen of the tables ``rows`` (all if None), whose observations are given: float32 (n, SHOWN + STROKES_SEEN * ENTRIES)."""
+        v = tables.visits
+        rows = np.arange(tables.num_envs) if rows is None else np.flatnonzero(rows)
+        at = Position(v.positions[rows], v.on_table[rows], v.game[rows])
+        ahead = self.ahead(v.rules, at, tables.action_masks()[rows][:, PICKS])
+        return np.concatenate([with_pots(observations), ahead.reshape(len(rows), -1)], 1)
+
+    def ahead(self, rules, at, masks):
+        """The rows (n, STROKES_SEEN, ENTRIES) of the ``Position`` at; all 0 where ``masks`` (n, STROKES_SEEN) says there is no such pot."""
+        if self._rules is not rules:
+            self._rules, noise = rules, rules.shooter.noise
+            self._looks = np.array(LOOKS[:1] if noise.silent else LOOKS, np.uint64)
+            self._copies, self._spread = Copies(rules, noise, self._threads), spread_of(noise, rules.shooter.physics)
+        table, stroke = np.nonzero(masks)
+        k, m = len(self._looks), len(table)
+        points, goes_on, left, _ = self._copies.play(at, np.tile(table, k), np.tile(PICKS[stroke], k), np.repeat(self._looks, m))
+        values, chances = self._copies.prospects(left, self._spread, most=8)
+        values, points, goes_on = (goes_on * values).reshape(k, m), points.reshape(k, m), goes_on.reshape(k, m)
+        share = (goes_on / np.maximum(1, goes_on.sum(0)))[:, :, None]
+        row = np.empty((m, ENTRIES), np.float32)
+        row[:, THERE], row[:, CHANCE] = 1.0, prospects_of(at, self._spread)[1][table, PICKS[stroke] // STROKES]
+        row[:, SCORED], row[:, GOES_ON], row[:, POINTS] = (points > 0).mean(0), goes_on.mean(0), points.mean(0) / 7.0
+        row[:, CUE_X : CUE_Y + 1] = (share * (left.positions[:, 0] / (HALF_WIDTH, HALF_LENGTH)).reshape(k, m, 2)).sum(0)
+        row[:, FIRST : THIRD + 1] = (share * -np.sort(-chances, axis=1)[:, :3].reshape(k, m, 3)).sum(0)
+        row[:, VALUE], row[:, SPREAD] = values.mean(0) / BY_HAND[0], values.std(0) / BY_HAND[0]
+        row[:, SPEED], row[:, TOP], row[:, RED_ON] = _SPEEDS[stroke], _TOPS[stroke], at.game[table, BALL_ON] == BallOn.RED
+        seen = np.zeros((*masks.shape, ENTRIES), np.float32)
+        seen[table, stroke] = row
+        return seen
+
+    def masks(self, tables):
+        """Which choices may be played: those looked at, of those that there are."""
+        return tables.action_masks() & _CHOSEN
+
+
+def worth_by_hand(ahead):
+    """Points that the strokes of rows (n, STROKES_SEEN, ENTRIES) promise, value left included; -inf where there is none."""
+    return np.where(ahead[..., THERE] > 0, 7.0 * ahead[..., POINTS] + BY_HAND[0] * ahead[..., VALUE], -np.inf)

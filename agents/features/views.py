@@ -1,0 +1,56 @@
+"""How are tables shown to an agent? By a view: its pots, or a look one shot ahead too; for training, as an SB3 ``VecEnv``."""
+
+import numpy as np
+
+from snooker_env._check import choice
+
+from .lookahead_features import Foresight
+from .pot_features import SHOWN, Pots, with_pots
+
+VIEWS = ("pots", "foresight")
+
+
+def view_of(name, threads=None):
+    """The view of that name."""
+    return Foresight(threads) if choice("view", name, VIEWS) == "foresight" else Pots()
+
+
+def training_tables(n, threads=None, view="pots", **options):
+    """n tables of ``SnookerVecEnv``, seen through a view: an SB3 ``VecEnv``."""
+    from stable_baselines3.common.vec_env import VecEnvWrapper
+
+    from snooker_env.sb3 import SnookerVecEnv
+
+    look, base = view_of(view, threads), SnookerVecEnv(n, threads=threads, **options)
+
+    class Viewed(VecEnvWrapper):
+        """All tables in one go. What is seen of a visit that ended holds the pots only: nothing is learned from what comes after it."""
+
+        def reset(self):
+            return look(base.tables, self.venv.reset())
+
+        def step_wait(self):
+            observations, rewards, done, infos = self.venv.step_wait()
+            ended = [info for info in infos if "terminal_observation" in info]
+            if ended:
+                last = np.zeros((len(ended), *look.space.shape), np.float32)
+                last[:, :SHOWN] = with_pots(np.stack([info["terminal_observation"] for info in ended]))
+                for info, row in zip(ended, last, strict=True):
+                    info["terminal_observation"] = row
+            return look(base.tables, observations), rewards, done, infos
+
+        @property
+        def running(self):
+            """Rewards and strokes so far of the visits going on, for ``episode`` in their last info: no state of a table holds them."""
+            return base._returns.copy(), base._lengths.copy()
+
+        @running.setter
+        def running(self, sums):
+            base._returns[:], base._lengths[:] = sums
+
+        def env_method(self, method_name, *arguments, indices=None, **more):
+            if method_name == "action_masks":
+                return list(look.masks(base.tables)[np.array(self._get_indices(indices))])
+            return self.venv.env_method(method_name, *arguments, indices=indices, **more)
+
+    return Viewed(base, look.space)

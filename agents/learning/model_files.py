@@ -1,0 +1,159 @@
+"""What is kept of a trained agent in a file, and how is it read? Figures as JSON, and weights; nothing of a file is unpickled.
+
+``train.py`` writes zips of Stable-Baselines3, which ``PPO.load`` reads by running the pickles in their ``data``; ``agents.publish`` writes
+zips of ``model.json`` and ``policy.pth`` alone. Of either this reads the entries ``KEPT`` as plain JSON and the tensors of ``policy.pth``
+(``torch.load`` with ``weights_only``). The network is made by today's recipe of that name: no name in a file leads to any code but that.
+"""
+
+import io
+import json
+import zipfile
+from dataclasses import dataclass
+from typing import Any
+
+from snooker_env._check import choice, integer, number, refuse
+from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.tasks.saved_models import PLAIN, by_train, entries, part
+
+from ..features.views import VIEWS, view_of
+from .hyperparameters import READ, TRAINING, WORLD, Recipe, names
+
+WEIGHTS = "policy.pth"
+
+
+@dataclass
+class Trained:
+    """A trained agent as a file tells of it; the names are those that train.py gives to SB3's own models."""
+
+    policy: Any
+    """Its network, an SB3 policy."""
+    recipe: str
+    view: str
+    env_options: dict
+    """``SnookerEnv`` arguments that it was trained with."""
+    num_timesteps: int
+    gamma: float
+    seed: int | None
+    imitated: int | None
+    """Positions in which it was taught by the search; None: not known."""
+    start: dict | None
+    """Where its weights came from, see ``models.load_weights``."""
+
+    @property
+    def action_space(self):
+        """Of the tables that it was trained on."""
+        return self.policy.action_space
+
+
+def _options(field, value):
+    for key in _dict(field, value):
+        choice(f"key of {field}", key, (*READ, *WORLD, *TRAINING))
+    return value
+
+
+def _dict(field, value):
+    if not isinstance(value, dict):
+        raise refuse(field, value, "must be a dict")
+    return value
+
+
+def _count(field, value):
+    return integer(field, value, 0, 10**18)
+
+
+KEPT = {
+    "recipe": lambda field, value: choice(field, value, names()),
+    "view": lambda field, value: choice(field, value, VIEWS),
+    "env_options": _options,
+    "num_timesteps": _count,
+    "gamma": lambda field, value: number(field, value, 0, 1),
+    "seed": _count,
+    "imitated": _count,
+    "start": _dict,
+}
+"""The entries that are read, and what makes sure of each."""
+MAY_BE_NONE = ("seed", "imitated", "start")
+
+
+class _MismatchError(Exception):
+    """These are not the weights of today's network."""
+
+
+def read(path, field):
+    """The ``Trained`` agent in a file; None if train.py did not make it. Raises ValueError, naming ``field``; ImportError without torch."""
+    try:
+        found = entries(path)
+        if not by_train(found):
+            return None
+        told: dict[str, Any] = {
+            key: None if found.get(key) is None and key in MAY_BE_NONE else check(key, found.get(key)) for key, check in KEPT.items()
+        }  # fmt: skip
+        seen = found["seen"] if "seen" in found else found["observation_space"]["_shape"][0]
+    except Exception as error:  # whatever zip and JSON make of a file that is something else
+        raise refuse(field, str(path), f"must be a model that train.py saved ({str(error)[:300]})") from None
+    try:
+        return Trained(_network(path, told, seen), **told)
+    except _MismatchError:
+        raise refuse(field, str(path), f"must be a model of today's {told['recipe']}: this one is older, train it again") from None
+    except ImportError:
+        raise
+    except Exception as error:  # whatever zip and torch make of weights that are something else
+        why = f"its {WEIGHTS} must hold weights and nothing else: {type(error).__name__}"
+        raise refuse(field, str(path), f"must be a model that train.py saved ({why})") from None
+
+
+def _network(path, told, seen):
+    """Today's network with the weights of a file."""
+    import torch
+
+    try:
+        recipe = Recipe.of(told["recipe"], env_kwargs=told["env_options"])
+        tables = SnookerVectorEnv(1, **told["env_options"])
+        with torch.random.fork_rng(devices=[]):  # the first weights are drawn, and forgotten
+            network = recipe.new_network(view_of(told["view"]).space, tables.single_action_space)
+    except ImportError:
+        raise
+    except Exception:  # options or parts that are no more
+        raise _MismatchError from None
+    if network.observation_space.shape != (seen,):
+        raise _MismatchError
+    own = network.state_dict()
+    weights = _weights(path, 2**16 + sum(4096 + tensor.numel() * tensor.element_size() for tensor in own.values()))
+    if _forms(weights) != _forms(own):
+        raise _MismatchError
+    if not all(torch.isfinite(tensor).all() for tensor in weights.values()):
+        raise ValueError
+    network.load_state_dict(weights)
+    return network
+
+
+def _weights(path, most):
+    """The tensors of a file, by name, without running anything; ``_MismatchError`` if they take more than ``most`` bytes."""
+    import torch
+
+    try:
+        file = io.BytesIO(part(path, WEIGHTS, most))
+    except ValueError:
+        raise _MismatchError from None
+    with zipfile.ZipFile(file) as inner:
+        if sum(info.file_size for info in inner.infolist()) > most:  # packed a second time
+            raise _MismatchError
+    file.seek(0)
+    return torch.load(file, map_location="cpu", weights_only=True)
+
+
+def _forms(weights):
+    return {name: (tensor.shape, tensor.dtype, tensor.layout) for name, tensor in weights.items()}
+
+
+def packed(trained):
+    """A ``Trained`` agent as the bytes of a zip that holds ``model.json`` and ``policy.pth`` alone; the same each time."""
+    import torch
+
+    told = {key: getattr(trained, key) for key in KEPT} | {"seen": trained.policy.observation_space.shape[0]}
+    weights, file = io.BytesIO(), io.BytesIO()
+    torch.save(dict(trained.policy.state_dict()), weights)
+    with zipfile.ZipFile(file, "w") as made:  # ZipInfo: without the time of day
+        made.writestr(zipfile.ZipInfo(PLAIN), json.dumps(told, indent=1) + "\n")
+        made.writestr(zipfile.ZipInfo(WEIGHTS), weights.getvalue())
+    return file.getvalue()

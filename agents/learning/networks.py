@@ -1,0 +1,164 @@
+"""What network reads a snooker table? Small networks shared by balls and by pots, sums over them, a head that scores every stroke.
+
+The order of balls or pots must not matter: each ball's row goes through one network and each pot's through another (deep sets,
+Zaheer et al. 2017). Masked sums of the balls' codes, of the pots' codes and the game's state make the context. The score of a
+stroke at a pot comes from that pot's code and the context, by the same weights for every pot. A table is nearly the same in a mirror: it
+is read with the cue ball on the right, and the choice of side spin is turned back.
+(Yellow and green have sides: it is told which half it was.)
+"""
+
+from itertools import pairwise
+
+import torch
+from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy
+from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
+from torch import nn
+
+from snooker_env.game.balls import N_BALLS
+from snooker_env.tasks.discrete_actions import POTS, SIDES, SPEEDS, STROKES, TOPS
+from snooker_env.tasks.observations import SIZE
+
+from ..features.lookahead_features import CUE_X, ENTRIES, PICKS, POTS_SEEN, STROKES_SEEN
+from ..features.pot_features import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
+
+BALL, CONTEXT, POT = 64, 128, 128
+"""Widths of the codes."""
+OUTCOME = 32
+_STATE = SIZE - 5 * N_BALLS
+_N_REDS = 15
+
+
+def mlp(*sizes):
+    """Linear layers of these sizes, each followed by a ReLU."""
+    return nn.Sequential(*(layer for a, b in pairwise(sizes) for layer in (nn.Linear(a, b), nn.ReLU())))
+
+
+class TableReader(BaseFeaturesExtractor):
+    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, and -1 where the table was read in the mirror, else 1."""
+
+    def __init__(self, observation_space, width=32):
+        super().__init__(observation_space, CONTEXT + POTS * POT + 1)
+        self.ball = mlp(5 + 2, width, BALL)
+        self.pot = mlp(POT_ENTRIES, 2 * width, POT)
+        self.context = mlp(3 * BALL + POT + _STATE + 3, CONTEXT, CONTEXT)
+        self.joint = nn.ModuleList([nn.Linear(CONTEXT, POT), nn.Linear(POT, POT)])  # one layer from both; the context's part is shared
+        flips = torch.zeros(SHOWN, dtype=torch.bool)
+        flips[torch.arange(N_BALLS) * 5 + BALL_X] = True
+        for entry in (*POT_X, CUT):
+            flips[SIZE + torch.arange(POTS) * POT_ENTRIES + entry] = True
+        self.flips: torch.Tensor
+        self.register_buffer("flips", flips, persistent=False)
+
+    def forward(self, seen):
+        """One pass."""
+        n = len(seen)
+        side = torch.where(seen[:, BALL_X : BALL_X + 1] < 0.0, -1.0, 1.0)
+        seen = torch.where(self.flips, seen * side, seen)
+        balls = seen[:, : 5 * N_BALLS].reshape(n, N_BALLS, 5)
+        state = seen[:, 5 * N_BALLS : SIZE]
+        pots = seen[:, SIZE:].reshape(n, POTS, POT_ENTRIES)
+        cue = balls[:, 0, :2]
+        here = (balls[:, 1:, 2:3] > 0.0).float()
+        on = (balls[:, 1:, 4:5] > 0.0).float() * here
+        codes = self.ball(torch.cat([balls[:, 1:], balls[:, 1:, :2] - cue[:, None]], 2)) * here
+        offered = pots[:, :, :1]
+        each = self.pot(pots) * offered
+        sums = [(codes * on).sum(1) / 5.0, codes[:, :_N_REDS].sum(1) / 5.0, codes[:, _N_REDS:].sum(1) / 5.0]
+        context = self.context(torch.cat([*sums, each.sum(1), state, cue, side], 1))
+        joint = torch.relu(self.joint[0](context)[:, None] + self.joint[1](each)) * offered
+        return torch.cat([context, joint.reshape(n, -1), side], 1)
+
+
+class StrokeHead(nn.Module):
+    """What ``TableReader`` gives -> a score for each of the POTS * STROKES choices."""
+
+    def __init__(self):
+        super().__init__()
+        self.score = nn.Linear(POT, STROKES)
+        with torch.no_grad():  # at first all strokes are nearly alike
+            self.score.weight.mul_(0.1)
+            self.score.bias.zero_()
+
+    def forward(self, read):
+        """One pass."""
+        n = len(read)
+        scores, side = self.score(read[:, CONTEXT:-1].reshape(n, POTS, POT)), read[:, -1:]
+        turned = scores.reshape(n, POTS * len(SPEEDS), len(SIDES), len(TOPS)).flip(2).reshape(n, -1)
+        return torch.where(side < 0.0, turned, scores.reshape(n, -1))
+
+
+class ForesightReader(TableReader):
+    """What is seen with ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context and a code for each outcome."""
+
+    def __init__(self, observation_space):
+        super().__init__(observation_space)
+        self._features_dim = CONTEXT + STROKES_SEEN * OUTCOME
+        self.outcome = nn.ModuleList([nn.Linear(CONTEXT, 64), nn.Linear(POT, 64), nn.Linear(ENTRIES, 64)])  # one layer from the three
+        self.code = nn.Linear(64, OUTCOME)
+        self.best = nn.Linear(OUTCOME, CONTEXT)
+
+    def forward(self, seen):
+        """One pass."""
+        n = len(seen)
+        read = super().forward(seen[:, :SHOWN])
+        context, pots, side = read[:, :CONTEXT], read[:, CONTEXT:-1].reshape(n, POTS, POT), read[:, -1:]
+        rows = seen[:, SHOWN:].reshape(n, STROKES_SEEN, ENTRIES)
+        rows = torch.cat([rows[..., :CUE_X], rows[..., CUE_X : CUE_X + 1] * side[:, None], rows[..., CUE_X + 1 :]], 2)
+        of_pot = self.outcome[1](pots[:, :POTS_SEEN]).repeat_interleave(STROKES_SEEN // POTS_SEEN, 1)
+        codes = torch.relu(self.code(torch.relu(self.outcome[0](context)[:, None] + of_pot + self.outcome[2](rows)))) * rows[..., :1]
+        context = context + self.best(codes.amax(1))
+        return torch.cat([context, codes.reshape(n, -1)], 1)
+
+
+class OutcomeHead(nn.Module):
+    """What ``ForesightReader`` gives -> a score for each of all choices; only those looked at may be played."""
+
+    def __init__(self):
+        super().__init__()
+        self.score = nn.Linear(OUTCOME, 1)
+        self.picks: torch.Tensor
+        self.register_buffer("picks", torch.as_tensor(PICKS), persistent=False)
+
+    def forward(self, read):
+        """One pass."""
+        scores = self.score(read[:, CONTEXT:].reshape(len(read), STROKES_SEEN, OUTCOME))[..., 0]
+        return scores.new_zeros(len(read), POTS * STROKES).index_copy(1, self.picks, scores)
+
+
+class ValueHead(nn.Module):
+    """The context -> the return to be expected."""
+
+    def __init__(self, width=128):
+        super().__init__()
+        self.value = nn.Sequential(nn.Linear(CONTEXT, width), nn.ReLU(), nn.Linear(width, 1))
+
+    def forward(self, read):
+        """One pass."""
+        return self.value(read[:, :CONTEXT])
+
+
+class _Policy(MaskableActorCriticPolicy):
+    """A maskable policy of a reader and a head for the choices; the value comes from the reader's context."""
+
+    reader: type[TableReader]
+    head: type[nn.Module]
+
+    def __init__(self, *args, **kwargs):
+        super().__init__(*args, **(kwargs | {"features_extractor_class": self.reader, "net_arch": []}))
+
+    def _build(self, lr_schedule):
+        super()._build(lr_schedule)
+        self.action_net, self.value_net = self.head(), ValueHead()
+        self.optimizer = self.optimizer_class(self.parameters(), **{**self.optimizer_kwargs, "lr": lr_schedule(1)})
+
+
+class TablePolicy(_Policy):
+    """Sees the table and its pots, scores all strokes."""
+
+    reader, head = TableReader, StrokeHead
+
+
+class ForesightPolicy(_Policy):
+    """Sees what ``foresight`` shows, scores the strokes that it looked at."""
+
+    reader, head = ForesightReader, OutcomeHead

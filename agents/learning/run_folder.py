@@ -1,0 +1,112 @@
+"""What does a run's folder hold, and how does a run go on from it? Its checkpoint, whose it is, and what another run may find there."""
+
+import io
+import pickle
+import re
+import shlex
+from dataclasses import asdict
+
+import numpy as np
+import torch
+
+from commands.files import write_atomic
+from snooker_env._check import refuse
+
+from .hyperparameters import algorithm
+from .lock import NAME as LOCK
+from .lock import Lock
+from .models import CHECKPOINT, zipped
+
+_UNFINISHED = re.compile(r"(checkpoint\.pkl|model\.zip|results\.json)(\.\d+)?\.tmp")
+"""What a process that was killed was writing."""
+
+
+def claimed(out, resume):
+    """The ``Lock`` on the folder of a new run (made here) or of one to resume. Raises ValueError if it is not fit for that, or taken."""
+    if not (out / LOCK).exists():
+        _check(out, resume)
+    out.mkdir(parents=True, exist_ok=True)
+    lock = Lock(out)
+    try:
+        for file in out.iterdir():
+            if _UNFINISHED.fullmatch(file.name):
+                file.unlink()
+        _check(out, resume)  # again: what is there now will stay
+    except BaseException:
+        lock.release()
+        raise
+    return lock
+
+
+def _check(out, resume):
+    if resume:
+        if not (out / CHECKPOINT).is_file():
+            raise refuse("out", str(out), "holds no checkpoint: start the run without --resume")
+        return
+    if out.exists() and not out.is_dir():
+        raise refuse("out", str(out), "must be a folder, new or empty")
+    names = [p.name for p in out.iterdir()] if out.is_dir() else []
+    held = sorted(name for name in names if name not in ("tb", LOCK) and not _UNFINISHED.fullmatch(name))
+    if held:
+        others = f"is not empty (it holds {', '.join(held[:3])})"
+        raise refuse("out", str(out), f"{others}: --resume goes on with it, --out names another")
+
+
+def go_on(out):
+    """How to go on with what was saved there."""
+    return f"Go on with:  python train.py --resume --out {shlex.quote(str(out))}"
+
+
+def kept(out):
+    """What is left of a run that was stopped in between, in one sentence."""
+    if (out / CHECKPOINT).is_file():
+        return f"The last checkpoint is whole. {go_on(out)}"
+    return "Nothing was saved yet: begin the run anew."
+
+
+def save_checkpoint(out, settings, model, seconds, curve, imitation, teaching=None):
+    """All that training and its curve depend on, tables and random generators included: a resumed run equals an uninterrupted one.
+
+    ``teaching``: of ``Teaching.get_state`` while the agent is being taught, else None.
+    """
+    state = {
+        "settings": asdict(settings), "seconds": seconds, "curve": curve, "imitation": imitation, "teaching": teaching,
+        "model": zipped(model), "replay": getattr(model, "replay_buffer", None), "tables": model.get_env().env_method("get_state"),
+        "running": model.get_env().running,
+        "random": (np.random.get_state(), torch.get_rng_state(), model.action_space),  # noqa: NPY002 - SB3 draws from the global one
+    }  # fmt: skip
+    write_atomic(out / CHECKPOINT, pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL))
+
+
+def stale(out):
+    """The complaint about a checkpoint that cannot be used."""
+    wanted = "must be a whole checkpoint of today's train.py: this one is broken or older, start the run anew"
+    return refuse("resume", str(out / CHECKPOINT), wanted)
+
+
+def read_checkpoint(out, settings):
+    """The checkpoint and the settings in it, made by the class ``settings``. Raises ValueError."""
+    try:
+        state = {"teaching": None} | pickle.loads((out / CHECKPOINT).read_bytes())  # it came later than the rest
+        was = settings(**state["settings"])
+        if not state.keys() >= {"model", "tables", "random", "replay", "running", "imitation", "curve", "seconds"}:
+            raise KeyError
+    except Exception:  # whatever pickle makes of a file that is something else
+        raise stale(out) from None
+    return state, was
+
+
+def load_model(out, state, algo, envs):
+    """The agent of a checkpoint, its tables and random generators as they were. Raises ValueError."""
+    try:
+        model = algorithm(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu", seed=None)  # it would seed the tables anew
+        model.seed = state["settings"]["seed"]
+        if state["replay"] is not None:
+            model.replay_buffer = state["replay"]
+        numpy_state, torch_state, model.action_space = state["random"]
+        np.random.set_state(numpy_state)  # noqa: NPY002
+        torch.set_rng_state(torch_state)
+        envs.set_options([{"state": table} for table in state["tables"]])  # for the reset with which learning or teaching begins
+    except Exception:  # of an older network, or with a part missing
+        raise stale(out) from None
+    return model

@@ -1,0 +1,194 @@
+"""What is the best of the choices, found by trying them out? Monte Carlo by simulation under execution noise, two shots deep.
+
+From the true state of a table many copies are played, each with errors of its own (``tasks.noise``). A shot is worth its points and, if the
+visit goes on, the value of the position it leaves. Sequential halving [Karnin, Koren & Somekh 2013] spends the budget: all candidates are
+tried a little, the better part a little more, and so on. The last few are judged by the second shot: from positions that they left, the
+best next shot is sought without errors, worth the chance to make it times what it brings.
+
+All candidates of a round meet the same errors (common random numbers): they differ by their own merits, not by luck.
+"""
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from snooker_env.envs.vector import processors
+from snooker_env.game.balls import BALL_RADIUS, balls_on, ids_of
+from snooker_env.game.pots import pots
+from snooker_env.tasks.discrete_actions import STROKES, TOPS, choice_of
+from snooker_env.tasks.noise import Noise
+from snooker_env.tasks.stroke import mask
+from snooker_env.tasks.visit import BALL_ON
+
+from ..features.lookahead import BY_HAND, SURE, Copies, Position, as_actions, choices_at, prospects_of, spread_of
+from ..features.pot_features import with_pots
+
+KEEP = 3
+"""Of a round's candidates one in so many goes on to the next."""
+FINALISTS = 6
+DEEP = 0.4
+"""Share of the budget for the second shot."""
+NEXT_SHOTS = 16
+"""Shots tried from each position that a finalist left."""
+
+
+class Search:
+    """Looks for the best shot with ``budget`` simulated shots a decision, at least two.
+
+    ``value``: worth [points] of flat observations with pots (``view.with_pots``), (m, n) -> (m,), in place of the value by hand;
+    ``threads``: tables thought about at once, with the same shots found for any number.
+    """
+
+    options = {"aim": "absolute"}  # noqa: RUF012 - a player's options are read, never changed
+
+    def __init__(self, budget=2000, seed=0, value=None, threads=None):
+        self.budget, self.value = budget, value
+        self._seed, self._decisions, self._threads = seed, 0, threads or processors()
+        self._rules: Any = None
+        self._minds: list[_Mind] = []
+
+    @property
+    def shots(self):
+        """Shots simulated so far."""
+        return sum(mind.noisy.shots + mind.exact.shots for mind in self._minds)
+
+    def act(self, tables, observations, going):
+        """The shot found for each table that is going."""
+        v = tables.visits
+        if self._rules is not v.rules:
+            self._rules, self._minds = v.rules, [_Mind(self, v.rules) for _ in range(self._threads)]
+        actions = np.zeros((tables.num_envs, 4), np.float32)
+
+        def think(mind, own):
+            for k in own:
+                here = slice(k, k + 1)
+                at = Position(v.positions[here].copy(), v.on_table[here].copy(), v.game[here].copy())
+                actions[k] = mind.best(at, np.random.default_rng((self._seed, self._decisions, k)))
+
+        wanted = np.flatnonzero(going).tolist()
+        with ThreadPoolExecutor(self._threads) as pool:
+            list(pool.map(think, self._minds, (wanted[i :: self._threads] for i in range(self._threads))))
+        self._decisions += 1
+        return actions
+
+
+class _Mind:
+    """The thinking of one thread."""
+
+    def __init__(self, search, rules):
+        noise = rules.shooter.noise
+        self.budget, self._value, self.shooter = search.budget, search.value, rules.shooter
+        self.noisy, self.exact = Copies(rules, noise), Copies(rules, Noise())
+        self._sure, self._spread = noise.silent, spread_of(noise, rules.shooter.physics)
+
+    def _values(self, left, observations):
+        """What the positions left are worth [points], and the chances of their widest pots."""
+        values, chances = prospects_of(left, self._spread, SURE if self._sure else BY_HAND)
+        return values if self._value is None else np.asarray(self._value(with_pots(observations)), np.float64), chances
+
+    def best(self, at, rng):
+        """The action to play at the one position ``at``."""
+        if self._sure:
+            return self._exactly(at, rng)
+        deep = int(DEEP * self.budget) if self.budget >= 200 else 0
+        shallow, spent = self.budget - deep, 0
+        candidates = self._candidates(at, max(1, shallow // 2), max(1, shallow // 2), rng)
+        rounds = 1 + max(0, int(np.ceil(np.log(len(candidates) / FINALISTS) / np.log(KEEP))))
+        sums, tries = np.zeros(len(candidates)), 0
+        scores, records = sums, None
+        for r in range(rounds):
+            n = len(candidates)
+            each = max(1, (shallow - spent) // (rounds - r) // n)  # one each is never too many: all rounds hold less than twice the first
+            keys = rng.integers(0, 2**64 - 1, each, dtype=np.uint64)
+            points, goes_on, left, seen = self.noisy.play(
+                at, np.zeros(n * each, np.int64), np.repeat(candidates, each, 0), np.tile(keys, n)
+            )
+            spent += n * each
+            values, chances = self._values(left, seen)
+            sums, tries = sums + (points + goes_on * values).reshape(n, each).sum(axis=1), tries + each
+            scores = sums / tries
+            if r == rounds - 1:
+                records = (points.reshape(n, each), goes_on.reshape(n, each), left, chances)
+                break
+            keep = np.argsort(-scores, kind="stable")[: FINALISTS if r == rounds - 2 else max(FINALISTS, -(-n // KEEP))]
+            candidates, sums = candidates[keep], sums[keep]
+        if deep and records is not None:
+            scores = self._second(scores, records, self.budget - spent, rng)
+        return candidates[np.argmax(scores)]
+
+    def _exactly(self, at, rng):
+        """The same without errors: every try tells all, so each candidate is played once and many go into the second shot."""
+        candidates = self._candidates(at, max(1, self.budget // 2), self.budget, rng)
+        n = len(candidates)
+        points, goes_on, left, seen = self.exact.play(at, np.zeros(n, np.int64), candidates, np.zeros(n, np.uint64))
+        values, chances = self._values(left, seen)
+        scores = points + goes_on * values
+        keep = np.argsort(-scores, kind="stable")[: (self.budget - n) // NEXT_SHOTS]
+        if len(keep):
+            records = (points[keep, None], goes_on[keep, None], left[keep], chances[keep])
+            better = self._second(scores[keep], records, self.budget - n, rng)
+            return candidates[keep[np.argmax(better)]]
+        return candidates[np.argmax(scores)]
+
+    def _candidates(self, at, most, wild, rng):
+        """At most so many strokes at the direct pots, evenly from all pots; where there is none, so many wild shots at the balls on."""
+        on = balls_on(int(at.game[0, BALL_ON]), mask(at.on_table[0]))
+        if not len(pots(at.positions[0], at.on_table[0], on, most=1)):
+            return _at_balls(at.positions[0], ids_of(on), wild, rng)
+        picks = np.flatnonzero(choices_at(at)[0])
+        if len(picks) > most:
+            picks = rng.permutation(picks)
+            picks = np.sort(picks[np.argsort(_rank(picks // STROKES), kind="stable")[:most]])
+        return as_actions(at, np.zeros(len(picks), np.int64), picks, self.shooter)
+
+    def _second(self, scores, records, budget, rng):
+        """Scores of the finalists two shots deep."""
+        points, goes_on, left, chances = records
+        n, each = goes_on.shape
+        samples = min(each, max(1, budget // (n * NEXT_SHOTS)))
+        rows = np.array([f * each + j for f in range(n) for j in np.flatnonzero(goes_on[f])[:samples].tolist()], np.int64)
+        if n * NEXT_SHOTS > budget or not len(rows):
+            return scores
+        who, came, from_there = np.repeat(np.arange(len(rows)), NEXT_SHOTS), chances[rows], left[rows]
+        picks = self._next_shots(came, rng).reshape(-1)
+        actions = as_actions(from_there, who, picks, self.shooter)
+        made, further, then, seen = self.exact.play(from_there, who, actions, np.zeros(len(picks), np.uint64))
+        values, _ = self._values(then, seen)
+        chance = came[who, picks // STROKES]
+        best = (chance * (made + further * values)).reshape(len(rows), NEXT_SHOTS).max(axis=1)
+        owner = rows // each
+        total, count = np.bincount(owner, best, n), np.bincount(owner, minlength=n)
+        mean = np.divide(total, count, out=np.zeros(n), where=count > 0)
+        return points.mean(axis=1) + goes_on.mean(axis=1) * mean
+
+    def _next_shots(self, chances, rng):
+        """Choices (m, NEXT_SHOTS) to try next where the widest pots have these chances: the strokes that are played most."""
+        order = np.argsort(-chances, axis=1, kind="stable")
+        half = NEXT_SHOTS // 2
+        widest = np.concatenate([np.repeat(order[:, :1], half, 1), np.repeat(order[:, 1:2], NEXT_SHOTS - half, 1)], axis=1)
+        widest = np.where(np.take_along_axis(chances, widest, 1) > 0.0, widest, order[:, :1])
+        return widest * STROKES + rng.permuted(np.tile(_USUAL, (len(chances), 1)), axis=1)[:, :NEXT_SHOTS]
+
+
+def _at_balls(positions, balls, n, rng):
+    """n actions that send the cue ball somewhere at one of the ``balls``, with any speed and spin: for breaks, plants and luck."""
+    to = positions[rng.choice(balls, n)] - positions[0]
+    reach = np.arcsin(np.minimum(1.0, 2.0 * BALL_RADIUS / np.hypot(*to.T)))
+    turned = (np.arctan2(to[:, 1], to[:, 0]) + rng.uniform(-1.0, 1.0, n) * reach) / np.pi
+    tips = rng.uniform(-0.6, 0.6, (n, 2))  # of the action's unit: within the disc
+    return np.column_stack([rng.uniform(-0.7, 1.0, n), tips, turned - 2.0 * np.round(0.5 * turned)]).astype(np.float32)
+
+
+def _rank(groups):
+    """How many earlier entries are equal to each."""
+    order = np.argsort(groups, kind="stable")
+    ranks = np.empty(len(groups), np.int64)
+    sorted_groups = groups[order]
+    starts = np.searchsorted(sorted_groups, sorted_groups)
+    ranks[order] = np.arange(len(groups)) - starts
+    return ranks
+
+
+_USUAL = np.array([choice_of(0, speed, 1, top) for speed in range(1, 7) for top in range(len(TOPS))])
+"""Strokes for the second shot: without side, neither the softest nor the hardest."""

@@ -1,0 +1,68 @@
+"""How would a shot run without one of its models? A copy of the package with other impacts, since the product has no such switches.
+
+The copy's ``contact.py`` gets one more piece of text, and its ``engine.py`` one more condition, which add fidelities beyond the
+product's own: each is ``standard`` with one model left out.
+"""
+
+from . import package_copies
+
+FREE_BALLS, LOOSE_CUSHION, SMOOTH_CLOTH, MIRROR, AT_ONCE = 101, 102, 103, 104, 105
+"""Fidelities of the copy. Two balls as free spheres (the closed form of ``fast``); the cushion with the loose tolerance of ``fast``; the
+cushion in closed form, with friction at the nose but none at the cloth; the cushion as a mirror with a restitution. A ball that drops at
+once where its centre crosses the edge of a pocket."""
+
+_FLIES = "if kind == _POT and state[i] != FALLING:"
+"""Where the engine asks whether a ball at the edge of a pocket can meet a jaw behind it."""
+
+_ADDED = '''
+
+# Added by benchmarks/_common/variants.py.
+
+_all_of_balls, _all_of_cushion = collide_balls, collide_cushion
+
+
+@kernel
+def _smooth_cushion(v, w, nx, ny, phys, e):
+    """Friction at the nose in its first direction, capped where slip ends (3.5: a sphere); the cloth holds the ball down, smoothly."""
+    sin_t = phys[P_SIN]
+    cos_t = sqrt(1.0 - sin_t * sin_t)
+    R = phys[P_R]
+    vx, vy, vz = _to_frame(v, nx, ny)
+    wx, wy, wz = _to_frame(w, nx, ny)
+    p = (1.0 + e) * vy / cos_t
+    a1, a2 = vx + R * (wy * sin_t - wz * cos_t), -vy * sin_t + R * wx
+    s = hypot(a1, a2)
+    k = min(phys[P_MU_W] * p / s, 1.0 / 3.5) if s > 0.0 else 0.0
+    f1, f2 = -k * a1, -k * a2
+    q = 2.5 / R
+    after = (vx + f1, -e * vy - sin_t * f2, vz)
+    return _to_world(after, nx, ny), _to_world((wx + q * f2, wy + q * sin_t * f1, wz - q * cos_t * f1), nx, ny), True
+
+
+@kernel
+def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, work):
+    code = FAST if fidelity == 101 else STANDARD if fidelity > 101 else fidelity
+    return _all_of_balls(v1, w1, v2, w2, nx, ny, phys, e, code, n_steps, work)
+
+
+@kernel
+def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, work):
+    closing = v[0] * nx + v[1] * ny
+    if fidelity == 104 and closing > 0.0:
+        back = (1.0 + e) * closing
+        return (v[0] - back * nx, v[1] - back * ny, v[2]), (w[0], w[1], w[2]), True
+    if fidelity == 103 and closing > 0.0:
+        return _smooth_cushion(v, w, nx, ny, phys, e)
+    code = FAST if fidelity == 102 else STANDARD if fidelity > 100 else fidelity
+    return _all_of_cushion(v, w, nx, ny, phys, e, code, n_steps, work)
+'''
+
+
+def load():
+    """The copy's ``simulation`` module."""
+    texts = package_copies.texts()
+    texts["physics/impact/contact.py"] += _ADDED
+    if texts["physics/engine.py"].count(_FLIES) != 1:
+        raise RuntimeError(f"engine.py has changed: {_FLIES!r} is not in it once")
+    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES[:-1]} and fidelity != {AT_ONCE}:")
+    return package_copies.load("snooker_env_variants", texts, ["simulation"])[0]

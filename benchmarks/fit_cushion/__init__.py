@@ -1,0 +1,1 @@
+"""The cushion's restitution fitted to measurements: ``python -m benchmarks.fit_cushion``."""

@@ -1,0 +1,1 @@
+"""The windows of the pockets: ``python -m benchmarks.pockets``."""

@@ -1,0 +1,1 @@
+"""Breaks of a touching rack by several models: ``python -m benchmarks.rack``."""

@@ -1,0 +1,1 @@
+"""The time of impacts, shots and starts: ``python -m benchmarks.speed``."""

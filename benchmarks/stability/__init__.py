@@ -1,0 +1,1 @@
+"""Impacts and shots at the extremes: ``python -m benchmarks.stability``."""

@@ -1,0 +1,92 @@
+"""What breaks at the extremes? Impacts and shots at the edge of what can be asked for, each with its invariants; then a fuzz of a million.
+
+    python -m benchmarks.stability [--fuzz 1000000] [--seed 0] [--threads 2] [--json FILE] [--out FILE]
+    python -m benchmarks.stability --replay SEED BATCH INDEX
+
+Exit code 1 if an invariant fails. ``--fuzz 0`` plays the extremes alone (10 s). Impacts are played at "fast", "standard" and
+"reference", shots at these in turn; figures are the worst of all. The paper's Euler scheme has a table of its own.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from .. import fuzz
+from .._common import invariants as invariants
+from .._common.command import at_least, command, pyplot, save_json, writable
+from .euler import euler_lines, euler_table
+from .impacts import IMPACT_LIMITS, impact_extremes
+from .picture import draw
+from .shots import SHOT_LIMITS, shot_extremes
+from .symmetry import growth, growth_lines, mirrored_fuzz, order_lines, order_matters, symmetry_growth
+from .worst import verdict
+
+FILE = Path(__file__).parents[1] / "pictures" / "stability.png"
+
+
+def shown(x):
+    """A figure in a cell: counts whole, "-" where nothing of the kind happened."""
+    return str(x) if isinstance(x, int) else "-" if x == -np.inf else f"{x:.2g}"
+
+
+def table_of(title, results, limits):
+    """Lines: an extreme a row, an invariant a column, the worst figure in each; below zero there is no violation at all."""
+    head = "".join(f"{name:>12}" for name in limits)
+    lines = [f"{title:36}{'played':>8}{head}   verdict", f"{'(allowed)':36}{'':>8}" + "".join(f"{x:>12.3g}" for x in limits.values())]
+    for name, (played, figures) in results.items():
+        cells = "".join(f"{shown(figures[c]):>12}" for c in limits)
+        failed = verdict(figures, limits)
+        lines.append(f"{name:36}{played:>8}{cells}   {'FAIL: ' + ', '.join(failed) if failed else 'pass'}")
+    return lines
+
+
+def main():
+    """Command line; the exit code."""
+    parser = command("stability", __doc__)
+    parser.add_argument("--fuzz", type=at_least(0), default=1_000_000, help="random shots; 0 for none")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--threads", type=at_least(1), default=2)
+    parser.add_argument("--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot of the fuzz again")
+    parser.add_argument("--json", type=Path, help="also write every figure there")
+    parser.add_argument("--out", type=Path, default=FILE, help="the picture")
+    options = parser.parse_args()
+    if options.replay:
+        return int(not fuzz.replay(*options.replay))
+    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
+    writable(options.out, options.json)
+    impacts, shots = impact_extremes(), shot_extremes()
+    print("\n".join(table_of("impacts (worst figures)", impacts, IMPACT_LIMITS)), end="\n\n")
+    print("\n".join(table_of("shots (worst figures)", shots, SHOT_LIMITS)), end="\n\n")
+    euler, symmetry, fuzzed, order = euler_table(), symmetry_growth(), mirrored_fuzz(), order_matters()
+    print("\n".join([*euler_lines(euler), "", *growth_lines(*symmetry, fuzzed), "", *order_lines(order)]), end="\n\n", flush=True)
+    found = None
+    if options.fuzz:
+        found = fuzz.fuzz(options.fuzz, options.seed, options.threads)
+        print("\n".join(fuzz.lines(found, options.seed)))
+    failed = [
+        f"{name}: {bad}"
+        for results, limits in ((impacts, IMPACT_LIMITS), (shots, SHOT_LIMITS))
+        for name, (_, f) in results.items()
+        for bad in verdict(f, limits)
+    ]
+    failed += ["mirror symmetry"] * bool(symmetry[1].max() > 0 or fuzzed.any()) + ["fuzz"] * bool(found and found.failures)
+    print("\nall invariants hold" if not failed else "\nFAILED: " + "; ".join(failed))
+    if options.json:
+        figures = {
+            "impacts": {k: f | {"played": n, "failed": verdict(f, IMPACT_LIMITS)} for k, (n, f) in impacts.items()},
+            "shots": {k: f | {"played": n, "failed": verdict(f, SHOT_LIMITS)} for k, (n, f) in shots.items()},
+            "allowed": {"impacts": IMPACT_LIMITS, "shots": SHOT_LIMITS}, "euler": euler, "three at once": order,
+            "symmetry": {
+                "mirror": float(max(symmetry[1].max(), fuzzed.max())), "mirrored": len(symmetry[1]) + len(fuzzed),
+                "factor a contact": growth(symmetry[0], symmetry[2]),
+            },
+        }  # fmt: skip
+        if found:
+            worst = {k: dict(zip(invariants.NAMES, x.tolist(), strict=True)) for k, x in found.worst.items()}
+            figures["fuzz"] = {
+                "shots": found.shots, "seconds": found.seconds, "seed": options.seed, "worst": worst, "events": found.events,
+                "failures": found.failures,
+            }  # fmt: skip
+        save_json(options.json, figures)
+    draw(options.out, impacts, shots, euler, symmetry, found)
+    return int(bool(failed))

@@ -1,0 +1,92 @@
+"""How does a command of this project begin and end? It can write to any terminal, and what stops it from outside is told in one line.
+
+Only the standard library is imported here: what is missing must be told before it is needed.
+"""
+
+import errno
+import functools
+import io
+import os
+import sys
+import threading
+
+EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render"}
+"""Which extra of pyproject.toml brings a package that is not in [train]."""
+OUR_OWN = ("agents", "commands", "snooker_env", "train", "benchmarks")
+DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
+"""What the system says of a disk that takes no more."""
+
+
+def missing(name, error):
+    """The end of the command ``name`` for an ``ImportError``. A name that is not in a module of our own is no missing package."""
+    if not error.name:  # it says itself what is missing
+        return SystemExit(f"{name}: {error}")
+    package = error.name.partition(".")[0]
+    if package in OUR_OWN:
+        raise error
+    extra = EXTRAS.get(package, "train")
+    return SystemExit(f'{name}: {package} is missing; in a clone of the repository:  pip install -e ".[{extra}]"')
+
+
+class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import torch
+    """Around the imports of the command ``name``: one line if a package is missing, no traceback after Ctrl-C."""
+
+    def __init__(self, name):
+        self._name = name
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace) -> None:
+        if isinstance(error, ImportError):
+            raise missing(self._name, error) from None
+        if isinstance(error, KeyboardInterrupt):
+            raise SystemExit(130) from None
+
+
+def any_terminal():
+    """Let what a terminal has no letters for come out as "?", not as a UnicodeEncodeError."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper) and stream.errors in ("strict", "surrogateescape"):
+            stream.reconfigure(errors="replace")
+
+
+def of_disk(error, file="the output"):
+    """What a full or failing disk did, in words; any other ``OSError`` is raised again. ``file``: which, if the error does not say."""
+    if error.errno not in DISK:
+        raise error
+    return f"{error.filename or file} cannot be written: {error.strerror}"
+
+
+def _of_thread(uncaught):
+    """TensorBoard writes in a thread, which ends with a traceback when the disk is full; the same error comes again in the main thread."""
+    if not isinstance(uncaught.exc_value, OSError) or uncaught.exc_value.errno not in DISK:
+        threading.__excepthook__(uncaught)
+
+
+def command(name):
+    """A decorator for ``main(argv)`` of the command ``name``: what comes from outside ends it with one line and an exit code not 0."""
+
+    def made(main):
+        @functools.wraps(main)
+        def run(argv=None):
+            any_terminal()
+            before, threading.excepthook = threading.excepthook, _of_thread
+            try:
+                return main(argv)
+            except ImportError as error:
+                raise missing(name, error) from None
+            except BrokenPipeError:  # nobody reads on: train.py | head
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+                return 1
+            except OSError as error:
+                raise SystemExit(f"{name}: {of_disk(error)}") from None
+            except KeyboardInterrupt:
+                print(f"{name}: interrupted", file=sys.stderr)
+                return 130
+            finally:
+                threading.excepthook = before
+
+        return run
+
+    return made

@@ -1,0 +1,304 @@
+"""Does ``agents.evaluate`` play, tell and keep what it is asked to, and refuse what it should, whatever stops it?"""
+
+import json
+import os
+import re
+import shutil
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from agents.evaluation import metrics, protocol, report
+from agents.features.views import training_tables
+from agents.learning.hyperparameters import Recipe
+from commands.physics_option import text_of, world
+from snooker_env.physics.parameters import Physics
+
+QUICK = ["--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"]
+
+
+@pytest.fixture(scope="module")
+def models(tmp_path_factory):
+    """Two untrained models of one recipe, as run folders."""
+    folder = tmp_path_factory.mktemp("runs")
+    tables = training_tables(2, action="discrete")
+    for seed in (0, 1):
+        (folder / f"m-{seed}").mkdir()
+        model = Recipe.of("ppo_mask").new_model(tables, seed)
+        model.imitated = 300 * seed
+        model.save(folder / f"m-{seed}" / "model.zip")
+    (folder / "m-0" / "results.json").write_text('{"seconds": 2.0}')
+    tables.close()
+    return folder
+
+
+def test_json_markdown_and_picture(models, tmp_path, capsys):
+    options = ["--visits", "12", "--layouts", "held_out=20", "colours", "--noise", "none", "club", "--physics", "paper,mu_bb=marlow"]
+    options += ["--resamples", "200", "--json", str(tmp_path / "a" / "r.json"), "--markdown", str(tmp_path / "r.md")]
+    agents = ["--agent", f"model={models / 'm-*'}", "random", "--against", "ghost_ball", "random"]
+    assert protocol.main([*agents, *options, "--picture", str(tmp_path / "p.png")]) == 0
+    found = json.loads((tmp_path / "a" / "r.json").read_text(), parse_constant=lambda text: pytest.fail(f"{text} is not JSON"))
+    assert set(found) == {"command", "version", "commit", "machine", "python", "numpy", "protocol", "agents", "results"}
+    assert found["protocol"]["layouts"] == {"held_out": 12, "colours": 12}
+    assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
+    first, second = found["agents"][0]["runs"]
+    assert (first["seconds"], first["imitated"], second["seconds"], second["imitated"]) == (2.0, 0, None, 300)
+    assert first["layout"] == "opened" and first["recipe"] == "ppo_mask" and first["gamma"] == 0.95
+    assert len(found["results"]) == 3 * 2 * 2
+    for row in found["results"]:
+        assert set(row) == {
+            "agent", "layout", "noise", "fidelity", "physics", "visits", "runs", "figures", "ratios", "counted", "longest_break", "by_run",
+            "strokes", "ms_a_decision",
+        }  # fmt: skip
+        assert set(row["figures"]) == {*metrics.FIGURES, "points_a_visit_iqm", "pots_a_visit_iqm"}
+        assert set(row["ratios"]) == {"ghost_ball", "random"} - {row["agent"]}
+        assert len(row["by_run"]["points_a_visit"]) == row["runs"] == (2 if row["agent"] == "model" else 1)
+        for f in [*row["figures"].values(), *(r for ratio in row["ratios"].values() for r in ratio.values())]:
+            assert set(f) == {"value", "low", "high"}
+            assert f["low"] is None or f["low"] <= f["high"]
+        assert np.mean(row["by_run"]["points_a_visit"]) == pytest.approx(row["figures"]["points_a_visit"]["value"])
+    text, printed = (tmp_path / "r.md").read_text(), capsys.readouterr().out
+    assert (
+        found["command"] in text
+        and found["machine"] in text
+        and "](p.png)" in text
+        and found["command"].startswith("python -m agents.evaluate --agent")
+    )
+    lines = text.splitlines()
+    for k, line in enumerate(lines):
+        if set(line) <= set("|:- ") and line:  # under each table's head
+            width = line.count("|")
+            assert lines[k - 1].count("|") == width == lines[k + 1].count("|")
+    points = report._pm(found["results"][0]["figures"]["points_a_visit"])
+    assert points in text and points in printed and "2 training seeds, fewer than 5" in printed
+    assert (tmp_path / "p.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_figures_do_not_depend_on_the_company(models, tmp_path):
+    rows = []
+    for company in ([], ["random", f"other={models / 'm-0'}"]):
+        file = tmp_path / f"{len(company)}.json"
+        protocol.main(["--agent", *company, f"m={models / 'm-0'},{models / 'm-1'}", *QUICK, "--json", str(file)])
+        found = json.loads(file.read_text())["results"]
+        rows.append([{key: r[key] for key in r if key != "ms_a_decision"} for r in found if r["agent"] in ("m", "ghost_ball")])
+    assert rows[0] == rows[1] and len(rows[0]) == 2
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--agent", "nobody"], "agent = 'nobody': must be random, "),
+        (["--agent", str(Path(__file__))], "agent = .*test_evaluate.py': must be a model's .zip"),
+        (["--agent", "x=nowhere-*"], "agent = 'nowhere-\\*': must be"),
+        (["--agent", "random", "random"], "agent = 'random': must be another"),
+        (["--agent", "random", "--against", "me"], "against = 'me': must be one of random, ghost_ball"),
+        (["--agent", "random", "--layouts", "moon=3"], "layout = 'moon': must be one of"),
+        (["--agent", "random", "--layouts", "colours=x"], "layouts = 'colours=x': must be LAYOUT or"),
+        (["--agent", "random", "--visits", "1"], "visits = 1: must be an integer in \\[2"),
+        (["--agent", "random", "--noise", "loud"], "noise = 'loud': must be one of"),
+        (["--agent", "random", "--fidelity", "true"], "fidelity = 'true': must be"),
+        (["--agent", "random", "--physics", "mars"], "physics = 'mars': must be one of"),
+        (["--agent", "random", "--physics", "paper,mu_bb"], "physics = 'paper,mu_bb': must be PRESET"),
+        (["--agent", "random", "--physics", "paper,mu_bb=-1"], "mu_bb"),
+        (["--agent", "random", "--physics", "paper,R=0.03"], "physics = 'paper,R=0.03': must leave R"),
+        (["--agent", "random", "--physics", "paper,mu_s=0"], "physics.mu_s = 0.0: must be > 0"),
+        (["--agent", "random", "--physics", "paper,mu_r=0"], "physics.mu_r = 0.0: must be > 0"),
+        (["--agent", "random", "--budget", "1"], "budget = 1: must be an integer in \\[2"),
+        (["--agent", "random", "--json", "tests"], "json = 'tests': must be a file"),
+        (["--agent", "random", "--json", "pyproject.toml/r.json"], "json = 'pyproject.toml/r.json': must be a file"),
+        (["--agent", "random", "--markdown", "/proc/none/r.md"], "markdown = '/proc/none/r.md': must be a file"),
+        (["--agent", "random", "--picture", "tests"], "picture = '': must be one of .*'.png'"),
+        (["--agent", "random", "--picture", "p.md"], "picture = '.md': must be one of .*'.png'"),
+        (["--agent", "random", "--resamples", "5"], "resamples = 5: must be an integer in"),
+        (["--agent", "random", "--layouts", "colours", "--picture", "p.png"], "layouts = 'colours': must hold held_out"),
+    ],
+)
+def test_bad_input_ends_with_one_clear_line(options, says, capsys):
+    with pytest.raises(SystemExit) as stop:
+        protocol.main(options)
+    assert stop.value.code == 2
+    assert re.search(says, capsys.readouterr().err.strip().splitlines()[-1])
+
+
+OWN = """
+class Soft:
+    options = {"action": "discrete"}
+    def act(self, tables, observations, going):
+        return [30] * len(going)
+
+class Mute:
+    options, act = {}, None
+
+class Worldly(Soft):
+    options = {"noise": "none"}
+
+class Discreet(Soft):
+    options = {"action": "discreet"}
+
+silent = 3
+"""
+
+
+def test_a_player_of_ones_own_is_compared(tmp_path, monkeypatch):
+    (tmp_path / "mine.py").write_text(OWN)
+    monkeypatch.syspath_prepend(tmp_path)
+    assert protocol.main(["--agent", "mine:Soft", "me=mine:Soft", *QUICK, "--json", str(tmp_path / "r.json")]) == 0
+    found = json.loads((tmp_path / "r.json").read_text())
+    rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in found["results"]}
+    assert rows.keys() == {"Soft", "me", "ghost_ball"} and rows["Soft"] == rows["me"] != rows["ghost_ball"]
+    for name, why in (
+        ("Mute", "TypeError: act cannot"),
+        ("silent", "TypeError"),
+        ("Nobody", "AttributeError"),
+        ("Worldly", "'noise'"),
+        ("Discreet", "'discreet'"),
+    ):
+        with pytest.raises(ValueError, match=f"agent = 'mine:{name}': must be MODULE:CLASS of a player .*{why}"):
+            protocol.Agent.of(f"mine:{name}").trained()
+    with pytest.raises(ValueError, match=r"agent = 'nothere:Soft': .*ModuleNotFoundError"):
+        protocol.Agent.of("nothere:Soft").trained()
+
+
+def test_a_path_with_a_colon_is_a_path(models, tmp_path):
+    (tmp_path / "10:00").symlink_to(models)
+    assert len(protocol.Agent.of(f"x={tmp_path}/10:00/m-?").runs) == 2
+    for path in (r"C:\runs\m-0\model.zip", "a/b:c", "10:00"):
+        with pytest.raises(ValueError, match="or name models that are there"):
+            protocol.Agent.of(f"x={path}")
+
+
+@pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},agents.players.built_in:GhostBall"])
+def test_players_and_models_under_one_label_are_refused(which, models):
+    with pytest.raises(ValueError, match=r"agent = 'x=.*: must be players or trained models, not both"):
+        protocol.Agent.of(which.format(models / "m-0"))
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "says"),
+    [
+        ("model.zip", "junk", "agent = '.*': must be a model's .zip"),
+        ("model.zip", {"data": "junk"}, "agent = '.*': must be a model that train.py saved"),
+        ("model.zip", {}, "agent = '.*': must be a model that train.py saved"),
+        ("results.json", '{"seconds": 2.0', "agent = '.*results.json': must be JSON"),
+        ("results.json", "[2.0]", "agent = '.*results.json': must hold seconds"),
+        ("results.json", '{"seconds": "2 h"}', "results.json: seconds = '2 h': must be a finite number"),
+        ("model.json", '{"imitated": [1]}', "model.json: imitated = \\[1\\]: must be a finite number"),
+        ("model.json", "{", "agent = '.*model.json': must be JSON"),
+    ],
+)
+def test_a_broken_file_is_named(file, text, says, models, tmp_path):
+    shutil.copy(models / "m-0" / "model.zip", tmp_path)
+    if isinstance(text, dict):
+        with zipfile.ZipFile(tmp_path / file, "w") as made:
+            for name, content in text.items():
+                made.writestr(name, content)
+    else:
+        (tmp_path / file).write_text(text)
+    with pytest.raises(ValueError, match=says):
+        protocol.Agent.of(str(tmp_path / "model.zip" if file == "model.json" else tmp_path)).trained()
+
+
+def test_a_picture_that_fails_loses_no_figures(tmp_path, monkeypatch):
+    def draw(report, strokes, file):
+        raise RuntimeError("no ink")
+
+    monkeypatch.setattr("agents.evaluation.destinations.draw", draw)
+    outputs = ["--json", str(tmp_path / "r.json"), "--markdown", str(tmp_path / "r.md"), "--picture", str(tmp_path / "p.png")]
+    with pytest.raises(RuntimeError, match="no ink"):
+        protocol.main(["--agent", "random", *QUICK, *outputs])
+    assert json.loads((tmp_path / "r.json").read_text())["results"] and (tmp_path / "r.md").read_text()
+
+
+ALL = ("held_out", "colours")
+
+
+def outputs(folder):
+    return ["--json", str(folder / "r.json"), "--markdown", str(folder / "r.md"), "--picture", str(folder / "p.png")]
+
+
+def interrupted_at(monkeypatch, call):
+    """Ctrl-C when ``play_agent`` is called for the so-manyth time."""
+    original, calls = protocol.play_agent, []
+
+    def play_agent(*arguments):
+        calls.append(1)
+        if len(calls) == call:
+            raise KeyboardInterrupt
+        return original(*arguments)
+
+    monkeypatch.setattr(protocol, "play_agent", play_agent)
+
+
+def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
+    """And spares a file that is there already."""
+    (tmp_path / "r.md").write_text("whole")
+    interrupted_at(monkeypatch, 4)
+    assert protocol.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
+    told = capsys.readouterr()
+    lost = "interrupted when 1 of 2 parts (layouts under one noise) were complete: the others are lost"
+    assert told.err.strip() == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(told.out.split())
+    found = json.loads((tmp_path / "r.json").read_text())
+    assert found["incomplete"] == lost and [(r["layout"], r["agent"]) for r in found["results"]] == [
+        ("held_out", "random"), ("held_out", "ghost_ball")
+    ]  # fmt: skip
+    assert (tmp_path / "r.md").read_text() == "whole" and f"INCOMPLETE: {lost}." in (tmp_path / "r.incomplete.md").read_text()
+    assert f"json: {tmp_path / 'r.json'}" in told.out and f"markdown: {tmp_path / 'r.incomplete.md'}" in told.out
+    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "r.incomplete.md", "p.png"}
+
+
+def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatch, capsys):
+    interrupted_at(monkeypatch, 2)
+    assert protocol.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
+    told = capsys.readouterr()
+    lost = "interrupted when 0 of 2 parts (layouts under one noise) were complete: nothing is kept"
+    assert told.err.strip() == f"agents.evaluate: {lost}" and not told.out
+    assert not list(tmp_path.iterdir())
+
+
+def test_ctrl_c_before_play_is_one_line(monkeypatch, capsys):
+    def stop():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(protocol.snooker_env, "warmup", stop)
+    assert protocol.main(["--agent", "random", *QUICK]) == 130
+    assert capsys.readouterr().err == "agents.evaluate: interrupted\n"
+
+
+@pytest.mark.parametrize("full", ["r.json", "r.md", "p.png"])
+def test_a_full_disk_loses_one_file_only(tmp_path, monkeypatch, capsys, full):
+    original = os.replace
+
+    def replace(source, target):
+        if Path(target).name == full:
+            raise OSError(28, "No space left on device")
+        original(source, target)
+
+    monkeypatch.setattr(os, "replace", replace)
+    with pytest.raises(SystemExit) as stop:
+        protocol.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
+    assert stop.value.code == f"agents.evaluate: {tmp_path / full} cannot be written: No space left on device"
+    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "p.png"} - {full}
+    told = capsys.readouterr().out
+    assert "points a visit" in told and str(tmp_path / full) not in told
+
+
+def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
+    def gone(report):
+        raise SystemExit(1)  # as rich does
+
+    monkeypatch.setattr(protocol, "show", gone)
+    with pytest.raises(SystemExit):
+        protocol.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
+    assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "p.png"}
+
+
+def test_a_world_is_named_as_it_was_called():
+    for text in ("paper", "match", "paper,mu_bb=marlow", "match,mu_bb=0.06"):
+        assert text_of(world(text)) == text
+        assert Physics.of(world(text)) == Physics.of(world(text_of(world(text))))
+    assert text_of("match") == "match" and Physics.of(world("match,mu_bb=0.06")).mu_bb == 0.06
+    for wrong in ("nothing", "paper,mu_bb", "paper,colour=1"):
+        with pytest.raises(ValueError):
+            world(wrong)

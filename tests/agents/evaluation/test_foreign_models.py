@@ -1,0 +1,111 @@
+"""Can models be evaluated that train.py did not make, and does nothing of such a file run before its user consents?"""
+
+import json
+
+import numpy as np
+import pytest
+from sb3_contrib import MaskablePPO, RecurrentPPO
+from stable_baselines3 import DQN, PPO, SAC
+
+from agents.evaluation import protocol
+from agents.learning.models import PRETRAINED, load_any
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import SnookerVectorEnv
+from tests.bombs import bombed
+
+QUICK = ["--visits", "4", "--layouts", "held_out", "--noise", "professional", "--resamples", "100"]
+
+
+@pytest.fixture(scope="module")
+def foreign(tmp_path_factory):
+    """Files of untrained models of plain Stable-Baselines3 and sb3-contrib."""
+    folder = tmp_path_factory.mktemp("foreign")
+    for maker, policy, name, options in (
+        (PPO, "MlpPolicy", "ppo", {"aim": "target"}), (PPO, "MultiInputPolicy", "balls", {"observation": "balls"}),
+        (SAC, "MlpPolicy", "sac", {"elevation": True}), (DQN, "MlpPolicy", "dqn", {"action": "discrete"}),
+        (MaskablePPO, "MlpPolicy", "mask", {"action": "discrete"}), (RecurrentPPO, "MlpLstmPolicy", "recurrent", {}),
+        (PPO, "MlpPolicy", "frame", {"task": "frame"}),
+    ):  # fmt: skip
+        maker(policy, SnookerEnv(**options), seed=4, device="cpu").save(folder / f"{name}.zip")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "read"),
+    [
+        ("ppo", {"aim": "target"}, {"aim": "target"}), ("balls", {}, {}), ("sac", {"elevation": True}, {"elevation": True}),
+        ("dqn", {}, {"action": "discrete"}), ("mask", {}, {"action": "discrete"}),
+    ],
+)  # fmt: skip
+def test_a_foreign_model_plays_what_it_would_play_itself(foreign, name, options, read):
+    maker = {"ppo": PPO, "balls": PPO, "sac": SAC, "dqn": DQN, "mask": MaskablePPO}[name]
+    model, player = maker.load(foreign / f"{name}.zip", device="cpu"), load_any(foreign / f"{name}.zip", True, options)
+    assert player.options == read and player.foreign
+    tables = SnookerVectorEnv(3, layout="held_out", threads=1, **read)
+    seen_by_it = SnookerVectorEnv(3, layout="held_out", threads=1, observation="balls" if name == "balls" else "flat", **read)
+    observations, _ = tables.reset(seed=0)
+    its, _ = seen_by_it.reset(seed=0)
+    masks = {"action_masks": tables.action_masks()} if name == "mask" else {}
+    assert np.array_equal(player.act(tables, observations, np.ones(3, bool)), model.predict(its, deterministic=True, **masks)[0])
+
+
+def test_a_foreign_model_is_compared_with_consent(foreign, tmp_path, capsys):
+    """Of its training nothing is told but what it says of itself."""
+    agents = ["--agent", str(foreign / "ppo.zip"), "ppo_mask", "random", "--trust", "--options", "aim=target"]
+    assert protocol.main([*agents, *QUICK, "--json", str(tmp_path / "r.json")]) == 0
+    (run,) = json.loads((tmp_path / "r.json").read_text())["agents"][0]["runs"]
+    assert run == {
+        "from": str(foreign / "ppo.zip"), "recipe": "PPO", "shots": 0, "imitated": None, "seconds": None, "seed": 4, "gamma": 0.99,
+        "layout": "unknown", "noise": "unknown", "fidelity": "unknown", "physics": "unknown",
+    }  # fmt: skip
+    assert "unknown" in capsys.readouterr().out
+
+
+CONSENT = "holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come with --trust"
+OTHER_ACTIONS = "must be a model whose actions are {}: --options says how they were read, as placement=True"
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "says"),
+    [
+        ("ppo", [], CONSENT),
+        ("ppo", ["--trust", "--options", "placement=True"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (6,), float32)")),
+        ("sac", ["--trust"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (4,), float32)")),
+        ("dqn", ["--trust", "--options", "action=box"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (4,), float32)")),
+        ("frame", ["--trust"], "must be a model that sees the observation of a visit, flat or balls, and nothing else"),
+        ("recurrent", ["--trust"], "must be a model of MaskablePPO, TQC"),
+        ("recurrent", [], "must be a model of MaskablePPO, TQC"),
+    ],
+)
+def test_nothing_of_a_foreign_model_runs_without_consent_or_if_it_does_not_fit(foreign, tmp_path, name, options, says, capsys):
+    file = bombed(foreign / f"{name}.zip", tmp_path / "model.zip", tmp_path / "mark")
+    with pytest.raises(SystemExit) as stop:
+        protocol.main(["--agent", str(file), *options, *QUICK])
+    assert stop.value.code == 2 and not (tmp_path / "mark").exists()
+    assert f"agent = {str(file)!r}: {says}" in capsys.readouterr().err.strip().splitlines()[-1]
+
+
+@pytest.mark.parametrize("change", [{"gamma": None}, {"gamma": "1"}, {"num_timesteps": -1}, {"seed": [1]}, {"action_space": None}])
+def test_wrong_figures_of_a_foreign_model_are_refused(foreign, tmp_path, change):
+    file = bombed(foreign / "ppo.zip", tmp_path / "model.zip", tmp_path / "mark", change=lambda found: found.update(change))
+    with pytest.raises(ValueError, match=r"^agent = '.*model.zip': must be a model saved by Stable-Baselines3 \("):
+        load_any(file, True, {"aim": "target"})
+    assert not (tmp_path / "mark").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["aim=target"], "options = 'aim=target': must be left out: it is for models that train.py did not make"),
+        (["aim"], "options = 'aim': must be KEY=VALUE, KEY once each of action, aim, elevation, placement"),
+        (["noise=club"], "options = 'noise=club': must be KEY=VALUE, KEY once each of action, aim, elevation, placement"),
+        (["aim=target", "aim=target"], "options = 'aim=target': must be KEY=VALUE, KEY once each of action, aim, elevation, placement"),
+        (["aim=up"], "aim = 'up': must be one of 'absolute', 'target'"),
+        (["elevation=1"], "elevation = 1: must be True or False"),
+    ],
+)
+def test_options_are_checked_before_anything_is_played(options, says, capsys):
+    for agent in ("ppo_target", str(PRETRAINED / "ppo_mask.zip"), "random"):
+        with pytest.raises(SystemExit):
+            protocol.main(["--agent", agent, "--trust", "--options", *options, *QUICK])
+        assert capsys.readouterr().err.strip().splitlines()[-1].endswith(says)

@@ -1,0 +1,214 @@
+"""Are published models those that play today, and are only sound runs published?"""
+
+import hashlib
+import io
+import json
+import pickle
+import pickletools
+import zipfile
+
+import cloudpickle
+import numpy as np
+import pytest
+import torch
+from gymnasium import spaces
+
+from agents.evaluation import publish
+from agents.evaluation.entrants import Agent
+from agents.features.views import training_tables
+from agents.learning import models
+from agents.learning.hyperparameters import Recipe
+from agents.learning.model_files import KEPT
+from agents.learning.models import load_player, load_trained, pretrained
+from snooker_env.envs.vector import SnookerVectorEnv
+
+FIGURES = {
+    "learned": "In 4 shots nothing.",
+    "versions": {},
+    "evaluation": {},
+    "seconds": 36.0,
+    "steps": 4,
+    "git_commit": "abc",
+    "imitation": [],
+}
+SETTINGS = {
+    "agent": "ppo_mask",
+    "seed": 3,
+    "layout": "",
+    "noise": "",
+    "fidelity": "",
+    "physics": "",
+    "start": "",
+    "set": [],
+    "imitate": 100,
+}
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory):
+    """An untrained model's file."""
+    file = tmp_path_factory.mktemp("model") / "model.zip"
+    tables = training_tables(2, action="discrete")
+    Recipe.of("ppo_mask").new_model(tables, 0).save(file)
+    tables.close()
+    return file
+
+
+@pytest.fixture
+def run(model, tmp_path, monkeypatch):
+    """A finished run's folder, and a place of its own for what is published."""
+    folder = tmp_path / "run"
+    folder.mkdir()
+    (folder / "model.zip").write_bytes(model.read_bytes())
+    write(folder)
+    monkeypatch.setattr(publish, "PRETRAINED", tmp_path / "pretrained")
+    return folder
+
+
+def write(folder, settings=None, **figures):
+    found = {"command": "python train.py", **FIGURES, "settings": SETTINGS | (settings or {}), **figures}
+    (folder / "results.json").write_text(json.dumps(found))
+
+
+def refused(capsys, *arguments):
+    with pytest.raises(SystemExit) as stop:
+        publish.main([*map(str, arguments)])
+    assert stop.value.code == 2
+    return capsys.readouterr().err.strip().splitlines()[-1]
+
+
+def published(folder):
+    return sorted(p.name for p in (folder.parent / "pretrained").glob("*"))
+
+
+WEIGHTS = {
+    "ppo_absolute": "611324598b6626e1e5028fa1fb92ba79be5ad1917a6357315dcef1737bdf8702",
+    "ppo_foresight": "7fc358b888bb3d9d96408491715de7b6f720336e5812392120b3da910105445c",
+    "ppo_foresight_gamma0": "86b1104b70879a7b187cc7a73c0d6622de313f04c6952d300a9f17d33c8e4a3d",
+    "ppo_mask": "dfe17966c74afe0d4d1a8cce0d121d1ba2a4ebfbe5091edff517c4f3688fcc36",
+    "ppo_target": "a0d80caf6416d41fab71b6157ba3c380d2e128f98f993adf96ce37bbbe09ff7f",
+}
+"""SHA-256 of the weights that the published figures were played with, whatever file holds them."""
+
+
+@pytest.mark.parametrize("name", pretrained())
+def test_pretrained_models_hold_figures_and_weights_alone(name, monkeypatch):
+    """Nothing but tensors comes out of them, and nothing is unpickled by the way that runs code."""
+    with zipfile.ZipFile(models.PRETRAINED / f"{name}.zip") as file:
+        assert sorted(file.namelist()) == ["model.json", "policy.pth"]
+        assert set(json.loads(file.read("model.json"))) == {*KEPT, "seen"}
+        with zipfile.ZipFile(io.BytesIO(file.read("policy.pth"))) as inner:
+            pickled = [inner.read(part) for part in inner.namelist() if part.endswith(".pkl")]
+    called = {argument for opcode, argument, _ in pickletools.genops(*pickled) if opcode.name in ("GLOBAL", "STACK_GLOBAL", "INST")}
+    assert called == {"torch._utils _rebuild_tensor_v2", "torch FloatStorage", "collections OrderedDict"}
+    load = torch.load
+
+    def forbidden(*arguments, **options):
+        raise AssertionError("unpickled")
+
+    for library in (pickle, cloudpickle):
+        for function in ("load", "loads"):
+            monkeypatch.setattr(library, function, forbidden)
+    monkeypatch.setattr(
+        torch, "load", lambda *a, weights_only=False, **more: load(*a, weights_only=True, **more) if weights_only else forbidden()
+    )
+    weights = load_player(models.PRETRAINED / f"{name}.zip").model.policy.state_dict()
+    digest = hashlib.sha256()
+    for key in sorted(weights):
+        digest.update(key.encode() + str(tuple(weights[key].shape)).encode() + weights[key].numpy().tobytes())
+    assert digest.hexdigest() == WEIGHTS[name]
+
+
+@pytest.mark.parametrize("name", pretrained())
+def test_pretrained_models_play_today(name):
+    player = load_player(models.PRETRAINED / f"{name}.zip")
+    tables = SnookerVectorEnv(3, noise="professional", layout="held_out", threads=1, **player.options)
+    observations, _ = tables.reset(seed=0)
+    going = np.array([True, False, True])
+    picked = player.act(tables, observations, going)
+    assert tables.action_masks()[going, picked[going]].all() if player.options.get("action") == "discrete" else np.isfinite(picked).all()
+    tables.step(picked)
+    tables.close()
+
+
+def test_a_run_is_published_with_its_card(run, capsys):
+    publish.main([str(run), "--limits", "no safety"])
+    assert published(run) == ["ppo_mask.json", "ppo_mask.zip"] and "ppo_mask.zip and its card" in capsys.readouterr().out
+    folder = run.parent / "pretrained"
+    there, trained = load_player(folder / "ppo_mask.zip").model, load_player(run).model
+    assert all((a == b).all() for a, b in zip(there.policy.parameters(), trained.policy.parameters(), strict=True))
+    assert {key: getattr(there, key) for key in KEPT} == {key: getattr(trained, key) for key in KEPT}
+    card = json.loads((folder / "ppo_mask.json").read_text())
+    assert (card["limits"], card["hours"], card["imitated"], card["start"]) == ("no safety", 0.01, 0, None)
+
+
+def test_the_card_counts_what_was_imitated_and_names_the_start(run):
+    write(run, {"start": "runs/a"}, imitation=[{"states": 64}, {"states": 128}])
+    publish.main([str(run), "--limits", "none", "--name", "second"])
+    card = json.loads((run.parent / "pretrained" / "second.json").read_text())
+    assert card["imitated"] == 128 and card["start"] == "runs/a"
+
+
+def test_a_published_model_is_replaced_only_when_asked(run, capsys):
+    publish.main([str(run), "--limits", "first"])
+    before = (run.parent / "pretrained" / "ppo_mask.json").read_bytes()
+    assert "name = 'ppo_mask': must be new" in refused(capsys, run, "--limits", "second")
+    assert (run.parent / "pretrained" / "ppo_mask.json").read_bytes() == before
+    publish.main([str(run), "--limits", "second", "--replace"])
+    assert b"second" in (run.parent / "pretrained" / "ppo_mask.json").read_bytes()
+
+
+@pytest.mark.parametrize("settings", [{"set": ["gamma=0"]}, {"noise": "club"}, {"start": "runs/a"}, {"fidelity": "fast"}])
+def test_another_way_to_train_needs_another_name(run, capsys, settings):
+    write(run, settings)
+    assert "name = None: must be given" in refused(capsys, run, "--limits", "none")
+    assert published(run) == []
+    publish.main([str(run), "--limits", "none", "--name", "other"])
+    assert published(run) == ["other.json", "other.zip"]
+
+
+@pytest.mark.parametrize("name", ["a/b", "../a", "", ".a", "a b", "search", "ghost_ball"])
+def test_bad_names_are_refused(run, capsys, name):
+    assert f"name = {name!r}: must" in refused(capsys, run, "--limits", "none", "--name", name)
+    assert published(run) == []
+
+
+def test_limits_must_say_something(run, capsys):
+    assert "limits = ' ': must say" in refused(capsys, run, "--limits", " ")
+
+
+@pytest.mark.parametrize("content", ["", "{", "[]", "3", "{}", json.dumps({"settings": SETTINGS}), json.dumps({"settings": 3, **FIGURES})])
+def test_broken_results_are_refused(run, capsys, content):
+    (run / "results.json").write_text(content)
+    assert f"run = {str(run)!r}: must be the folder of a finished run" in refused(capsys, run, "--limits", "none")
+    assert published(run) == []
+
+
+def test_a_file_that_is_no_model_is_refused(run, capsys):
+    whole = (run / "model.zip").read_bytes()
+    for content in (b"junk", b"", whole[: len(whole) // 2]):
+        (run / "model.zip").write_bytes(content)
+        assert f"run = {str(run / 'model.zip')!r}: must be a model that train.py saved" in refused(capsys, run, "--limits", "none")
+    (run / "model.zip").unlink()
+    assert "must be a model's .zip or a folder that holds model.zip" in refused(capsys, run, "--limits", "none")
+    (run / "checkpoint.pkl").write_bytes(b"")
+    with pytest.raises(ValueError, match=f"^agent = .*this run has not ended, it goes on with: python train.py --resume --out {run}$"):
+        Agent.of(str(run)).trained()
+    assert published(run) == []
+
+
+def test_a_model_of_an_older_network_is_refused(run, monkeypatch):
+    """Other weights, another view, a recipe that is gone: one sentence that names the file and the recipe."""
+    said = r"{} = '.*model.zip': must be a model of today's ppo_mask: this one is older, train it again"
+    for at in ("agents.learning.networks.POT", "agents.learning.networks.CONTEXT"):
+        with monkeypatch.context() as patch:
+            patch.setattr(at, 64)
+            with pytest.raises(ValueError, match=said.format("agent")):
+                load_player(run)
+    with monkeypatch.context() as patch:
+        patch.setattr("agents.features.pot_features.Pots.space", spaces.Box(-1.0, 1.0, (7,), np.float32))
+        with pytest.raises(ValueError, match=said.format("start")):
+            load_trained(run / "model.zip", "start")
+    monkeypatch.setattr("agents.learning.model_files.Recipe.of", lambda name, **more: {}[name])
+    with pytest.raises(ValueError, match=said.format("agent")):
+        load_player(run)

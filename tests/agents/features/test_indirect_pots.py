@@ -1,0 +1,363 @@
+"""Does ``agents.features.indirect_pots`` find the banks, plants and cannons there are, and no others, and do the aims it solves pot?"""
+
+from math import atan2, cos, hypot, pi, sin
+
+import numpy as np
+import pytest
+
+import snooker_env
+from agents.evaluation.rollouts import play
+from agents.features import indirect_pots as ind
+from agents.features.indirect_pots import AIM_X, AIM_Y, BALL, BANK, CANNON, GHOST_X, GHOST_Y, KIND, OTHER, PLANT, POCKET, TOLERANCE
+from agents.players.aim_search import Aimer, widest_run
+from agents.players.built_in import player_of
+from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.game.balls import BALL_RADIUS, BLACK, BLUE, CUE, GREEN, N_BALLS, PINK, YELLOW, BallOn, mask_of
+from snooker_env.game.pots import POCKETS, pots
+from snooker_env.physics.engine import EventKind
+from snooker_env.physics.parameters import Physics
+from snooker_env.physics.table import HALF_WIDTH, Table
+from snooker_env.tasks.box_actions import line
+
+R = BALL_RADIUS
+MATCH, PAPER = Table.preset("match"), Physics.of("paper")
+TOP_RIGHT, MIDDLE_RIGHT = 3, 2
+
+
+def table(places):
+    """positions (22, 2), on_table (22,) of the balls {id: (x, y)}."""
+    positions, on_table = np.zeros((N_BALLS, 2)), np.zeros(N_BALLS, bool)
+    for ball, place in places.items():
+        positions[ball], on_table[ball] = place, True
+    return positions, on_table
+
+
+def found(places, ball_on=BallOn.RED, most=200):
+    """All indirect shots."""
+    return ind.indirect(*table(places), int(ball_on), MATCH, PAPER, most)
+
+
+def one(shots, **wanted):
+    """The only shot with these entries in the columns named."""
+    keep = np.ones(len(shots), bool)
+    for name, value in wanted.items():
+        keep &= shots[:, getattr(ind, name)] == value
+    assert keep.sum() == 1, shots
+    return shots[keep][0]
+
+
+@pytest.fixture(scope="module")
+def aimer():
+    return Aimer(SnookerVectorEnv(1, aim="absolute").visits.rules, 2.3)
+
+
+def game_of(ball_on):
+    """The game's state of a table that is being played."""
+    return np.array([int(ball_on), 0, 0, 0, 0])
+
+
+def tried(aimer, places, shot, ball_on=BallOn.RED):
+    """``Aimer.widest`` of this shot alone."""
+    return aimer.widest(*table(places), game_of(ball_on), shot[None])
+
+
+def simulated(places, action, turn=0.0):
+    """The ``Shot`` of an action, turned by an angle, by the simulation alone."""
+    positions, on_table = table(places)
+    speed, aim = 0.2 + 3.4 * (float(action[0]) + 1.0), pi * float(action[3]) + turn
+    v, w = snooker_env.strike(speed, aim)
+    velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
+    velocities[CUE], spins[CUE] = v[:2], w
+    return snooker_env.simulate(positions, velocities, spins, on_table=on_table)
+
+
+def met(shot, kind, *balls):
+    """How many events of a kind these balls have."""
+    events = shot.events[shot.events["kind"] == kind]
+    return int((events["i"] == balls[0]).sum() if len(balls) == 1 else ((events["i"] == balls[0]) & (events["j"] == balls[1])).sum())
+
+
+BANKED = {CUE: (0.2, -0.9), 1: (-0.2, -0.2)}
+PLANTED = {CUE: (-0.1, 0.3), 1: (0.2, 0.8), 2: (0.5, 1.25)}
+OFF = {CUE: (-0.04, -1.24), 1: (0.08, -0.56), BLUE: (0.48, -0.09)}
+
+
+def test_a_bank_is_the_mirror_image_and_goes_in(aimer):
+    shot = one(found(BANKED), KIND=BANK, POCKET=TOP_RIGHT, BALL=1)
+    red, at, pocket = np.array(BANKED[1]), shot[[AIM_X, AIM_Y]], POCKETS[TOP_RIGHT, :2]
+    assert at[0] == pytest.approx(-(HALF_WIDTH - R), abs=1e-12)  # as near as a ball's centre comes to the cushion
+    before, after = at - red, pocket - at
+    assert before[1] / before[0] == pytest.approx(-after[1] / after[0], rel=1e-12)
+    ghost = shot[[GHOST_X, GHOST_Y]]
+    assert ghost == pytest.approx(red - 2 * R * before / np.hypot(*before), abs=1e-12)
+    action, half, _, _ = tried(aimer, BANKED, shot)
+    played = simulated(BANKED, action)
+    assert played.potted[1] == TOP_RIGHT and played.potted[CUE] < 0
+    assert met(played, EventKind.CUSHION, 1) == 1 and met(played, EventKind.BALL_BALL, CUE, 1) == 1
+    good = [simulated(BANKED, action, turn * half).potted[1] == TOP_RIGHT for turn in (-2.0, -0.8, 0.8, 2.0)]
+    assert good == [False, True, True, False]  # the width is the true one, and the aim its middle
+
+
+def contact(start, angle, ball):
+    """Where the centre of a ball that comes from ``start`` is when it meets another one."""
+    u, to = np.array((cos(angle), sin(angle))), ball - start
+    along = to @ u
+    return start + u * (along - np.sqrt(4 * R * R - (to @ to - along * along)))
+
+
+def half_window_over_slope(passes, pocket):
+    """The tolerance of straight lines: ``passes(turn)`` is the last leg for a turn of the cue ball's, its start and its direction."""
+
+    def aside(turn):
+        start, d = passes(turn)
+        to = POCKETS[pocket, :2] - start
+        return d[0] * to[1] - d[1] * to[0]
+
+    assert pocket not in (2, 5)
+    angle = np.degrees(np.arccos(passes(0.0)[1] @ POCKETS[pocket, 2:4]))
+    window = np.interp(angle, (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0))  # game.pots, of a corner
+    assert aside(0.0) == pytest.approx(0.0, abs=1e-9)
+    return 0.5 * window / abs((aside(1e-6) - aside(-1e-6)) / 2e-6)
+
+
+def aimed(shot, places):
+    """(cue ball, first ball, angle of the cue ball's way) of a shot."""
+    cue, first = np.array(places[CUE]), np.array(places[int(shot[BALL])])
+    return cue, first, atan2(*(shot[[GHOST_X, GHOST_Y]] - cue)[::-1])
+
+
+def test_the_tolerance_of_a_bank_is_what_the_straight_lines_allow():
+    """Independently: turn the cue ball's direction until the straight lines miss the pocket's window."""
+    shot = one(found(BANKED), KIND=BANK, POCKET=TOP_RIGHT, BALL=1)
+    cue, red, angle = aimed(shot, BANKED)
+
+    def last_leg(turn):
+        d = (red - contact(cue, angle + turn, red)) / (2 * R)
+        off = -(HALF_WIDTH - R)
+        return red + d * (off - red[0]) / d[0], np.array((-d[0], d[1]))
+
+    assert shot[TOLERANCE] == pytest.approx(half_window_over_slope(last_leg, TOP_RIGHT), rel=1e-6)
+
+
+def test_the_tolerance_of_a_plant_is_what_the_straight_lines_allow():
+    shot = one(found(PLANTED), KIND=PLANT, BALL=1, OTHER=2, POCKET=TOP_RIGHT)
+    cue, first, angle = aimed(shot, PLANTED)
+    second = np.array(PLANTED[2])
+
+    def last_leg(turn):
+        d = first - contact(cue, angle + turn, first)
+        return second, (second - contact(first, atan2(*d[::-1]), second)) / (2 * R)
+
+    assert shot[TOLERANCE] == pytest.approx(half_window_over_slope(last_leg, TOP_RIGHT), rel=1e-6)
+
+
+def test_the_tolerance_of_a_cannon_is_what_the_straight_lines_allow():
+    """Nearly: the geometry takes differences over a 24th of the other ball's width for the slope."""
+    shots = found(OFF)
+    corners = [shot for shot in shots if shot[KIND] == CANNON and shot[POCKET] not in (2, 5)]
+    assert corners
+    for shot in corners:
+        cue, first, angle = aimed(shot, OFF)
+        blue = np.array(OFF[BLUE])
+
+        def last_leg(turn, cue=cue, first=first, angle=angle, blue=blue):
+            d = (first - contact(cue, angle + turn, first)) / (2 * R)
+            at = contact(first, atan2(*d[::-1]), blue)
+            centres = (blue - at) / (2 * R)
+            after = d - 5 / 7 * 0.5 * (1 + PAPER.e_b) * (d @ centres) * centres  # rolling: 5/7 after and 2/7 before
+            return at, after / np.hypot(*after)
+
+        assert shot[TOLERANCE] == pytest.approx(half_window_over_slope(last_leg, int(shot[POCKET])), rel=0.25)
+
+
+def test_a_plant_drives_the_second_red_in(aimer):
+    shot = one(found(PLANTED), KIND=PLANT, BALL=1, OTHER=2, POCKET=TOP_RIGHT)
+    first, second, pocket = np.array(PLANTED[1]), np.array(PLANTED[2]), POCKETS[TOP_RIGHT, :2]
+    d = (pocket - second) / np.hypot(*(pocket - second))
+    meets = second - 2 * R * d
+    assert shot[[AIM_X, AIM_Y]] == pytest.approx(meets, abs=1e-12)
+    assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(first - 2 * R * (meets - first) / np.hypot(*(meets - first)), abs=1e-12)
+    action, half, _, _ = tried(aimer, PLANTED, shot)
+    played = simulated(PLANTED, action)
+    assert played.potted[2] == TOP_RIGHT and played.potted[CUE] < 0
+    assert met(played, EventKind.BALL_BALL, CUE, 1) >= 1 and met(played, EventKind.BALL_BALL, CUE, 2) == 0
+    good = [simulated(PLANTED, action, turn * half).potted[2] == TOP_RIGHT for turn in (-2.0, -0.8, 0.8, 2.0)]
+    assert good == [False, True, True, False]
+
+
+def test_a_set_plant_is_aimed_along_the_line_of_the_two_reds(aimer):
+    """Two reds that touch and point at the pocket, but for a degree: no ghost ball, yet it goes in."""
+    pocket, second = POCKETS[TOP_RIGHT, :2], np.array((0.5, 1.3))
+    angle = atan2(*(pocket - second)[::-1]) + 0.01
+    first = second - 2 * R * np.array((cos(angle), sin(angle)))
+    places = {CUE: (0.3, 0.3), 1: tuple(first), 2: tuple(second)}
+    shot = one(found(places), KIND=PLANT, BALL=1, OTHER=2, POCKET=TOP_RIGHT)
+    assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(first - 2 * R * np.array((cos(angle), sin(angle))), abs=1e-9)
+    action, half, _, _ = tried(aimer, places, shot)
+    assert simulated(places, action).potted[2] == TOP_RIGHT and half > 5e-3
+    first = second - 2 * R * np.array((cos(angle + 0.2), sin(angle + 0.2)))
+    shots = found({CUE: (0.3, 0.3), 1: tuple(first), 2: tuple(second)})
+    assert not ((shots[:, KIND] == PLANT) & (shots[:, POCKET] == TOP_RIGHT)).any()
+
+
+def test_a_cannon_goes_off_the_other_ball(aimer):
+    shots = found(OFF)
+    for shot in shots[(shots[:, KIND] == CANNON)]:
+        at = shot[[AIM_X, AIM_Y]]
+        assert shot[BALL] == 1 and shot[OTHER] == BLUE and hypot(*(at - OFF[BLUE])) == pytest.approx(2 * R, abs=1e-9)
+        before, centres = (at - OFF[1]) / np.hypot(*(at - OFF[1])), (OFF[BLUE] - at) / (2 * R)
+        sliding = before - 0.5 * (1 + PAPER.e_b) * (before @ centres) * centres
+        rolling = 5 / 7 * sliding + 2 / 7 * before  # what is left when the cloth has made both spins the ball's own
+        pocket = POCKETS[int(shot[POCKET]), :2] - at
+        assert rolling @ pocket / np.hypot(*rolling) == pytest.approx(np.hypot(*pocket), rel=1e-9)
+    hits = [(shot, tried(aimer, OFF, shot)) for shot in shots if shot[KIND] == CANNON]
+    hits = [(shot, hit[0]) for shot, hit in hits if hit is not None]
+    assert hits
+    for shot, action in hits:
+        played = simulated(OFF, action)
+        assert played.potted[1] == shot[POCKET] and met(played, EventKind.BALL_BALL, 1, BLUE) >= 1 and played.potted[BLUE] < 0
+
+
+def between(a, b, share, aside=0.0):
+    """A place on the way from a to b, so far to its left."""
+    a, b = np.array(a, float), np.array(b, float)
+    d = (b - a) / np.hypot(*(b - a))
+    return tuple(a + share * (b - a) + aside * np.array((-d[1], d[0])))
+
+
+@pytest.mark.parametrize("leg", range(3))
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize(("places", "wanted"), [
+    (BANKED, {"KIND": BANK, "BALL": 1, "POCKET": TOP_RIGHT}),
+    (PLANTED, {"KIND": PLANT, "BALL": 1, "OTHER": 2, "POCKET": TOP_RIGHT}),
+    (OFF, {"KIND": CANNON, "BALL": 1, "OTHER": BLUE}),
+])  # fmt: skip
+def test_a_ball_on_any_leg_blocks_it(places, wanted, leg, side):
+    def offered(more):
+        shots = found({**places, **more})
+        keep = np.ones(len(shots), bool)
+        for name, value in wanted.items():
+            keep &= shots[:, getattr(ind, name)] == value
+        return shots[keep]
+
+    shot = offered({})[0]
+    wanted = {**wanted, "POCKET": shot[POCKET]}
+    where, ghost = shot[[AIM_X, AIM_Y]], shot[[GHOST_X, GHOST_Y]]
+    last = places[2] if shot[KIND] == PLANT else where
+    a, b = [(places[CUE], ghost), (places[1], where), (last, POCKETS[int(shot[POCKET]), :2])][leg]
+    aims = lambda shots: [s for s in shots if np.allclose(s[[AIM_X, AIM_Y]], where)]  # noqa: E731
+    assert len(aims(offered({PINK: between(a, b, 0.5, side * 1.98 * R)}))) == 0
+    assert len(aims(offered({PINK: between(a, b, 0.5, side * 2.02 * R)}))) == 1
+
+
+def test_only_balls_that_may_go_down_together_are_planted():
+    coloured = {CUE: PLANTED[CUE], 1: PLANTED[1], PINK: PLANTED[2]}
+    assert PLANT in found(PLANTED)[:, KIND] and PLANT not in found(coloured)[:, KIND]
+    assert CANNON in found(coloured)[:, KIND]  # a red off a colour is fair
+    colours = {CUE: PLANTED[CUE], PINK: PLANTED[1], BLACK: PLANTED[2]}
+    shots = found(colours, BallOn.ANY_COLOUR)
+    assert len(shots) and PLANT not in shots[:, KIND]
+    assert set(found(colours, BallOn.PINK)[:, BALL]) == {PINK}
+    assert set(found(coloured)[:, BALL]) == {1}
+    banked = {**BANKED, PINK: (0.5, 0.9)}
+    assert set(found(banked)[:, BALL]) == {1} and set(found(banked, BallOn.ANY_COLOUR)[:, BALL]) == {PINK}
+
+
+def no_direct(n, wanted=lambda shots: True):
+    """n tables {id: place} of four reds and the colours, drawn, on which no red can be potted directly."""
+    tables = []
+    env = SnookerVectorEnv(4000, layout="random:4", aim="absolute")
+    env.reset(seed=7000)
+    for p, on in zip(env.visits.positions, env.visits.on_table, strict=True):
+        if len(tables) < n and not len(pots(p, on, mask_of(range(1, 5)), most=1)):
+            places = {int(i): tuple(p[i]) for i in np.flatnonzero(on)}
+            if wanted(found(places)):
+                tables.append(places)
+    assert len(tables) == n
+    return tables
+
+
+def mirrored(places):
+    """The table seen in a mirror, left and right exchanged."""
+    return {ball: (-x, y) for ball, (x, y) in places.items()}
+
+
+def test_mirrored_tables_offer_the_mirrored_shots():
+    columns = [AIM_X, AIM_Y, GHOST_X, GHOST_Y]
+    kinds = set()
+    for places in [*no_direct(4, len), BANKED, PLANTED, OFF]:
+        here, there = found(places), found(mirrored(places))
+        assert len(here) == len(there) > 0
+        assert here[:, TOLERANCE] == pytest.approx(there[:, TOLERANCE], rel=1e-6)
+        assert (here[:, [KIND, BALL, OTHER]] == there[:, [KIND, BALL, OTHER]]).all()
+        assert here[:, columns] * (-1, 1, -1, 1) == pytest.approx(there[:, columns], abs=1e-7)
+        kinds |= set(here[:, KIND])
+    assert kinds == {BANK, PLANT, CANNON}
+
+
+def test_mirrored_tables_are_played_with_mirrored_aims(aimer):
+    tables = [*no_direct(6, len), BANKED, PLANTED]
+    games = np.stack([game_of(BallOn.RED)] * len(tables))
+    here, there = (
+        aimer.actions(np.stack([table(t)[0] for t in side]), np.stack([table(t)[1] for t in side]), games)
+        for side in (tables, [mirrored(t) for t in tables])
+    )
+    assert here[:, :3] == pytest.approx(there[:, :3], abs=1e-6)
+    aside = 1.0 - here[:, 3] - there[:, 3]
+    assert aside - 2.0 * np.round(aside / 2.0) == pytest.approx(np.zeros(len(tables)), abs=2e-4)
+
+
+def test_where_the_plain_line_pots_it_is_played():
+    """Same table, same noiseless stroke as the plain player's: same points, and the balls end where his do."""
+    plain, own = SnookerVectorEnv(60, layout="held_out", action="discrete"), SnookerVectorEnv(60, layout="held_out", aim="absolute")
+    after = []
+    for env, name in ((plain, "ghost_ball"), (own, "geometric")):
+        observations, _ = env.reset(seed=3)
+        going = np.ones(60, bool)
+        *_, info = env.step(player_of(name).act(env, observations, going))
+        after.append((info["points"], env.visits.positions))
+    (points, places), (own_points, own_places) = after
+    made = points > 0
+    assert 30 < made.sum() < 60
+    assert (own_points[made] == points[made]).all()
+    gaps = np.abs(own_places - places)[made].reshape(made.sum(), -1).max(axis=1)
+    assert np.median(gaps) < 1e-3  # not equal bits: his aim was never a float32
+    assert (own_points > 0).sum() > made.sum()
+
+
+def test_the_nearest_ball_on_is_struck_where_nothing_goes_in(aimer):
+    tables = no_direct(8, lambda shots: len(shots) == 0)
+    positions, on_table = (np.stack([table(t)[k] for t in tables]) for k in (0, 1))
+    actions = aimer.actions(positions, on_table, np.stack([game_of(BallOn.RED)] * len(tables)))
+    for p, on, action in zip(positions, on_table, actions, strict=True):
+        off = pi * float(action[3]) - line(p, on, mask_of(range(1, 5)))
+        assert abs(sin(off)) < 1e-6 and cos(off) > 0.0
+
+
+def test_the_widest_run():
+    rng = np.random.default_rng(0)
+    good = rng.random((300, 17)) < 0.6
+    good[0], good[1] = False, True
+    starts, lengths = widest_run(good)
+    for row, start, length in zip(good, starts, lengths, strict=True):
+        runs = [(a, b - a) for a in range(17) for b in range(a + 1, 18) if row[a:b].all()]
+        longest = max([n for _, n in runs], default=0)
+        assert length == longest
+        if longest:
+            middles = {a: abs(a + 0.5 * (n - 1) - 8.0) for a, n in runs if n == longest}
+            assert middles[start] == min(middles.values())
+
+
+def test_the_widest_of_several_is_taken(aimer):
+    """Each shot alone, then all at once: the widest of them."""
+    places = {**PLANTED, **{3: (-0.5, 0.9), GREEN: (-0.3, -1.0), YELLOW: (0.3, -1.0)}}
+    shots = found(places, most=3)
+    each = [tried(aimer, places, shot) for shot in shots]
+    action, half, which, _ = aimer.widest(*table(places), game_of(BallOn.RED), shots)
+    widths = [hit[1] if hit else 0.0 for hit in each]
+    assert half == max(widths) and which == int(np.argmax(widths)) and (action == each[which][0]).all()
+
+
+def test_a_visit_is_longer_than_the_plain_players():
+    plain, own = (play(player_of(name), 30, noise="none", threads=1).made.sum() for name in ("ghost_ball", "geometric"))
+    assert own > 1.5 * plain

@@ -1,0 +1,128 @@
+"""Do copies of tables play what the tables play, and is a position worth what the docstrings say, recomputed in plain Python?"""
+
+from math import atan, exp, hypot, radians, sqrt
+
+import numpy as np
+import pytest
+from positions import position, tables
+from scipy.stats import norm
+
+from agents.features import lookahead
+from agents.features.lookahead import Copies
+from agents.players.built_in import DISCRETE
+from snooker_env.game.balls import BLACK, CUE, PINK, BallOn, mask_of
+from snooker_env.game.pots import POCKETS, pots
+from snooker_env.physics.parameters import Physics
+from snooker_env.tasks.discrete_actions import choice_of
+from snooker_env.tasks.noise import Noise
+from snooker_env.tasks.visit import BALL_ON
+
+VALUE = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
+"""Points of each ball."""
+
+
+def test_copies_play_what_the_tables_play():
+    env = tables(6, noise="club", **DISCRETE)
+    at, copies = position(env), Copies(env.visits.rules, env.visits.rules.shooter.noise)
+    picks = np.array([int(np.flatnonzero(m)[7]) for m in env.action_masks()])
+    assert (env.visits.streams[:, 1] != 0).any()  # the dealing drew from the streams: give the copies streams of their own and play those
+    env.visits.streams[:, 1] = 0
+    points, goes_on, left, seen = copies.play(at, np.arange(6), picks, env.visits.streams[:, 0])
+    observations, rewards, ended, _, _ = env.step(picks)
+    assert np.array_equal(rewards, points) and np.array_equal(~ended, goes_on) and np.array_equal(observations, seen)
+    assert np.array_equal(left.positions, env.visits.positions) and copies.shots == 6
+    assert not np.array_equal(at.positions, left.positions)  # the originals are as they were
+
+
+def test_choices_as_angles_are_the_same_shots():
+    """Said as a float32 angle, a choice's aim is rounded by 2e-7 rad: mostly the balls still stop within a millimetre."""
+    choices, angles = tables(40, layout="random:1", **DISCRETE), tables(40, layout="random:1", aim="absolute")
+    masks = choices.action_masks()
+    picks = np.where(masks[:, choice_of(0, 3, 2, 3)], choice_of(0, 3, 2, 3), 0)
+    actions = lookahead.as_actions(position(angles), np.arange(40), picks, angles.visits.rules.shooter)
+    assert np.abs(actions).max() <= 1.0
+    _, first, _, _, _ = choices.step(picks)
+    _, second, _, _, _ = angles.step(actions)
+    assert np.mean(first == second) > 0.95 and first.sum() > 10
+    apart = np.abs(choices.visits.positions[:, 0] - angles.visits.positions[:, 0]).max(axis=1)
+    assert np.median(apart) < 1e-3
+
+
+def test_prospects_prefer_easy_pots_and_more_to_come():
+    env = tables(1, layout="random:2")
+    at = position(env)
+    at.on_table[0, 1:] = False
+    at.on_table[0, [1, 2]] = True
+    at.game[0, 0] = 1
+    at.positions[0, :3] = (0.0, 0.0), (0.5, 0.8), (-0.7, -1.5)
+
+    def value(p, spread):
+        values, chances = lookahead.prospects_of(p, spread)
+        return values[0], chances[0]
+
+    easy, chances = value(at, 1e-3)
+    assert 0 < chances[1] <= chances[0] <= 1
+    assert value(at, 4e-3)[0] < easy  # a shakier hand
+    fewer = at[np.array([0])]
+    fewer.on_table[0, 2] = False
+    assert value(fewer, 1e-3)[0] < easy
+    nothing = at[np.array([0])]
+    nothing.on_table[0, 1:] = False
+    assert value(nothing, 1e-3)[0] == 0
+
+
+def by_hand(positions, on_table, ball_on, spread, follows, second, third, far):
+    """The value of a position and the chances of its pots, from the pots of ``game.pots``."""
+    there = [ball for ball in VALUE if on_table[ball]]
+    balls = [ball for ball in there if (VALUE[ball] == 1) == (ball_on == BallOn.RED)]
+    left = sum(8 if VALUE[ball] == 1 else VALUE[ball] for ball in there) + 7 * (ball_on == BallOn.ANY_COLOUR)
+    chances, worths = [], [0.0, 0.0, 0.0]
+    for ball, pocket, gx, gy, _, tolerance in pots(positions, on_table, mask_of(balls)):
+        (cx, cy), (bx, by), (px, py) = positions[CUE], positions[int(ball)], POCKETS[int(pocket), :2]
+        run = hypot(gx - cx, gy - cy) + hypot(px - bx, py - by)
+        within = norm.cdf(tolerance, scale=spread) - norm.cdf(-tolerance, scale=spread)
+        chances.append(within * exp(-far * run))
+        more = follows * (1 - exp(-max(0, left - VALUE[int(ball)]) / follows))
+        worths.append(chances[-1] * (VALUE[int(ball)] + more))
+    best = sorted(worths, reverse=True)
+    return best[0] + second * best[1] + third * best[2], chances
+
+
+@pytest.mark.parametrize("ball_on", [BallOn.RED, BallOn.ANY_COLOUR])
+@pytest.mark.parametrize("constants", [lookahead.BY_HAND, lookahead.SURE, (8.0, 0.4, 0.3, 0.5)])
+def test_prospects_recomputed(ball_on, constants):
+    env = tables(30, layout="random:3", seed=2)
+    at = position(env)
+    at.game[:, BALL_ON] = int(ball_on)
+    for spread in (5e-4, 6e-3):
+        values, chances = lookahead.prospects_of(at, spread, constants, most=6)
+        for k in range(30):
+            value, all_of = by_hand(at.positions[k], at.on_table[k], ball_on, spread, *constants)
+            assert values[k] == pytest.approx(value, rel=1e-9)
+            assert chances[k] == pytest.approx(([*all_of, *[0.0] * 6])[:6], rel=1e-9)
+    assert (chances[:, 2] > 0).sum() > 20  # there are third pots to count
+
+
+def test_what_is_left_of_a_last_black():
+    """Nothing follows: the pots are worth their chance times 7."""
+    at = position(tables(1))
+    at.on_table[0, 1:] = False
+    at.on_table[0, BLACK] = True
+    at.positions[0, CUE], at.positions[0, BLACK] = (0.0, 0.8), (0.4, 1.3)
+    at.game[0, BALL_ON] = int(BallOn.BLACK)
+    (value,), (chances,) = lookahead.prospects_of(at, 2e-3)
+    best = 7.0 * np.sort(chances)[::-1]
+    assert value == pytest.approx(best[0] + 0.15 * best[1] + 0.05 * best[2]) and value > 1.0
+    at.on_table[0, PINK] = True  # but is not on: it follows
+    at.positions[0, PINK] = (-0.6, -1.0)
+    assert lookahead.prospects_of(at, 2e-3)[0][0] == pytest.approx(value * (7 + 25 * (1 - exp(-6 / 25))) / 7)
+
+
+@pytest.mark.parametrize("level", ["professional", "club", "olympiad"])
+def test_spread_is_that_of_the_aim_and_of_the_squirt(level):
+    """Squirt [Alciatore, TP A.31] of a tip that is off by one standard deviation; small offsets, where it is straight."""
+    noise, physics = Noise.of(level), Physics.of("paper")
+    b = 1e-3 * noise.offset_mm / physics.R
+    squirt = atan(2.5 * b * sqrt(1 - b * b) / (1 + physics.end_mass_ratio + 2.5 * (1 - b * b)))
+    assert lookahead.spread_of(noise, physics) == pytest.approx(hypot(radians(noise.aim_deg), squirt), rel=1e-3)
+    assert lookahead.spread_of(Noise(), physics) == 1e-5

@@ -1,0 +1,123 @@
+"""Does the look ahead show what will happen, entry by entry, and are the errors it tries even?"""
+
+import numpy as np
+from positions import position, tables
+
+from agents.evaluation.rollouts import play, summary
+from agents.features import lookahead, lookahead_features, pot_features
+from agents.features.noise_samples import LOOKS, errors_of, find, unevenness
+from agents.players.built_in import DISCRETE, GhostBall, player_of
+from snooker_env.game.balls import BallOn
+from snooker_env.tasks.discrete_actions import SIZE
+from snooker_env.tasks.visit import BALL_ON
+
+
+def rows_of(seen):
+    return seen[:, pot_features.SHOWN :].reshape(len(seen), lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)
+
+
+def test_foresight_shows_what_happens_without_errors():
+    env = tables(5, noise="none", **DISCRETE)
+    look = lookahead_features.Foresight(2)
+    observations = env.reset(seed=4)[0]
+    seen = look(env, observations)
+    assert seen.shape == (5, *lookahead_features.SPACE.shape) and lookahead_features.SPACE.contains(seen[0])
+    assert np.array_equal(seen[:, : pot_features.SHOWN], pot_features.with_pots(observations))
+    rows, exact = rows_of(seen), tables(5, noise="none", **DISCRETE)
+    assert np.array_equal(rows[:, :, lookahead_features.THERE] > 0, env.action_masks()[:, lookahead_features.PICKS])
+    for stroke in (0, 8, 14):
+        exact.reset(options={"states": env.get_state()})
+        _, rewards, ended, _, _ = exact.step(lookahead_features.PICKS[np.full(5, stroke)])
+        row = rows[:, stroke]
+        assert np.allclose(row[:, lookahead_features.POINTS], rewards / 7.0) and np.array_equal(
+            row[:, lookahead_features.GOES_ON] > 0, ~ended
+        )
+        assert not row[:, lookahead_features.SPREAD].any() and np.array_equal(row[:, lookahead_features.SCORED] > 0, rewards > 0)
+        cue = exact.visits.positions[:, 0] / (pot_features.HALF_WIDTH, pot_features.HALF_LENGTH)
+        assert np.allclose(row[~ended, lookahead_features.CUE_X : lookahead_features.CUE_Y + 1], cue[~ended], atol=1e-6)
+        assert np.allclose(lookahead_features.worth_by_hand(rows)[ended, stroke], rewards[ended], atol=1e-5)
+    part = look(env, observations[[1, 3]], np.array([False, True, False, True, False]))
+    assert np.array_equal(part, seen[[1, 3]])
+    assert look.masks(env).sum() == (rows[:, :, 0] > 0).sum() and look.masks(env).shape == (5, SIZE)
+
+
+def test_foresight_is_the_mean_over_looks_with_the_errors_of_the_tables():
+    """Against the tables themselves, given the streams of each look in turn."""
+    env, other = tables(4, noise="club", **DISCRETE), tables(4, noise="club", **DISCRETE)
+    seen = rows_of(lookahead_features.Foresight(1)(env, env.reset(seed=8)[0]))
+    spread = lookahead.spread_of(env.visits.rules.shooter.noise, env.visits.rules.shooter.physics)
+    for stroke in (1, 10):
+        points, worth, cue, on = (np.zeros((5, 4)) for _ in range(4))
+        next_best = np.zeros((5, 4, 3))
+        for i, key in enumerate(LOOKS):
+            other.reset(options={"states": env.get_state()})
+            other.visits.streams[:] = (key, 0)
+            _, points[i], ended, _, _ = other.step(lookahead_features.PICKS[np.full(4, stroke)])
+            values, chances = lookahead.prospects_of(position(other), spread, most=8)
+            on[i], worth[i], next_best[i] = ~ended, ~ended * values, ~ended[:, None] * -np.sort(-chances)[:, :3]
+            cue[i] = ~ended * other.visits.positions[:, 0, 1]
+        row, goes_on = seen[:, stroke], np.maximum(1, on.sum(0))
+        assert np.allclose(row[:, lookahead_features.POINTS], points.mean(0) / 7.0) and np.allclose(
+            row[:, lookahead_features.SCORED], (points > 0).mean(0)
+        )
+        assert np.allclose(row[:, lookahead_features.GOES_ON], on.mean(0)) and 0 < on.mean() < 1
+        assert np.allclose(row[:, lookahead_features.VALUE], worth.mean(0) / 25.0) and np.allclose(
+            row[:, lookahead_features.SPREAD], worth.std(0) / 25.0
+        )
+        assert np.allclose(row[:, lookahead_features.FIRST : lookahead_features.THIRD + 1], next_best.sum(0) / goes_on[:, None])
+        assert (next_best[..., 2] > 0).any()
+        assert np.allclose(row[:, lookahead_features.CUE_Y], cue.sum(0) / goes_on / pot_features.HALF_LENGTH, atol=1e-6)
+
+
+def test_foresight_says_which_stroke_it_is():
+    """Strokes in the docstring's order: each of two pots, then speed, then top."""
+    env = tables(6, noise="professional", layout="random:6", **DISCRETE)
+    env.visits.game[:3, BALL_ON], env.visits.game[3:, BALL_ON] = int(BallOn.RED), int(BallOn.ANY_COLOUR)
+    rules, at, masks = env.visits.rules, position(env), env.action_masks()[:, lookahead_features.PICKS]
+    rows = lookahead_features.Foresight(1).ahead(rules, at, masks)
+    chances = lookahead.prospects_of(at, lookahead.spread_of(rules.shooter.noise, rules.shooter.physics))[1]
+    strokes = [(pot, speed, top) for pot in (0, 1) for speed in (1.3, 2.3, 3.6, 5.3) for top in (-0.4, 0.0, 0.4)]
+    there = np.array([[chances[k, pot] > 0 for pot, _, _ in strokes] for k in range(6)])
+    assert len(strokes) == lookahead_features.STROKES_SEEN and np.array_equal(rows[..., lookahead_features.THERE] > 0, there)
+    assert there[:3, -1].any() and there[3:, -1].any() and np.ptp(chances[:, :2], axis=1).max() > 0.1
+    for entry, told in (
+        (lookahead_features.CHANCE, [[chances[k, pot] for pot, _, _ in strokes] for k in range(6)]),
+        (lookahead_features.SPEED, [[speed / 6.3 for _, speed, _ in strokes]] * 6),
+        (lookahead_features.TOP, [[top / 0.4 for _, _, top in strokes]] * 6),
+        (lookahead_features.RED_ON, [[float(k < 3)] * len(strokes) for k in range(6)]),
+    ):
+        assert np.allclose(rows[..., entry], there * np.array(told), atol=1e-6), entry
+
+
+def test_worth_by_hand():
+    """Points, and 25 for a value of 1."""
+    rows = np.zeros((1, 3, lookahead_features.ENTRIES))
+    rows[0, :2, lookahead_features.THERE], rows[0, :, lookahead_features.POINTS], rows[0, :, lookahead_features.VALUE] = (
+        1.0,
+        (1.0, 1 / 7, 1.0),
+        (0.0, 0.5, 1.0),
+    )
+    assert np.allclose(lookahead_features.worth_by_hand(rows), [[7.0, 13.5, -np.inf]])
+
+
+def test_looks_are_even():
+    errors = errors_of(LOOKS)
+    likely = [-1.2816, -0.5244, 0.0, 0.5244, 1.2816]
+    assert np.abs(np.sort(errors[:, [0, 3]], axis=0).T - likely).max() < 0.25 and np.abs(errors.mean(0)).max() < 0.15
+    assert np.abs(np.corrcoef(errors[:, :4].T) - np.eye(4)).max() < 0.55
+    _, least, median = find(len(LOOKS), keys=200, starts=1)
+    assert unevenness(errors) < least < median / 2
+    many = errors_of(range(1, 400_001))  # standard errors: 0.0016 of a mean, 0.0022 of a variance
+    assert np.abs(many.mean(0)).max() < 0.01 and np.abs(np.cov(many.T) - np.eye(5)).max() < 0.01
+    assert unevenness(many[:2000]) < 0.01
+
+
+def test_lookahead_plays_the_stroke_that_promises_most():
+    env, going = tables(6, noise="professional", **DISCRETE), np.array([True, False, True, True, True, True])
+    player = player_of("lookahead")
+    picks = player.act(env, None, going)
+    rows = rows_of(lookahead_features.Foresight()(env, env.reset(seed=0)[0]))
+    assert np.array_equal(picks[going], lookahead_features.PICKS[lookahead_features.worth_by_hand(rows).argmax(1)][going]) and picks[1] == 0
+    far = play(player, 60, first_seed=5)
+    plain = play(GhostBall(), 60, first_seed=5)
+    assert summary(far)["points_a_visit"] > 2.0 * summary(plain)["points_a_visit"]

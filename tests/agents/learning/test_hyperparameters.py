@@ -1,0 +1,79 @@
+"""Is an agent made as its recipe says, and shown by its tables what it may see and play?"""
+
+import numpy as np
+import pytest
+
+from agents.features import lookahead_features, pot_features
+from agents.features.views import training_tables
+from agents.learning import hyperparameters
+
+
+@pytest.mark.parametrize("name", hyperparameters.names())
+def test_every_recipe_stands(name):
+    recipe = hyperparameters.Recipe.of(name)
+    assert recipe.name == name and recipe.n_timesteps > 0
+
+
+def test_a_recipe_with_a_wrong_value_is_refused(tmp_path, monkeypatch):
+    text = (hyperparameters.FOLDER / "ppo_mask.yml").read_text().replace("gamma: 0.95", "gamma: 1.5")
+    (tmp_path / "mine.yml").write_text(text)
+    monkeypatch.setattr(hyperparameters, "FOLDER", tmp_path)
+    with pytest.raises(ValueError, match=r"gamma = 1.5: must be a finite number in \[0, 1\]"):
+        hyperparameters.Recipe.of("mine")
+
+
+def test_a_linear_rate_falls_from_what_it_says_to_nearly_nothing():
+    tables = training_tables(2, action="discrete")
+    model = hyperparameters.Recipe.of("ppo_mask", ["learning_rate=lin_1e-3"]).new_model(tables, 0)
+    rates = [model.lr_schedule(1.0 - done) for done in (0.0, 0.25, 0.5, 1.0)]
+    assert rates == pytest.approx([1e-3, 0.7525e-3, 0.505e-3, 1e-5])
+    fixed = hyperparameters.Recipe.of("ppo_mask", ["learning_rate=0.01"]).new_model(tables, 0)
+    assert fixed.lr_schedule(1.0) == fixed.lr_schedule(0.0) == 0.01
+    tables.close()
+
+
+def test_masks_are_those_of_the_view():
+    """An agent that looks ahead may play what it looked at, nothing else."""
+    tables = training_tables(4, threads=1, view="foresight", action="discrete")
+    tables.seed(3)
+    seen = tables.reset()
+    masks, all_masks = np.array(tables.env_method("action_masks")), tables.unwrapped.tables.action_masks()
+    assert (masks.sum(1) > 0).any() and (masks.sum(1) < all_masks.sum(1)).any() and not (masks & ~all_masks).any()
+    there = (
+        seen[:, pot_features.SHOWN :].reshape(4, lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)[
+            :, :, lookahead_features.THERE
+        ]
+        > 0
+    )
+    for row, looked_at in zip(masks, there, strict=True):
+        assert set(np.flatnonzero(row)) == set(lookahead_features.PICKS[looked_at])
+    assert np.array_equal(tables.env_method("action_masks", indices=[2])[0], masks[2])
+    tables.close()
+
+
+@pytest.mark.parametrize("shown", ["pots", "foresight"])
+def test_the_end_of_a_visit_is_shown_with_its_pots(shown):
+    """The last table, not the one after it, and nothing looked ahead on it."""
+    tables = training_tables(4, threads=1, view=shown, action="discrete", noise="club")
+    tables.seed(3)
+    tables.reset()
+    ended = 0
+    for _ in range(6):
+        inner, kept = tables.venv.step_wait, []
+
+        def watched(inner=inner, kept=kept):
+            out = inner()
+            kept.extend(info.get("terminal_observation") for info in out[3])
+            return out
+
+        tables.venv.step_wait = watched
+        _, _, done, infos = tables.step(np.array([np.flatnonzero(mask)[0] for mask in tables.env_method("action_masks")]))
+        tables.venv.step_wait = inner
+        for k in np.flatnonzero(done):
+            last, ended = infos[k]["terminal_observation"], ended + 1
+            assert np.array_equal(last[: pot_features.SHOWN], pot_features.with_pots(kept[k][None])[0])
+            assert (
+                last[: pot_features.SHOWN].any() and not last[pot_features.SHOWN :].any() and last.shape == tables.observation_space.shape
+            )
+    assert ended > 0
+    tables.close()

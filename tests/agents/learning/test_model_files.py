@@ -1,0 +1,221 @@
+"""Is a model's file read without running anything of it, and is whatever is wrong in it refused with one clear sentence?"""
+
+import importlib
+import io
+import json
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from sb3_contrib import MaskablePPO
+from stable_baselines3 import SAC
+
+import train
+from agents.evaluation import publish
+from agents.evaluation.entrants import Agent
+from agents.features.views import training_tables
+from agents.learning.hyperparameters import Recipe, names
+from agents.learning.model_files import KEPT, packed, read
+from agents.learning.models import load_player, load_weights
+from tests.bombs import bombed, rezipped, told
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def made(name, file):
+    """An untrained model of that recipe, saved as train.py does."""
+    recipe = Recipe.of(name, n_envs=2)
+    tables = training_tables(2, threads=1, view=recipe.view, **recipe.env_kwargs)
+    model = recipe.new_model(tables, 3)
+    model.imitated, model.num_timesteps = 300, 77
+    model.save(file)
+    tables.close()
+    return model
+
+
+@pytest.fixture(scope="module")
+def mask(tmp_path_factory):
+    """The file of an untrained ``ppo_mask``."""
+    file = tmp_path_factory.mktemp("kept") / "model.zip"
+    made("ppo_mask", file)
+    return file
+
+
+@pytest.fixture
+def plain(mask, tmp_path):
+    """The same as agents.publish writes it."""
+    (tmp_path / "plain.zip").write_bytes(packed(read(mask, "agent")))
+    return tmp_path / "plain.zip"
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_path):
+    """The network that comes out is that which went in, and so is that of the published file; the caller's random numbers stay."""
+    model = made(name, tmp_path / "model.zip")
+    file = bombed(tmp_path / "model.zip", tmp_path / "bomb.zip", tmp_path / "mark")
+    before = torch.get_rng_state()
+    trained = read(file, "agent")
+    assert torch.equal(torch.get_rng_state(), before) and not (tmp_path / "mark").exists()
+    (tmp_path / "plain.zip").write_bytes(packed(trained))
+    seen = np.random.default_rng(0).uniform(-1, 1, (16, *model.observation_space.shape)).astype(np.float32)
+    for one in (trained, read(tmp_path / "plain.zip", "agent")):
+        assert {key: getattr(one, key) for key in ("recipe", "view", "num_timesteps", "gamma", "seed", "imitated", "start")} == {
+            "recipe": name, "view": Recipe.of(name).view, "num_timesteps": 77, "gamma": 0.95, "seed": 3, "imitated": 300, "start": None,
+        }  # fmt: skip
+        assert one.env_options == model.env_options and one.action_space == model.action_space
+        assert type(one.policy) is type(model.policy) and one.policy.observation_space == model.observation_space
+        assert np.array_equal(one.policy.predict(seen, deterministic=True)[0], model.predict(seen, deterministic=True)[0])
+    with pytest.raises(Exception):  # noqa: B017 - whatever its pickles do
+        type(model).load(file, device="cpu")
+    assert (tmp_path / "mark").exists()  # these bombs are sharp
+
+
+@pytest.mark.parametrize("weights", [False, True])
+def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, capsys):
+    """Evaluation, --start and publication, of a model of ours and of another, with and without a sound policy.pth."""
+    (tmp_path / "run").mkdir()
+    ours = bombed(mask, tmp_path / "run" / "model.zip", tmp_path / "mark", weights)
+    foreign = bombed(mask, tmp_path / "foreign.zip", tmp_path / "mark", weights, change=lambda found: found.pop("recipe"))
+    for file in (ours, foreign, ours.parent):
+        for call in (lambda file=file: Agent.of(str(file)).trained(), lambda file=file: load_player(file)):
+            if weights or file == foreign:
+                with pytest.raises(ValueError, match=r"^agent = '.*': must be"):
+                    call()
+            else:
+                call()
+    for arguments in (["--start", str(foreign)], ["--start", str(ours), "--agent", "ppo_foresight"]):
+        with pytest.raises(SystemExit):
+            train.main([*arguments, "--out", str(tmp_path / "new"), "--envs", "2", "--no-progress"])
+        assert "start = " in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        publish.main([str(tmp_path / "run"), "--limits", "none"])
+    assert not (tmp_path / "mark").exists()
+
+
+HOSTILE = [
+    *[(key, value) for key in KEPT for value in ([1], "x" * 9, {"a": 1}, -1, True, float("nan")) if (key, value) != ("start", {"a": 1})],
+    *[(key, None) for key in ("view", "env_options", "num_timesteps", "gamma")],
+    ("recipe", "../../etc/passwd"), ("recipe", "x" * 10**6), ("recipe", None), ("view", "os.system"), ("gamma", 2),
+    ("num_timesteps", 1.5), ("seen", 7),
+    ("seen", "x"),    ("env_options", {"opponent": "x.zip"}), ("env_options", {"aim": ["target"]}), ("env_options", {"action": "box"}),
+    ("env_options", {"physics": {"R": 1}}), ("env_options", {"noise": {"aim": 1}}), ("env_options", {"layout": 3}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("key", "value"), HOSTILE)
+def test_wrong_figures_are_refused(plain, tmp_path, key, value):
+    file = rezipped(plain, tmp_path / "wrong.zip", model_json=told(lambda found: found.update({key: value})))
+    with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: must be a model (that train.py saved|of today's ppo_mask)") as info:
+        load_player(file)
+    assert type(info.value) is ValueError and len(str(info.value)) < 600
+    assert key in str(info.value) or "older" in str(info.value)
+
+
+@pytest.mark.parametrize("key", [key for key in KEPT if key not in ("seed", "imitated", "start", "recipe")])
+def test_missing_figures_are_refused(plain, tmp_path, key):
+    file = rezipped(plain, tmp_path / "wrong.zip", model_json=told(lambda found: found.pop(key)))
+    with pytest.raises(ValueError, match=rf"must be a model that train.py saved \({key} = None: must be"):
+        load_player(file)
+
+
+def saved(weights):
+    """Bytes of torch.save."""
+    file = io.BytesIO()
+    torch.save(weights, file)
+    return file.getvalue()
+
+
+def swollen(data):
+    """The same weights, packed so that they unpack to much more."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(data)) as old, zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in old.namelist():
+            new.writestr(name, old.read(name) + bytes(2**26 if name.endswith("/data/0") else 0))
+    return file.getvalue()
+
+
+OLDER = "must be a model of today's ppo_mask: this one is older"
+OTHER = r"must be a model that train.py saved \(its policy.pth must hold weights and nothing else"
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda weights: weights | {"more": torch.zeros(3)}, OLDER),
+        (lambda weights: dict(list(weights.items())[1:]), OLDER),
+        (lambda weights: {key: value[:1] for key, value in weights.items()}, OLDER),
+        (lambda weights: {key: value.half() for key, value in weights.items()}, OLDER),
+        (lambda weights: {key: torch.zeros_like(value).to_sparse() for key, value in weights.items()}, OLDER),
+        (lambda weights: {key: value * float("nan") for key, value in weights.items()}, OTHER),
+        (lambda weights: weights | {"more": 3}, OTHER),
+        (lambda weights: list(weights.values()), OTHER),
+        (lambda weights: {"a": re.compile("x")}, OTHER),
+        (lambda weights: {"a": np.zeros(3)}, OTHER),
+    ],
+)
+def test_wrong_weights_are_refused(plain, tmp_path, change, says):
+    file = rezipped(plain, tmp_path / "wrong.zip", policy_pth=lambda data: saved(change(torch.load(io.BytesIO(data), weights_only=True))))
+    with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}"):
+        load_player(file)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (None, OTHER), (lambda data: b"", OTHER), (lambda data: b"junk", OTHER), (lambda data: data[: len(data) // 2], OTHER),
+        (lambda data: bytes(2**24), OLDER), (swollen, OLDER),
+    ],
+)  # fmt: skip
+def test_weights_that_are_none_are_refused(plain, tmp_path, change, says):
+    file = rezipped(plain, tmp_path / "wrong.zip", policy_pth=change)
+    with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}"):
+        load_player(file)
+
+
+def test_a_file_says_only_once_what_it_is(plain, tmp_path):
+    """The published form is read even beside ``data``: nothing of the latter counts."""
+    with zipfile.ZipFile(plain) as file, zipfile.ZipFile(tmp_path / "both.zip", "w") as both:
+        for name in file.namelist():
+            both.writestr(name, file.read(name))
+        both.writestr("data", json.dumps({"recipe": "ppo_target"}))
+    assert read(tmp_path / "both.zip", "agent").recipe == "ppo_mask"
+
+
+def test_weights_are_handed_on(mask, plain):
+    """From a run's file and from the published one, as ``--start`` does."""
+    for file in (mask, plain):
+        recipe = Recipe.of("ppo_mask")
+        tables = training_tables(2, threads=1, **recipe.env_kwargs)
+        model = recipe.new_model(tables, 9)
+        load_weights(model, file)
+        tables.close()
+        assert model.start == {"model": str(file), "shots": 77, "imitated": 300, "start": None}
+        its = MaskablePPO.load(mask, device="cpu").policy
+        assert all(torch.equal(a, b) for a, b in zip(model.policy.parameters(), its.parameters(), strict=True))
+
+
+def test_a_model_of_another_maker_is_told_apart(tmp_path):
+    SAC("MlpPolicy", "Pendulum-v1", device="cpu").save(tmp_path / "sac.zip")
+    assert read(tmp_path / "sac.zip", "agent") is None
+    with pytest.raises(ValueError, match=r"^agent = '.*sac.zip': must be a model that train.py saved$"):
+        load_player(tmp_path / "sac.zip")
+
+
+def test_a_missing_library_is_not_called_an_old_model(mask, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setitem(sys.modules, "torch", None)
+        with pytest.raises(ImportError, match="torch"):
+            load_player(mask)
+    monkeypatch.setattr("agents.learning.hyperparameters.policy", lambda name: importlib.import_module("no_such_library"))
+    with pytest.raises(ImportError, match="no_such_library"):
+        load_player(mask)
+
+
+def test_whoever_plays_no_model_waits_for_no_torch():
+    code = "import sys, agents.evaluate; sys.exit('torch' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT).returncode == 0

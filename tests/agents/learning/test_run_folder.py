@@ -1,0 +1,301 @@
+"""Does a run's folder belong to one run at a time, whatever ends it, and does a run that was stopped while it was taught go on exactly?"""
+
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import train
+from agents.learning import callback, lock, models
+from agents.learning.imitation import Teaching
+from commands.files import write_atomic
+
+ROOT = Path(__file__).resolve().parents[3]
+TINY = [
+    "--agent", "ppo_mask", "--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "256", "--imitate", "64",
+]  # fmt: skip
+
+
+def refused(capsys, *arguments):
+    """The one-line error with which these arguments are refused."""
+    with pytest.raises(SystemExit) as stop:
+        train.main([*arguments])
+    assert stop.value.code == 2
+    return capsys.readouterr().err.strip().splitlines()[-1]
+
+
+# one run a folder ----------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def other(tmp_path):
+    """Another process that holds the folder, as train.py does; its output ends once it does."""
+    code = f"""
+import time
+from pathlib import Path
+from agents.learning.lock import Lock
+held = Lock(Path({str(tmp_path)!r}))
+print("held", flush=True)
+time.sleep(600)
+"""
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    assert process.stdout.readline() == "held\n"
+    yield process
+    process.kill()
+    process.communicate()
+
+
+@pytest.mark.parametrize("more", [[], ["--resume"]])
+@pytest.mark.parametrize("holds", [[], ["checkpoint.pkl"]], ids=["imitating", "saved"])
+def test_a_folder_in_use_is_refused_by_the_name_of_the_process(other, tmp_path, capsys, monkeypatch, more, holds):
+    monkeypatch.setattr(train.snooker_env, "warmup", None)  # nothing is compiled before
+    for name in holds:
+        (tmp_path / name).write_bytes(b"of the other")
+    error = refused(capsys, *TINY, "--out", str(tmp_path), *more)
+    assert f"out = {str(tmp_path)!r}: must be a folder that no other train.py uses: process {other.pid} on " in error
+    assert " since 20" in error and f"(kill -INT {other.pid})" in error and "another --out" in error
+    assert sorted(p.name for p in tmp_path.iterdir()) == [*holds, "train.lock"]
+    assert all((tmp_path / name).read_bytes() == b"of the other" for name in holds)
+
+
+def test_a_lock_ends_with_its_process(other, tmp_path):
+    with pytest.raises(ValueError, match=f"process {other.pid} on"):
+        lock.Lock(tmp_path)
+    other.kill()
+    other.wait()
+    assert (tmp_path / "train.lock").exists()
+    with lock.Lock(tmp_path):
+        assert f"process {os.getpid()} on" in (tmp_path / "train.lock").read_text()
+        with pytest.raises(ValueError, match=f"process {os.getpid()} on"):
+            lock.Lock(tmp_path)
+    assert not list(tmp_path.iterdir())
+    lock.Lock(tmp_path).release()
+
+
+def test_where_the_system_has_no_locks_the_file_is_one(tmp_path, monkeypatch):
+    monkeypatch.setattr(lock, "fcntl", None)
+    held = lock.Lock(tmp_path)
+    with pytest.raises(ValueError, match=f"process {os.getpid()} on .*; if that process is gone, delete .*train.lock"):
+        lock.Lock(tmp_path)
+    held.release()
+    lock.Lock(tmp_path).release()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_file_system_without_locks_is_told_of(tmp_path, monkeypatch, capsys):
+    class Lockless:
+        LOCK_EX = LOCK_NB = 0
+
+        def flock(self, file, how):
+            raise OSError(38, "Function not implemented")
+
+    monkeypatch.setattr(lock, "fcntl", Lockless())
+    lock.Lock(tmp_path).release()
+    assert "no lock (Function not implemented)" in capsys.readouterr().err
+
+
+def test_what_a_killed_run_left_is_no_other_run(tmp_path, capsys):
+    left = ("train.lock", "checkpoint.pkl.tmp", "checkpoint.pkl.123.tmp", "model.zip.9.tmp")
+    for name in left:
+        (tmp_path / name).write_text("half")
+    (tmp_path / "tb").mkdir()
+    assert train.main([*TINY, "--imitate", "0", "--out", str(tmp_path)]) == 0
+    assert {p.name for p in tmp_path.iterdir()} == {"checkpoint.pkl", "model.zip", "results.json", "tb"}
+    (tmp_path / "checkpoint.pkl.tmp.mine").write_text("mine")
+    assert "is not empty" in refused(capsys, *TINY, "--out", str(tmp_path))
+    assert (tmp_path / "checkpoint.pkl.tmp.mine").exists() and not (tmp_path / "train.lock").exists()
+
+
+# stopped while it is taught ------------------------------------------------------------------------------------------------------
+
+
+def after(rounds, monkeypatch, act):
+    """Let ``act`` happen once, when so many rounds of teaching are over."""
+    original, done = Teaching.round, []
+
+    def counted(self):
+        original(self)
+        done.append(self.done)
+        if len(done) == rounds:
+            act()
+
+    monkeypatch.setattr(Teaching, "round", counted)
+
+
+def interrupt():
+    raise KeyboardInterrupt
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """An uninterrupted run."""
+    out = tmp_path_factory.mktemp("runs") / "whole"
+    assert train.main([*TINY, "--out", str(out)]) == 0
+    return out
+
+
+def weights(out):
+    model = models.load_player(out).model
+    return np.concatenate([p.detach().numpy().ravel() for p in model.policy.parameters()])
+
+
+def untimed(out):
+    """The results but for what the clock says."""
+    found = json.loads((out / "results.json").read_text())
+    imitation = [{key: at[key] for key in ("states", "loss")} for at in found["imitation"]]
+    return [imitation, *(found[name] for name in ("settings", "steps", "curve", "evaluation", "learned"))]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_saves_what_was_taught_and_resume_goes_on_exactly(whole, tmp_path, capsys, monkeypatch, number):
+    out = tmp_path / "run"
+    with monkeypatch.context() as patch:
+        after(20, patch, lambda: signal.raise_signal(number))
+        assert train.main([*TINY, "--out", str(out)]) == 128 + number
+    told = capsys.readouterr().out
+    assert f"Saved at 40 of 64 positions. Go on with:  python train.py --resume --out {out}" in told
+    assert {p.name for p in out.iterdir()} == {"checkpoint.pkl"}
+    assert signal.getsignal(number) in (signal.default_int_handler, signal.SIG_DFL)
+    assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
+    assert "taught by the search, 40 of 64 positions" in capsys.readouterr().out
+    assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
+    assert len(untimed(out)[0]) == 20 and models.load_player(out).model.imitated == 64
+
+
+def test_teaching_is_saved_at_intervals(whole, tmp_path, capsys, monkeypatch):
+    """What comes without warning, as a kill does, loses only what was taught since the last save."""
+    out = tmp_path / "run"
+    with monkeypatch.context() as patch:
+        patch.setattr(callback, "LEAST", -1.0)
+        patch.setattr(callback, "SHARE", np.inf)
+        after(13, patch, interrupt)
+        assert train.main([*TINY, "--out", str(out)]) == 130
+    assert f"Interrupted. The last checkpoint is whole. Go on with:  python train.py --resume --out {out}" in capsys.readouterr().err
+    assert pickle.loads((out / "checkpoint.pkl").read_bytes())["teaching"]["done"] == 24
+    assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
+    assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
+
+
+@pytest.mark.parametrize("first", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("second", [signal.SIGINT, signal.SIGTERM])
+def test_a_second_signal_acts_at_once_whichever_it_is(first, second):
+    before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+    with callback.Stop() as stop:
+        signal.raise_signal(first)
+        assert stop.signal == first
+        assert signal.getsignal(second) == (signal.default_int_handler if second == signal.SIGINT else signal.SIG_DFL)
+    assert before == [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+
+
+def test_saves_are_rare(tmp_path, monkeypatch):
+    """By the clock, and rarer where they are slow."""
+    saves, now = [], [0.0]
+    monkeypatch.setattr(callback.time, "perf_counter", lambda: now[0])
+
+    def save(out, settings, model, seconds, curve, imitation, state):
+        saves.append(now[0])
+        now[0] += 5.0
+
+    class Lessons:
+        states, done, curve, seconds = 2000, 0, [{"states": 2000}], 0.0
+
+        def round(self):
+            self.done += 1
+            now[0] += 1.0
+
+        def get_state(self):
+            return None
+
+    monkeypatch.setattr(callback, "save_checkpoint", save)
+    assert callback.taught(Lessons(), tmp_path, train.Settings(), Lessons(), callback.Stop(), False)
+    assert saves[0] == 31.0 and np.array_equal(np.diff(saves), [506.0] * 3)
+
+
+def test_an_interruption_before_the_first_save_is_told(tmp_path, capsys, monkeypatch):
+    after(3, monkeypatch, interrupt)
+    assert train.main([*TINY, "--out", str(tmp_path / "run")]) == 130
+    assert capsys.readouterr().err == "Interrupted. Nothing was saved yet: begin the run anew.\n"
+    assert not list((tmp_path / "run").iterdir())
+
+
+# a full disk ---------------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("broken", ["fsync", "replace"])
+def test_failed_write_leaves_the_old_file_alone(tmp_path, monkeypatch, broken):
+    path = tmp_path / "file"
+    write_atomic(path, b"old")
+
+    def fail(*_):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, broken, fail)
+        with pytest.raises(OSError, match="No space left") as stop:
+            write_atomic(path, b"new, and longer")
+    assert stop.value.filename == str(path)
+    assert path.read_bytes() == b"old" and [p.name for p in tmp_path.iterdir()] == ["file"]
+    write_atomic(path, b"new")
+    assert path.read_bytes() == b"new" and [p.name for p in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_link_is_followed_and_a_device_written(tmp_path):
+    (tmp_path / "file").write_bytes(b"old")
+    (tmp_path / "link").symlink_to(tmp_path / "file")
+    write_atomic(tmp_path / "link", b"new")
+    assert (tmp_path / "link").is_symlink() and (tmp_path / "file").read_bytes() == b"new"
+    write_atomic(Path(os.devnull), b"gone")
+    assert not Path(os.devnull).is_file()
+
+
+@pytest.mark.parametrize("full", ["checkpoint.pkl", "model.zip", "results.json"])
+def test_a_full_disk_ends_it_in_one_line(tmp_path, monkeypatch, full):
+    """The checkpoint before stays, whole; no unfinished file does."""
+    out, original = tmp_path / "run", os.replace
+
+    def replace(source, target):
+        if Path(target).name == full and (full != "checkpoint.pkl" or Path(target).exists()):
+            raise OSError(28, "No space left on device")
+        original(source, target)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "replace", replace)
+        with pytest.raises(SystemExit) as stop:
+            train.main([*TINY, "--imitate", "0", "--checkpoint-every", "1", "--out", str(out)])
+    why = f"train.py: {out / full} cannot be written: No space left on device. "
+    assert stop.value.code == f"{why}The last checkpoint is whole. Go on with:  python train.py --resume --out {out}"
+    assert not [p.name for p in out.iterdir() if p.name.endswith((".tmp", ".lock"))]
+    assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
+
+
+def test_the_systems_own_limit_is_told_in_one_line(tmp_path):
+    """A process that may write 50 kB a file: no traceback, nothing left."""
+    code = f"""
+import resource, runpy, sys
+import train
+resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))
+sys.exit(train.main({[*TINY, "--imitate", "0", "--out", str(tmp_path / "run")]!r}))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, timeout=300)
+    file = tmp_path / "run" / "checkpoint.pkl"
+    assert done.returncode == 1
+    assert done.stderr == f"train.py: {file} cannot be written: File too large. Nothing was saved yet: begin the run anew.\n"
+    assert {p.name for p in file.parent.iterdir()} <= {"tb"}
+
+
+def test_a_folder_that_was_moved_leaves_the_lock_of_another_run_alone(tmp_path):
+    folder = tmp_path / "run"
+    folder.mkdir()
+    first = lock.Lock(folder)
+    folder.rename(tmp_path / "moved")
+    folder.mkdir()
+    with lock.Lock(folder):
+        first.release()
+        with pytest.raises(ValueError, match="no other train"):
+            lock.Lock(folder)

@@ -1,0 +1,57 @@
+"""Can the commands behind agents/results/*.md be run as agents/experiments.sh writes them? Each is read as its program would read it."""
+
+import os
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import train
+from agents.evaluation.protocol import parser
+from agents.players.built_in import NAMES
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_every_command_is_one_that_its_program_takes(tmp_path):
+    command = ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path)]
+    done = subprocess.run(command, env=os.environ | {"LIST": "1"}, capture_output=True, text=True, check=True, timeout=60)
+    lines = [shlex.split(line) for line in done.stdout.splitlines()]
+    runs = [line[2:] for line in lines if line[1] == "train.py"]
+    comparisons, curves = ([line[3:] for line in lines if line[2] == f"agents.{name}"] for name in ("evaluate", "curves"))
+    assert len(runs) > 25 and len(comparisons) == 9 and len(curves) == 1 and len(runs) + 10 == len(lines)
+    assert all(agent.partition("=")[2].startswith(f"{tmp_path}/") for agent in curves[0])
+    starts = [run[run.index("--start") + 1] for run in runs if "--start" in run]
+    assert [Path(start).name for start in starts] == ["lineup-0", "lineup-1", "lineup-2"] and 'echo "lineup-$k ' in Path(
+        command[1]
+    ).read_text()
+    recipes = [train.recipe_of(train.Settings(**train.parse(run)[1])) for run in runs]
+    assert {recipe.name for recipe in recipes} == {"ppo_foresight", "ppo_mask", "ppo_absolute", "ppo_target", "tqc_target"}
+    for comparison in comparisons:
+        told = parser().parse_args(comparison)
+        assert told.json.suffix == ".json" and told.markdown.with_suffix(".json") == told.json
+        for agent in told.agent:
+            label, equals, folder = agent.partition("=")
+            assert folder.startswith(f"{tmp_path}/") if equals else label in (*NAMES, "ppo_mask")
+
+
+def test_a_run_that_fails_stops_the_whole(tmp_path):
+    """And its log says why."""
+    (tmp_path / "bin").mkdir()
+    fake = tmp_path / "bin" / "python"
+    fake.write_text("#!/bin/sh\necho no memory\nexit 3\n")
+    fake.chmod(0o755)
+    env = os.environ | {"PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}", "ONLY": "tqc-"}
+    done = subprocess.run(
+        ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path / "runs")], env=env, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode != 0 and "tqc-0 failed" in done.stderr
+    assert (tmp_path / "runs/tqc-0.txt").read_text() == "no memory\n"
+
+
+@pytest.mark.parametrize("only", ["nothing-", "mask-(0"])
+def test_a_choice_of_no_run_is_an_error(tmp_path, only):
+    command = ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path / "runs")]
+    done = subprocess.run(command, env=os.environ | {"ONLY": only, "LIST": ""}, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2 and f"ONLY='{only}' names no run" in done.stderr

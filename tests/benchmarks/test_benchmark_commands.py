@@ -1,0 +1,202 @@
+"""Do the benchmarks behave as commands? Help, Ctrl-C, libraries that are missing, files that cannot be written, a terminal of ASCII."""
+
+import errno
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks._common import command as _command
+
+ROOT = Path(__file__).parents[2]
+FOLDER = ROOT / "benchmarks"
+FILES = {file.stem: file for file in FOLDER.glob("*.py") if not file.name.startswith("_")}
+FOLDERS = {file.parent.name: file for file in FOLDER.glob("*/command.py") if not file.parent.name.startswith("_")}
+COMMANDS = sorted(FILES | FOLDERS)
+
+
+def started(name, *arguments, **environment):
+    """``python -m benchmarks.NAME``, running."""
+    command = [sys.executable, "-m", f"benchmarks.{name}", *map(str, arguments)]
+    texts = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen(command, cwd=ROOT, env=os.environ | environment, **texts)
+
+
+def ended(process, timeout=300):
+    """Exit code, stdout, stderr."""
+    try:
+        out, err = process.communicate(timeout=timeout)
+    finally:
+        process.kill()
+    return process.returncode, out, err
+
+
+def test_every_module_is_a_command_or_a_part_of_one():
+    assert len(FILES) > 8 and len(FOLDERS) > 6
+    for file in FOLDER.glob("*/*.py"):
+        assert '__name__ == "__main__"' not in file.read_text() or file.stem == "against_pooltool"  # that one runs in another Python
+        assert file.name != "__main__.py" or file.parent.name in FOLDERS
+    for name, file in (FILES | FOLDERS).items():
+        assert f'command("{name}", __doc__)' in file.read_text(), file
+    for name, file in FILES.items():
+        assert file.read_text().endswith('if __name__ == "__main__":\n    run(main)\n'), name
+    for name, file in FOLDERS.items():
+        assert file.with_name("__main__.py").read_text().endswith("\n\nrun(main)\n"), name
+
+
+def test_help_is_printed_and_nothing_is_compiled(tmp_path):
+    """All at once: most of the time goes into imports."""
+    running = {name: started(name, "--help", NUMBA_CACHE_DIR=str(tmp_path)) for name in COMMANDS}
+    for name, process in running.items():
+        code, out, err = ended(process)
+        assert code == 0 and err == "", (name, err)
+        assert out.startswith(f"usage: python -m benchmarks.{name} [-h]"), (name, out[:80])
+        assert "show this help message" in out
+    assert not list(tmp_path.rglob("*.nb?"))
+
+
+@pytest.mark.parametrize(("name", "wrong"), [("paper", "--what"), ("fuzz", "--shots=0"), ("make_opened", "--tables=-1")])
+def test_a_wrong_argument_is_an_error_of_usage(name, wrong):
+    code, out, err = ended(started(name, wrong))
+    assert code == 2 and out == "" and err.startswith(f"usage: python -m benchmarks.{name}") and "Traceback" not in err
+
+
+def interrupted(process, seconds):
+    time.sleep(seconds)
+    process.send_signal(signal.SIGINT)
+    return ended(process, 60)
+
+
+STOPPED = "stopped by Ctrl-C: what is printed so far stands, the rest was not measured; no file was written"
+
+
+def test_ctrl_c_is_one_line_and_leaves_no_file(tmp_path):
+    code, out, err = interrupted(started("make_opened", "--tables", 1_000_000, "--out", tmp_path / "opened.npz"), 10.0)
+    assert (code, out, err.strip()) == (130, "", STOPPED)
+    assert not list(tmp_path.iterdir())
+
+
+def test_ctrl_c_while_libraries_are_loaded_is_one_line_too(tmp_path):
+    """A numpy that takes long to load and says that it does."""
+    (tmp_path / "numpy.py").write_text(f"import time\nopen({str(tmp_path / 'loading')!r}, 'w').close()\ntime.sleep(60)")
+    process = started("make_opened", PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]))
+    give_up = time.monotonic() + 60
+    while not (tmp_path / "loading").exists() and time.monotonic() < give_up:
+        time.sleep(0.05)
+    code, out, err = interrupted(process, 0)
+    assert (code, out, err.strip()) == (130, "", STOPPED)
+
+
+def test_ctrl_c_in_a_command_with_threads():
+    code, _, err = interrupted(started("fuzz", "--shots", 1_000_000), 12.0)
+    assert code == 130 and err.splitlines()[-1].startswith("stopped by Ctrl-C") and "Traceback" not in err
+
+
+@pytest.mark.parametrize("where", ["a folder", "under a file", "no such device"])
+def test_a_file_that_cannot_be_written_is_refused_before_the_work(tmp_path, where):
+    (tmp_path / "file").write_text("")
+    place = {"a folder": tmp_path, "under a file": tmp_path / "file" / "x.json", "no such device": Path("/proc/x/y.json")}[where]
+    start = time.perf_counter()
+    code, out, err = ended(started("paper", "--no-pictures", "--json", place))
+    assert code == 1 and out == "" and time.perf_counter() - start < 120
+    assert re.fullmatch(re.escape(f"{place} cannot be written: ") + r"\S.*\n", err), err
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
+def test_a_full_disk_is_said_in_one_line():
+    code, out, err = ended(started("paper", "--no-pictures", "--json", "/dev/full"))
+    assert code == 1 and "Tables 1 and 2" in out and err == "/dev/full could not be written: No space left on device\n"
+    assert Path("/dev/full").is_char_device()
+
+
+def test_a_picture_that_cannot_be_drawn_is_refused_before_the_work(tmp_path):
+    code, out, err = ended(started("stability", "--out", tmp_path / "picture.txt"))
+    assert code == 1 and out == "" and "picture.txt cannot be drawn: the suffix must be one of " in err and err.count("\n") == 1
+
+
+MISSING = [
+    (name, library, f'{library} is missing; in a clone of the repository:  pip install -e ".[test]"')
+    for name, library in (("fit_cushion", "scipy"), ("paper", "scipy"), ("tradeoff", "matplotlib"))
+] + [("pictures", "pygame", 'pictures need pygame-ce; install it, in a clone of snooker_env, with: pip install -e ".[render]"')]
+
+
+@pytest.mark.parametrize(("name", "library", "said"), MISSING)
+def test_a_library_that_is_missing_is_named_and_how_to_install_it(tmp_path, name, library, said):
+    (tmp_path / f"{library}.py").write_text(f"raise ModuleNotFoundError('No module named {library}', name='{library}')")
+    code, out, err = ended(started(name, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])))
+    assert (code, out) == (1, "")
+    assert err == said + "\n"
+
+
+def test_a_terminal_of_ascii_shows_what_it_can():
+    code, out, err = ended(started("paper", "--no-pictures", PYTHONIOENCODING="ascii"))
+    assert code == 0 and err == "" and "Tables 1 and 2" in out
+
+
+def test_characters_that_a_terminal_lacks_do_not_stop_a_command():
+    text = "from benchmarks._common.command import run; run(lambda: print('5 \\u03bcs'))"
+    environment = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run([sys.executable, "-c", text], cwd=ROOT, env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "5 ?s\n", "")
+
+
+def test_a_reader_that_leaves_does_not_stop_a_command_with_a_traceback():
+    text = "from benchmarks._common.command import run; run(lambda: [print('x' * 1000) for _ in range(1000)] and 0)"
+    process = subprocess.Popen([sys.executable, "-c", text], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout is not None and process.stderr is not None
+    process.stdout.read(1)
+    process.stdout.close()
+    assert process.stderr.read() == "" and process.wait(60) == 1
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path):
+    file = tmp_path / "new folder" / "figures.json"
+    _command.save_json(file, {"a": 1})
+    assert file.read_text() == '{\n "a": 1\n}\n' and list(file.parent.iterdir()) == [file]
+    with pytest.raises(SystemExit, match=re.escape(f"{file} could not be written: No space left on device")), _command.saved(file) as place:
+        place.write_text("half")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    with pytest.raises(KeyboardInterrupt), _command.saved(file) as place:
+        place.write_text("half")
+        raise KeyboardInterrupt
+    assert file.read_text() == '{\n "a": 1\n}\n' and list(file.parent.iterdir()) == [file]
+    _command.save_json(None, {})
+    link = tmp_path / "link.json"
+    link.symlink_to(file)
+    _command.save_json(link, [])
+    assert link.is_symlink() and file.read_text() == "[]\n"
+
+
+def test_files_are_tried_without_leaving_a_trace(tmp_path):
+    file = tmp_path / "kept.json"
+    file.write_text("kept")
+    _command.writable(file, tmp_path / "other.json", None)
+    assert [f.name for f in tmp_path.iterdir()] == ["kept.json"] and file.read_text() == "kept"
+
+
+def test_what_was_written_before_ctrl_c_is_named(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(_command, "_written", [])
+    _command.save_json(tmp_path / "a.json", {})
+
+    def main():
+        raise KeyboardInterrupt
+
+    with pytest.raises(SystemExit) as stopped:
+        _command.run(main)
+    assert stopped.value.code == 130 and capsys.readouterr().err.endswith(f"; written: {tmp_path / 'a.json'}\n")
+
+
+def test_a_picture_on_a_full_disk_is_no_empty_file(tmp_path):
+    pixels = np.random.default_rng(0).integers(256, size=(50, 80, 3), dtype=np.uint8)
+    _command.save_image(tmp_path / "a.png", pixels)
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG") and (tmp_path / "a.png").stat().st_size > 50 * 80 * 3
+    if Path("/dev/full").exists():
+        (tmp_path / "full.png").symlink_to("/dev/full")
+        with pytest.raises(SystemExit, match="could not be written: No space left on device"):
+            _command.save_image(tmp_path / "full.png", pixels)

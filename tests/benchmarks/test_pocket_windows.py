@@ -1,0 +1,133 @@
+"""Are the pockets' windows what they should be? Narrower for firm shots, the same for clean ones, and pool's as Alciatore has them."""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from benchmarks.pockets import openings, pool_tables, rail_paths
+from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, alone, drops, windows
+from snooker_env.game import pots
+from tests.kernels import from_python
+
+ANGLES = {CORNER: (0, 20, 40), MIDDLE: (0, 30, 45, 60)}
+WORLDS, TABLES = ("paper", "match"), ("match", "tight")
+SPEEDS = (0.5, 1.0, 6.0)
+
+
+def widths(world, table, pocket, speeds=SPEEDS, rolling=True):
+    """Lateral windows [mm] by angle and speed, from 0.3 m."""
+    here, angles = alone(sn.Table.preset(table), pocket), np.radians(ANGLES[pocket])[:, None]
+    return 1e3 * windows(here, angles, 0.3, np.array(speeds), rolling, False, sn.Physics.preset(world)).width
+
+
+@pytest.mark.parametrize("rolling", [True, False])
+@pytest.mark.parametrize("world", WORLDS)
+@pytest.mark.parametrize(("table", "pocket"), [("match", CORNER), ("tight", CORNER), ("match", MIDDLE)])
+def test_a_firm_shot_has_a_narrower_window_than_a_soft_one(world, table, pocket, rolling):
+    """Every window here is wider than the clean opening, or asks for a jaw."""
+    slowest, slow, firm = widths(world, table, pocket, (1.0, 2.0, 6.0) if not rolling else SPEEDS, rolling).T
+    assert (firm < slow - (1.5 if rolling else 0.5)).all() and (firm < slowest - 3.0).all()
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_a_firm_ball_that_meets_a_jaw_of_a_middle_pocket_may_come_out_again(world):
+    """Dropped at once at the edge, these are 0.93 to 0.98."""
+    slow, _, firm = widths(world, "match", MIDDLE).T
+    assert (firm < 0.85 * slow).all()
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_the_tight_corners_are_never_wider(world):
+    for rolling in (True, False):
+        speeds = (1.0, 2.0, 4.0, 6.0, 9.0)
+        assert (widths(world, "tight", CORNER, speeds, rolling) < widths(world, "match", CORNER, speeds, rolling)).all()
+
+
+@pytest.mark.parametrize("world", WORLDS)
+@pytest.mark.parametrize("pocket", [CORNER, MIDDLE])
+@pytest.mark.parametrize("table", TABLES)
+def test_the_clean_opening_is_the_same_at_all_speeds(world, table, pocket):
+    here, physics, speeds = alone(sn.Table.preset(table), pocket), sn.Physics.preset(world), (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0)
+    assert openings.all_clean_drop(here, speeds, physics)
+    clean, free = openings.clean(here, physics.R), openings.untouched(here, speeds, True, physics)
+    assert (free > clean - 5e-5).all()
+    assert (free[np.array(speeds) >= 6.0] < clean + 1e-4).all()  # so far behind the edge a ball still meets a jaw
+
+
+def test_a_window_is_what_a_dense_scan_finds():
+    here, physics = alone(sn.Table.preset("match"), MIDDLE), sn.Physics.preset("match")
+    for angle, speed in ((0.0, 2.0), (np.radians(45), 6.0)):
+        found = windows(here, angle, 0.3, speed, True, False, physics)
+        step = 1e-4
+        s = np.arange(-0.06, 0.06, step)
+        hit = drops(here, angle, 0.3, speed, True, physics, Engine(), s)
+        assert abs(hit.sum() * step - found.width) < 1.5e-3
+        low, high = float(found.low), float(found.high)
+        at = np.array([low - 1e-7, low, high, high + 1e-7])
+        assert drops(here, angle, 0.3, speed, True, physics, Engine(), at).tolist() == [False, True, True, False]
+
+
+def test_pots_are_offered_by_these_windows():
+    """Of a rolling ball at 1.5 m/s: at the angles of the table of ``game.pots`` to a millimetre, between them to 2.5."""
+    given, physics = from_python(pots.window), sn.Physics.preset("match")
+    for pocket, nodes in ((CORNER, pots._CORNER_ANGLE), (MIDDLE, pots._MIDDLE_ANGLE)):
+        for angles, most in ((np.array(nodes), 1e-3), (0.5 * np.add(nodes[1:], nodes[:-1]), 2.5e-3)):
+            found = windows(alone(sn.Table.preset("match"), pocket), np.radians(angles), 0.3, 1.5, True, False, physics).width
+            assert [given(np.cos(a), pocket == MIDDLE) for a in np.radians(angles)] == pytest.approx(found, abs=most)
+
+
+def test_a_turned_path_and_a_shifted_one_ask_for_the_same_opening():
+    here, physics = alone(sn.Table.preset("match"), CORNER), sn.Physics.preset("match")
+    for distance in (1.0, 1.7):
+        shifted, turned = (float(windows(here, 0.0, distance, 2.0, True, way, physics).width) for way in (False, True))
+        assert shifted == pytest.approx(turned * distance, rel=0.05)
+
+
+def test_no_window_where_the_ball_stops_short():
+    here, physics = alone(sn.Table.preset("match"), CORNER), sn.Physics.preset("match")
+    found = windows(here, 0.0, np.array([0.3, 1.7]), 0.5, True, False, physics)
+    assert np.isnan(found.width).tolist() == [False, True]
+
+
+def test_the_openings_are_those_that_table_py_speaks_of():
+    for table, pocket, name, mm in (
+        ("match", CORNER, "throat", 86.0), ("tight", CORNER, "throat", 80.14), ("match", CORNER, "at the fall", 88.68),
+        ("tight", CORNER, "at the fall", 83.95), ("match", MIDDLE, "fall to jaw", 100.96), ("tight", MIDDLE, "fall to jaw", 100.96),
+    ):  # fmt: skip
+        assert 1e3 * openings.openings(alone(sn.Table.preset(table), pocket))[name] == pytest.approx(mm, abs=0.006)
+
+
+def test_a_throat_is_moved_by_what_is_asked_and_a_fall_too():
+    table = sn.Table.preset("match")
+    same = openings.moved(table)
+    for name in ("noses", "jaws", "falls"):
+        assert np.array_equal(getattr(same, name), getattr(table, name))
+    wide, out = openings.moved(table, throat=0.002), openings.moved(table, fall=0.005)
+    for pocket in range(6):
+        before, after = (openings.openings(alone(t, pocket)) for t in (table, wide))
+        assert after["throat"] - before["throat"] == pytest.approx(0.002)
+    assert np.hypot(*(out.falls - table.falls)[:, :2].T) == pytest.approx(np.full(6, 0.005))
+    assert (np.hypot(*out.falls[:, :2].T) > np.hypot(*table.falls[:, :2].T)).all()
+
+
+def test_a_ball_five_millimetres_off_the_rail_drops_softly_and_not_firmly():
+    table, physics, offs = sn.Table.preset("match"), sn.Physics.preset("match"), (0.005,)
+    found = rail_paths.down_the_rail(table, physics, Engine(), offs, (0.5, 1.5), (1.0, 2.0, 6.0, 10.0))
+    assert found["potted"][0, :, :, 0].tolist() == [[True, True, False, False]] * 2  # rolling; the second index is the distance
+
+
+def test_alciatore_s_target_sizes_by_his_formulas():
+    """Computed beforehand from his formulas, written apart [in]."""
+    corner = {0: 2.668, 20: 2.425, 28: 2.196, 30: 2.321, 40: 2.937, 44: 2.951}
+    for kind, sizes in (("corner", corner), ("side", {0: 3.229, 45: 1.920, 60: 0.692})):
+        for degrees, inches in sizes.items():
+            assert pool_tables.published(kind, degrees) == pytest.approx(inches, abs=2e-3)
+
+
+def test_slow_mirrors_are_alciatore_s_pool_pockets():
+    """0.1 m/s: the drop takes so long that it is as good as at once."""
+    world = sn.Physics(**pool_tables.MIRROR)
+    for kind, angles in (("corner", (0, 10, 20)), ("side", (0, 15, 30, 45))):
+        here = pool_tables.pocket(kind)
+        found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, world).width / pool_tables.INCH
+        assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)

@@ -1,0 +1,238 @@
+"""Is the match of two players a sound PettingZoo environment, and whose turn is it? PettingZoo's own tests, turns, decisions, states."""
+
+import json
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.game.balls import BLACK, CUE, N_BALLS, PINK, SPOTS
+from snooker_env.game.frame import Frame
+from snooker_env.render import pygame_view
+from snooker_env.tasks import observations
+
+pytest.importorskip("pettingzoo")
+from pettingzoo.test import api_test, render_test, seed_test
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def strict():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        yield
+
+
+@pytest.mark.parametrize("options", [{"aim": "target"}, {"max_strokes": 20}, {"layout": "colours", "aim": "target", "reward": "win"}])
+def test_pettingzoo_checks_its_interface(options, strict, capsys):
+    api_test(sn.match_env(**options), num_cycles=200)
+    assert "Passed API test" in capsys.readouterr().out
+
+
+def test_pettingzoo_checks_its_interface_with_observations_of_balls(capsys):
+    """PettingZoo warns of every Dict observation."""
+    with pytest.warns(UserWarning, match="Observation"):
+        api_test(sn.match_env(observation="balls", layout="random:3"), num_cycles=50)
+    assert "Passed API test" in capsys.readouterr().out
+
+
+def test_pettingzoo_checks_its_seeds(strict):
+    seed_test(lambda: sn.match_env(aim="target", noise="club", layout="random:3"), num_cycles=60)
+
+
+def test_pettingzoo_checks_its_pictures(monkeypatch):
+    pytest.importorskip("pygame")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setattr(pygame_view.Window, "play", lambda self, scenes, fps=30.0: len(list(scenes)) > 0)
+    render_test(sn.match_env)
+
+
+def random_play(env, seed, steps):
+    """Random turns; yields (player before, its reward for the step, table's frame before, frame after)."""
+    env.reset(seed=seed)
+    rng = np.random.default_rng(seed)
+    for _ in range(steps):
+        if not env.agents or any(env.terminations.values()):
+            return
+        player, before = env.agent_selection, env.table.frame
+        env.step(rng.uniform(-1, 1, 7).astype(np.float32))
+        yield player, before, env.table.frame
+
+
+def test_the_same_player_stays_selected_while_he_scores_and_no_longer():
+    env, stayed, changed = sn.match_env(aim="target", layout="random:10"), 0, 0
+    for seed in range(8):
+        for player, before, after in random_play(env, seed, 400):
+            if after.phase == "over" or before.phase == "choice" or after.respotted_black:
+                continue
+            scored = env.infos[player]["points"] > 0
+            assert (env.agent_selection == player) == scored
+            stayed, changed = stayed + scored, changed + (not scored)
+    assert stayed > 50 and changed > 50
+
+
+def test_whole_matches_end_for_both_and_somebody_wins():
+    for reward in ("points", "win"):
+        env = sn.match_env(aim="target", layout="random:3", reward=reward)
+        totals = dict.fromkeys(env.possible_agents, 0.0)
+        env.reset(seed=4)
+        env.action_space("player_0").seed(4), env.action_space("player_1").seed(4)
+        for player in env.agent_iter():
+            _, gained, terminated, truncated, info = env.last()
+            totals[player] += gained
+            frame = env.table.frame
+            env.step(None if terminated or truncated else env.action_space(player).sample())
+        assert not env.agents and frame.phase == "over" and info["winner"] == frame.winner
+        want = frame.scores if reward == "points" else (frame.winner == 0, frame.winner == 1)
+        assert totals == {"player_0": float(want[0] - want[1]), "player_1": float(want[1] - want[0])}
+
+
+def test_a_match_may_be_cut_short():
+    env = sn.match_env(max_strokes=7)
+    env.reset(seed=1)
+    while not any(env.truncations.values()):
+        env.step(np.zeros(7, np.float32))
+    assert env.strokes == 7 and all(env.truncations.values()) and not any(env.terminations.values())
+
+
+def put(env, places, **fields):
+    """Balls {id: (x, y)} and nothing else on the table, in a ``Frame`` with these fields."""
+    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
+    for ball, place in places.items():
+        positions[ball], on_table[ball] = place, True
+    mask = sum(1 << ball for ball in places if ball)
+    frame = Frame(**{"on_table": mask, "in_hand": False, "miss": env.table.miss} | fields)
+    env.reset(seed=1)
+    state = env.get_state() | {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
+    env.reset(options={"state": json.loads(json.dumps(state))})
+    return env
+
+
+PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}
+
+
+@pytest.mark.parametrize(("decision", "turn", "played"), [(0.0, "player_1", True), (1.0, "player_1", True), (-1.0, "player_0", False)])
+def test_the_decision_after_a_foul_is_part_of_the_action(decision, turn, played):
+    """Player 1 comes to the table after a foul: an easy pot if he plays; or player 0 has to play again."""
+    env = put(sn.match_env(aim="target"), PLACES, phase="choice", striker=1, scores=(0, 4))
+    assert env.agent_selection == "player_1" and env.infos["player_1"]["choice"]
+    before = env.table.positions.tobytes()
+    env.step(np.array([-0.5, 0, 0, 0, 0, 0, decision], np.float32))
+    assert env.agent_selection == turn and (env.table.positions.tobytes() != before) == played
+    assert env.rewards == ({"player_0": -1.0, "player_1": 1.0} if played else {"player_0": 0.0, "player_1": 0.0})
+    assert env.strokes == played
+
+
+def test_after_a_miss_the_balls_may_be_replaced():
+    env = sn.match_env(miss="clear_path", layout="break_off")
+    env.reset(seed=3)
+    offender, before = env.agent_selection, env.table.positions.copy()
+    env.step(np.array([-0.9, 0, 0, -0.5, 0.6, -1.0, 0], np.float32))  # with the reds in sight, into the bottom cushion
+    assert env.table.frame.miss_called and env.agent_selection != offender
+    moved = env.table.positions.copy()
+    env.step(np.array([0, 0, 0, 0, 0, 0, 1.0], np.float32))
+    assert env.agent_selection == offender and not np.array_equal(moved, env.table.positions)
+    assert np.array_equal(before[1:], env.table.positions[1:]) and env.table.frame.in_hand
+
+
+@pytest.mark.parametrize(("x", "back", "place"), [(0.0, -1.0, (0.0, -1.0475)), (0.0, 1.0, (0.0, -1.3395)), (-1.0, 0.3, (-0.292, -1.0475))])
+def test_the_place_in_the_d_is_part_of_the_action(x, back, place):
+    env = sn.match_env(render_mode="ansi")
+    put(env, PLACES | {CUE: (0.1, -1.2)}, in_hand=True)
+    env.step(np.array([-0.5, 0, 0, 0.2, x, back, 0], np.float32))
+    assert env._last_played.shot.at(0.0)[0][CUE] == pytest.approx(place, abs=1e-6)
+    moved = env.table.positions[CUE].copy()
+    env.step(np.array([-0.5, 0, 0, 0.2, x, back, 0], np.float32))  # no longer in hand: not moved first
+    assert env._last_played.shot.at(0.0)[0][CUE] == pytest.approx(moved, abs=1e-12)
+
+
+def test_each_player_sees_his_own_side():
+    env = put(sn.match_env(), PLACES, striker=1, scores=(31, 62))
+    mine, his = env.observe("player_0"), env.observe("player_1")
+    assert np.array_equal(mine[:121], his[:121]) and mine.shape == (121 + len(observations.FRAME_ENTRIES),)
+    assert mine[121:124] * 155 == pytest.approx([31, 62, -31]) and his[121:124] * 155 == pytest.approx([62, 31, 31])
+    assert (mine[125], his[125]) == (0.0, 1.0)
+    mine[:] = 0.3
+    assert not np.array_equal(env.observe("player_0"), mine)
+
+
+def test_a_saved_match_plays_on_bit_for_bit():
+    env = sn.match_env(aim="target", noise="club", miss="clear_path")
+    list(random_play(env, 2, 10))
+    assert not any(env.terminations.values())
+    other, text = sn.match_env(aim="target", noise="club", miss="clear_path"), json.dumps(env.get_state())
+    other.reset(options={"state": json.loads(text)})
+    for k in range(30):
+        action = np.random.default_rng(k).uniform(-1, 1, 7)
+        if any(env.terminations.values()):
+            break
+        env.step(action), other.step(action)
+        assert json.dumps(env.get_state()) == json.dumps(other.get_state()) and env.agent_selection == other.agent_selection
+        assert env.rewards == other.rewards
+
+
+@pytest.mark.parametrize(("limit", "why"), [(1000, "terminations"), (1, "truncations")])
+def test_a_state_of_a_frame_that_has_ended_ends_at_once(limit, why):
+    env, other = (sn.match_env(aim="target", layout="random:1", max_strokes=limit) for _ in range(2))
+    for _ in random_play(env, 1, 1000):
+        if any(env.truncations.values()):
+            break
+    other.reset(options={"state": json.loads(json.dumps(env.get_state()))})
+    assert getattr(env, why) == getattr(other, why) == {"player_0": True, "player_1": True}
+    assert other.observe("player_0").tobytes() == env.observe("player_0").tobytes()
+    for player in other.agent_iter():
+        assert any(other.last()[2:4]) and player in other.possible_agents
+        other.step(None)
+    assert not other.agents
+
+
+def test_a_state_repeats_its_errors_and_a_seed_draws_others():
+    env = sn.match_env(aim="target", noise="professional", layout="random:6")
+    env.reset(seed=2)
+    state, ends = json.loads(json.dumps(env.get_state())), []
+    for seed in (None, None, *range(50), 7):
+        env.reset(seed=seed, options={"state": state})
+        assert {key for key, value in env.get_state().items() if value != state[key]} == (set() if seed is None else {"rng"})
+        env.step(np.zeros(7, np.float32))
+        ends.append(env.table.positions.tobytes())
+    assert ends[0] == ends[1] and len(set(ends)) == 51 and ends[-1] == ends[2 + 7]
+
+
+@pytest.mark.parametrize(
+    ("options", "field"),
+    [
+        ({"layout": "opene"}, "layout"), ({"reward": "pots"}, "reward"), ({"miss": "on"}, "miss"), ({"max_strokes": 0}, "max_strokes"),
+        ({"decision": 1}, "decision"),
+        ({"render_mode": "x"}, "render_mode"), ({"observation": "x"}, "observation"), ({"table": None}, "table"),
+    ],
+)  # fmt: skip
+def test_wrong_arguments_are_refused(options, field):
+    with pytest.raises(ValueError, match=f"^{field} = "):
+        sn.match_env(**options)
+
+
+@pytest.mark.parametrize("action", [np.zeros(4), np.full(7, 1.1), np.full(7, np.nan)])
+def test_wrong_actions_change_nothing(action):
+    env = sn.match_env()
+    env.reset(seed=1)
+    before = json.dumps(env.get_state())
+    with pytest.raises(ValueError, match=r"^action = "):
+        env.step(action)
+    assert json.dumps(env.get_state()) == before
+
+
+def test_pettingzoo_is_loaded_only_when_asked_for_and_its_lack_is_explained():
+    code = (
+        "import sys, snooker_env as sn\n"
+        "assert 'pettingzoo' not in sys.modules\n"
+        "sys.modules['pettingzoo'] = None\n"
+        "try: sn.match_env()\n"
+        "except ImportError as error: print(error)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=120)
+    assert done.stdout.strip() == 'match_env needs PettingZoo; install it, in a clone of snooker_env, with: pip install -e ".[multi]"'

@@ -1,0 +1,196 @@
+"""Is ``SnookerVecEnv`` to Stable-Baselines3 what ``DummyVecEnv`` of monitored single tables is, and does PPO run on it?"""
+
+import warnings
+
+import numpy as np
+import pytest
+
+pytest.importorskip("stable_baselines3")
+from stable_baselines3 import PPO, SAC
+from stable_baselines3.common.env_util import make_vec_env
+from stable_baselines3.common.evaluation import evaluate_policy
+
+from agents.features import pot_features
+from agents.features.views import training_tables
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.sb3 import SnookerVecEnv
+from snooker_env.tasks.visit import COUNTS, REALS
+from tests.processes import python
+from tests.refusals import refused
+
+KEYS = (*REALS, *COUNTS, "foul")
+
+
+def both(n, **options):
+    ours = SnookerVecEnv(n, info_keys=KEYS, **options)
+    ours.seed(5)
+    return ours, make_vec_env("Snooker-v0", n, env_kwargs=options, seed=5)
+
+
+def equal(a, b):
+    if isinstance(a, dict):
+        return set(a) == set(b) and all(equal(a[key], b[key]) for key in a)
+    return np.array_equal(a, b) and getattr(a, "dtype", None) == getattr(b, "dtype", None)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"aim": "target", "noise": "club", "layout": "random:5"},
+        {"aim": "target", "observation": "balls", "layout": "random:5", "reward": "points_and_fouls"},
+        {"aim": "target", "max_episode_steps": 2, "layout": "random:3"},
+    ],
+    ids=["flat", "balls", "limit"],
+)
+def test_it_gives_what_dummy_vec_env_gives(options):
+    """Observations, rewards, ends, infos, terminal observations, episodes: all but the clock."""
+    ours, theirs = both(6, **options)
+    assert ours.observation_space == theirs.observation_space and ours.action_space == theirs.action_space
+    assert equal(ours.reset(), theirs.reset())
+    rng, ends, cut = np.random.default_rng(0), 0, 0
+    for _ in range(40):
+        a = rng.uniform(-1, 1, (6, 4)).astype(np.float32)
+        a[:, 1:4] *= 0.2
+        (o, r, d, infos), (o2, r2, d2, infos2) = ours.step(a), theirs.step(a)
+        assert equal(o, o2) and equal(r, r2) and equal(d, d2)
+        for k in range(6):
+            info, other = infos[k], dict(infos2[k])
+            if not d[k]:
+                assert other.pop("TimeLimit.truncated") is False
+            else:
+                ends, cut = ends + 1, cut + info["TimeLimit.truncated"]
+                assert info["episode"].pop("t") >= 0 and other["episode"].pop("t") >= 0
+            assert set(info) == set(other) and all(equal(info[key], other[key]) for key in info)
+            assert all(type(info[key]) is type(other[key]) for key in KEYS)
+    assert ends > 60 and (cut > 5) == ("max_episode_steps" in options)
+
+
+def test_a_seed_at_the_start_is_as_one_given_later():
+    """Table k begins with seed + k; later visits follow from it."""
+    at_once, later, other = SnookerVecEnv(5, seed=3), SnookerVecEnv(5), SnookerVecEnv(5, seed=np.int64(4))
+    later.seed(3)
+    first = at_once.reset()
+    assert np.array_equal(first, later.reset()) and np.array_equal(first[1:], other.reset()[:4])
+    assert at_once.tables.np_random_seed == (3, 4, 5, 6, 7)
+    a = np.zeros((5, 4), np.float32)
+    assert all(np.array_equal(at_once.step(a)[0], later.step(a)[0]) for _ in range(5))
+    assert not np.array_equal(SnookerVecEnv(5).reset(), SnookerVecEnv(5).reset())
+    assert not np.array_equal(at_once.reset(), first)
+
+
+@pytest.mark.parametrize("seed", [-1, 1.0, "1", True, [1, 2], 2**63])
+def test_wrong_seeds_are_refused(seed):
+    refused(lambda: SnookerVecEnv(2, seed=seed), "seed", repr(seed), "must be an integer in [0, 9223372036854775807]")
+
+
+def test_infos_are_empty_unless_something_is_to_say():
+    env = SnookerVecEnv(8)
+    env.reset()
+    _, _, done, infos = env.step(np.zeros((8, 4), np.float32))
+    assert [set(info) for info in infos] == [{"episode", "terminal_observation", "TimeLimit.truncated"} if d else set() for d in done]
+    assert env.reset_infos == [{}] * 8
+
+
+def test_terminal_observations_stay_what_they_were():
+    env = SnookerVecEnv(8)
+    env.reset()
+    a = np.full((8, 4), -1.0, np.float32)
+    infos = env.step(a)[3]
+    kept = [info["terminal_observation"].copy() for info in infos]
+    following = env.step(a)[3]
+    assert all(np.array_equal(info["terminal_observation"], old) for info, old in zip(infos, kept, strict=True))
+    assert not np.array_equal(following[0]["terminal_observation"], kept[0])
+
+
+def test_states_are_saved_and_restored():
+    env = SnookerVecEnv(3, noise="club")
+    env.seed(1)
+    env.reset()
+    states = env.env_method("get_state")
+    a = np.full((3, 4), 0.2, np.float32)
+    want = env.step(a)[:3]
+    env.set_options([{"state": state} for state in states])
+    env.reset()
+    assert all(map(np.array_equal, want, env.step(a)[:3]))
+    assert env.env_method("get_state", indices=[1])[0]["stream"] == env.env_method("get_state")[1]["stream"]
+    env.set_options([{"state": states[0]}, {}, {"state": states[2]}])
+    with pytest.raises(ValueError, match=r"^keys of options\[1\] = \[\]: must be \"state\" alone"):  # not the whole of another's state
+        env.reset()
+    env.set_options({"layout": 1})
+    with pytest.raises(ValueError, match="options"):
+        env.reset()
+
+
+def test_a_seed_draws_new_errors_from_a_state():
+    env = SnookerVecEnv(5, noise="professional")
+    env.seed(1)
+    env.reset()
+    (state,) = env.env_method("get_state", indices=[2])
+    ends = []
+    for seed in (None, 8, 8, 9, None):
+        if seed is not None:
+            env.seed(seed)
+        env.set_options({"state": state})
+        env.reset()
+        ends.append([row.tobytes() for row in env.step(np.zeros((5, 4), np.float32))[0]])
+    assert len(set(ends[0])) == 1 and ends[0] == ends[4]  # the seeds are for one reset only
+    assert len(set(ends[1])) == 5 and ends[1] == ends[2] and ends[3][:4] == ends[1][1:]
+
+
+def test_without_stable_baselines_one_line_says_how_to_get_it():
+    code = "import sys\nsys.modules['stable_baselines3'] = None\ntry: import snooker_env.sb3\nexcept ImportError as error: print(error)\n"
+    wanted = 'snooker_env.sb3 needs Stable-Baselines3; install it, in a clone of snooker_env, with: pip install -e ".[train]"'
+    assert python(code)[0].strip() == wanted
+
+
+def test_attributes():
+    env = SnookerVecEnv(2)
+    assert env.get_attr("num_envs") == [2, 2] and env.has_attr("shooter") and not env.has_attr("no_such") and not env.has_attr("last_shot")
+    env.seed(3)
+    env.reset()
+    assert env.get_attr("np_random_seed", [1]) == [4] and env.get_attr("points") == [0, 0]
+    assert [p.tobytes() for p in env.get_attr("positions")] == [p.tobytes() for p in env.tables.visits.positions]
+    with pytest.raises(AttributeError, match="cannot be set"):
+        env.set_attr("observation", "balls")
+    with pytest.raises(ValueError, match="method_name"):
+        env.env_method("step")
+    with pytest.raises(ValueError, match="autoreset_mode"):
+        SnookerVecEnv(2, autoreset_mode="NextStep")
+    with pytest.raises(ValueError, match="info_keys"):
+        SnookerVecEnv(2, info_keys=("score",))
+
+
+@pytest.mark.parametrize("observation", ["flat", "balls"])
+def test_ppo_and_sac_learn_on_it_without_a_warning(observation):
+    policy = "MlpPolicy" if observation == "flat" else "MultiInputPolicy"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env = SnookerVecEnv(8, observation=observation, aim="target")
+        model = PPO(policy, env, n_steps=16, batch_size=64, n_epochs=1, seed=0, device="cpu").learn(256)
+        assert model.num_timesteps == 256 and len(model.ep_info_buffer) > 0 and "l" in model.ep_info_buffer[0]
+        SAC(policy, env, learning_starts=16, buffer_size=100, seed=0, device="cpu").learn(64)
+        evaluate_policy(model, env, n_eval_episodes=4)
+    env.close()
+
+
+def test_the_pots_are_shown_for_all_tables_as_for_one():
+    def with_pots(observation):
+        return pot_features.with_pots(observation[None])[0]
+
+    many, one = training_tables(5, aim="target", noise="club"), SnookerEnv(aim="target", noise="club")
+    many.seed(11)
+    shown = many.reset()
+    assert many.observation_space.contains(shown[0])
+    assert np.array_equal(shown[0], with_pots(one.reset(seed=11)[0]))
+    rng = np.random.default_rng(0)
+    ended = 0
+    for _ in range(10):
+        a = rng.uniform(-0.3, 0.3, (5, 4)).astype(np.float32)
+        shown, _, done, infos = many.step(a)
+        mine, _, over, _, _ = one.step(a[0])
+        if over:
+            ended += 1
+            assert np.array_equal(infos[0]["terminal_observation"], with_pots(mine))
+            mine, _ = one.reset()
+        assert done[0] == over and np.array_equal(shown[0], with_pots(mine))
+    assert ended > 2

@@ -1,0 +1,137 @@
+"""Does ``call`` of the native vector environment give for each table what ``SyncVectorEnv`` gives?"""
+
+import inspect
+import pickle
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+import snooker_env  # noqa: F401 - registers the id
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import NOT_OF_A_TABLE, SnookerVectorEnv
+from tests.envs.test_vector import same
+from tests.refusals import refused
+
+N = 4
+OPTIONS = [
+    {},
+    {"action": "discrete", "layout": "random:3", "noise": "club"},
+    {"aim": "target", "placement": True, "observation": "balls", "table": "tight", "render_mode": "ansi", "layout": "break_off"},
+]
+IDS = ["plain", "discrete", "target"]
+METHODS = {"get_state", "action_masks", "has_wrapper_attr"}
+"""What takes a call and changes nothing."""
+
+
+def public(env):
+    """All names of a ``SnookerEnv`` that do not start with an underscore."""
+    return sorted(name for name in {*dir(env), *vars(env)} if not name.startswith("_"))
+
+
+def both(mode=AutoresetMode.SAME_STEP, **options):
+    ours = gymnasium.make_vec("Snooker-v0", N, vectorization_mode="vector_entry_point", autoreset_mode=mode, **options)
+    theirs = gymnasium.make_vec("Snooker-v0", N, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **options)
+    return ours, theirs
+
+
+def alike(a, b):
+    """Equal, or for objects that do not know what equal is, made of equal parts."""
+    if type(a) is not type(b):
+        return False
+    if type(a).__eq__ is not object.__eq__ and not isinstance(a, np.ndarray | dict | list | tuple):
+        return bool(a == b)
+    if isinstance(a, np.random.Generator):
+        return a.bit_generator.state == b.bit_generator.state
+    if hasattr(a, "__dict__"):
+        return set(vars(a)) == set(vars(b)) and all(alike(vars(a)[key], vars(b)[key]) for key in vars(a))
+    return same(a, b)
+
+
+def differences(ours, theirs):
+    """Which public names of a table are not the same; those of shared state are ``Visits``, compared by their arrays."""
+    wrong = []
+    for name in public(SnookerEnv()):
+        if name in NOT_OF_A_TABLE:
+            continue
+        arguments = ("positions",) if name == "has_wrapper_attr" else ()
+        if name == "action_masks" and ours.single_action_space.__class__.__name__ == "Box":
+            for env in (ours, theirs):
+                with pytest.raises(ValueError, match="a Box has no masks"):
+                    env.call(name)
+            continue
+        got, want = ours.call(name, *arguments), theirs.call(name, *arguments)
+        assert isinstance(got, tuple) and len(got) == N
+        if name == "visits":
+            parts = ("positions", "on_table", "streams", "n")
+            got, want = ([[getattr(v, part) for part in parts] for v in each] for each in (got, want))
+        if not all(map(alike, got, want)):
+            wrong.append(name)
+    return wrong
+
+
+@pytest.mark.parametrize("options", OPTIONS, ids=IDS)
+@pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
+def test_each_table_has_all_that_a_single_environment_has(mode, options):
+    ours, theirs = both(mode, **options)
+    ours.reset(seed=3), theirs.reset(seed=3)
+    assert differences(ours, theirs) == []
+    rng = np.random.default_rng(0)
+    for _ in range(6):
+        a = rng.integers(0, ours.single_action_space.n, N) if "action" in options else rng.uniform(-1, 1, ours.action_space.shape)
+        ours.step(a), theirs.step(a)
+    assert differences(ours, theirs) == []
+
+
+def test_every_method_is_served_or_refused_by_name():
+    methods = {name for name in public(SnookerEnv()) if inspect.ismethod(getattr(SnookerEnv(), name))}
+    assert methods - set(NOT_OF_A_TABLE) == METHODS
+    assert set(NOT_OF_A_TABLE) <= set(public(SnookerEnv()))
+
+
+@pytest.mark.parametrize("name", sorted(NOT_OF_A_TABLE))
+def test_what_belongs_to_all_tables_is_refused(name):
+    env = SnookerVectorEnv(2)
+    env.reset(seed=1)
+    before = pickle.dumps(env.get_state())
+    refused(lambda: env.call(name), "name", repr(name), f"; use {NOT_OF_A_TABLE[name]}")
+    refused(lambda: env.get_attr(name), "name", repr(name), "that a table has for itself")
+    assert pickle.dumps(env.get_state()) == before
+
+
+@pytest.mark.parametrize("name", ["_work", "__class__", 3, None])
+def test_what_is_not_public_is_refused(name):
+    refused(lambda: SnookerVectorEnv(2).call(name), "name", repr(name), "must be something public that a table has for itself")
+
+
+def test_what_is_not_there_is_not_there():
+    for env in both():
+        with pytest.raises(AttributeError, match="no_such"):
+            env.call("no_such")
+        with pytest.raises(AttributeError, match="no_such"):
+            env.get_attr("no_such")
+
+
+def test_nothing_can_be_set():
+    env = SnookerVectorEnv(2)
+    for name in ("reward", "no_such"):
+        with pytest.raises(AttributeError, match=f"{name} cannot be set: the tables share everything"):
+            env.set_attr(name, ["pots", "pots"])
+    assert env.get_attr("reward") == ("points", "points")
+
+
+def test_what_is_given_is_the_callers_own():
+    env = SnookerVectorEnv(2, layout="random:3")
+    env.reset(seed=1)
+    for a in (*env.call("positions"), *env.call("on_table")):
+        a[:] = 0
+    assert env.call("on_table")[0].sum() == 10 and np.abs(env.call("positions")[0]).sum() > 1
+
+
+def test_looking_before_the_first_reset_is_looking_only():
+    looked, blind = SnookerVectorEnv(3), SnookerVectorEnv(3)
+    assert looked.get_attr("over") == (True, True, True)
+    looked.get_attr("np_random"), looked.get_attr("positions")
+    assert np.array_equal(looked.reset(seed=5)[0], blind.reset(seed=5)[0])
+    assert len({row.tobytes() for row in SnookerVectorEnv(3).reset()[0]}) == 3

@@ -1,0 +1,102 @@
+"""Does a shot cost more work than it did? Events, root searches and impacts of fixed shots, counted and held under ceilings.
+
+No time is measured. The shots of ``benchmarks.speed`` are played as plain Python in a process of its own (this file, as a script), where
+every call can be seen. A ceiling lies about 10 % above what the engine needed when it was written: a change that crosses it makes the
+engine work harder, and should say why; after one that saves work, lower it.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SHOTS = {"two-ball pot": 40, "random 22 balls": 20, "break-off": 4}
+CEILINGS = {
+    "two-ball pot": {
+        "events": 341,
+        "balls predicted": 384,
+        "pairs looked at": 272,
+        "pairs near": 162,
+        "boundaries": 341,
+        "quartics": 173,
+        "rescans": 44,
+        "ball-ball impacts": 44,
+        "cushion impacts": 47,
+    },
+    "random 22 balls": {
+        "events": 289,
+        "balls predicted": 341,
+        "pairs looked at": 6156,
+        "pairs near": 571,
+        "boundaries": 291,
+        "quartics": 127,
+        "rescans": 40,
+        "ball-ball impacts": 35,
+        "cushion impacts": 73,
+    },
+    "break-off": {
+        "events": 428,
+        "balls predicted": 623,
+        "pairs looked at": 11942,
+        "pairs near": 2437,
+        "boundaries": 535,
+        "quartics": 1236,
+        "rescans": 248,
+        "ball-ball impacts": 182,
+        "cushion impacts": 17,
+    },
+}
+
+
+def counted():
+    """{kind: {what: calls}}, in all over the shots of the kind."""
+    import numpy as np
+
+    import snooker_env as sn
+    from benchmarks.speed.command import shots
+    from snooker_env.physics import detection, engine, roots
+    from snooker_env.physics.impact import contact
+    from snooker_env.simulation import MAX_EVENTS, _run
+
+    watched = {
+        engine._predict: "balls predicted", detection.may_meet: "pairs looked at", detection.pair_time: "pairs near",
+        detection.boundary_event: "boundaries", roots.quartic_crossing: "quartics", engine._rescan: "rescans",
+        contact.collide_balls: "ball-ball impacts", contact.collide_cushion: "cushion impacts",
+    }  # fmt: skip
+    names, found = {function.__code__: name for function, name in watched.items()}, {}
+    for kind, n in SHOTS.items():
+        counts = dict.fromkeys(watched.values(), 0)
+
+        def watch(frame, event, _, counts=counts):
+            if event == "call" and frame.f_code in names:
+                counts[names[frame.f_code]] += 1
+
+        p, v, w = shots(kind, n)
+        state = p, v, w, np.ones(p.shape[:2], bool)
+        sys.setprofile(watch)
+        with np.errstate(all="ignore"):
+            out = _run(state, sn.Physics.preset("paper"), sn.Table.preset("match"), contact.parse_fidelity("standard"), MAX_EVENTS, 0, 0)
+        sys.setprofile(None)
+        found[kind] = {"events": int(out.n_events.sum())} | counts
+    return found
+
+
+@pytest.fixture(scope="module")
+def work():
+    env = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, __file__], cwd=ROOT, env=env, capture_output=True, text=True, timeout=280, check=True)
+    return json.loads(done.stdout)
+
+
+@pytest.mark.parametrize("kind", SHOTS)
+def test_a_shot_costs_no_more_work_than_it_did(work, kind):
+    over = {name: (count, CEILINGS[kind][name]) for name, count in work[kind].items() if not 0 < count <= CEILINGS[kind][name]}
+    assert not over, f"{SHOTS[kind]} shots, {kind}: (counted, ceiling) {over}"
+
+
+if __name__ == "__main__":
+    print(json.dumps(counted()))

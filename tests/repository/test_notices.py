@@ -1,0 +1,134 @@
+"""Does a user hear of a long compile before it starts, once and on stderr, and of nothing else? And how far a warm-up is?"""
+
+import importlib
+import os
+import re
+
+import pytest
+from numba.core import event
+
+from snooker_env import _cache, _jit, _notices
+from tests.processes import ROOT, python
+
+TOY = """
+from snooker_env._jit import entry, kernel
+
+@kernel(seconds=7)
+def large(x):
+    return 2.0 * x
+
+@kernel(seconds=2, uses=(large,))
+def larger(x):
+    return large(x) + 1.0
+
+@entry(what="one toy", uses=(larger,))
+def one(x):
+    return larger(x)
+
+@entry(what="another toy", seconds=3, uses=(larger, large))
+def another(x):
+    return larger(x)
+
+@entry
+def small(x):
+    return x
+
+@entry(what="a toy that only needs others", uses=(larger,))
+def rest(x):
+    return larger(x)
+"""
+
+
+@pytest.fixture
+def toys(tmp_path):
+    """What a fresh process that runs this code prints on stderr."""
+    (tmp_path / "toys.py").write_text(TOY)
+
+    def run(code, **variables):
+        variables = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "SNOOKER_ENV_QUIET": None} | variables
+        out, err = python("from toys import *\n" + code, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]), **variables)
+        assert out == ""
+        return err
+
+    run.kept = f"(kept in {tmp_path / 'cache' / 'snooker_env' / _cache.source_hash()}; SNOOKER_ENV_QUIET=1 hides this)"
+    return run
+
+
+def test_one_line_before_each_long_compile_and_none_when_it_is_loaded(toys):
+    """What large kernels cost is said where they are compiled: with the first that uses them."""
+    code = "small(1.0); one(1.0); one(2.0); another(1.0); rest(1.0)"
+    one, other = (f"snooker_env: compiling {what}, once, about {s} s {toys.kept}\n" for what, s in (("one toy", 9), ("another toy", 3)))
+    assert toys(code) == one + other
+    assert toys(code) == ""
+
+
+def test_it_is_said_before_the_compile(toys):
+    err = toys("import sys\ndef compile(*args): sys.exit(3)\ntype(one._compiler).compile = compile\ntry: one(1.0)\nexcept SystemExit: pass")
+    assert err.startswith("snooker_env: compiling one toy, once, about 9 s ")
+
+
+@pytest.mark.parametrize("quiet", ["1", "yes"])
+def test_it_can_be_silenced(toys, quiet):
+    assert toys("one(1.0)", SNOOKER_ENV_QUIET=quiet) == ""
+
+
+@pytest.mark.parametrize("loud", ["", "0"])
+def test_an_empty_wish_is_none(toys, loud):
+    assert "compiling one toy" in toys("one(1.0)", SNOOKER_ENV_QUIET=loud)
+
+
+def test_without_a_cache_it_says_so(toys, tmp_path):
+    (tmp_path / "file").write_text("")
+    err = toys("one(1.0)", NUMBA_CACHE_DIR=str(tmp_path / "file"), warn="ignore")
+    assert err == "snooker_env: compiling one toy, about 9 s (for this process only; SNOOKER_ENV_QUIET=1 hides this)\n"
+
+
+@pytest.mark.parametrize("without", ["sys.stderr = None", "sys.stderr.close()"])
+def test_without_stderr_it_works_all_the_same(toys, without):
+    assert toys(f"import sys; {without}; assert one(1.0) == 3.0") == ""
+
+
+def test_without_compiling_there_is_nothing_to_say(toys):
+    assert toys("assert one(1.0) == 3.0 and small(2.0) == 2.0", NUMBA_DISABLE_JIT="1") == ""
+
+
+def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
+    code = (
+        "from snooker_env._notices import warming_up\nsmall(1.0)\n"
+        "with warming_up([small, one, another, rest]): one(1.0); rest(1.0); another(1.0)"
+    )
+    lines = toys(code).splitlines()
+    assert lines[:2] == [
+        f"snooker_env: warm-up, kernel 1 of 3: compiling one toy, once, about 9 s {toys.kept}",
+        "snooker_env: warm-up, kernel 3 of 3: compiling another toy, once, about 3 s",
+    ]
+    assert re.fullmatch(r"snooker_env: warm-up: 3 kernels ready after \d+ s", lines[2]) and len(lines) == 3
+    assert toys(code) == ""
+    assert toys(code, NUMBA_CACHE_DIR="/dev/null", SNOOKER_ENV_QUIET="1", warn="ignore") == ""
+
+
+LONG = {
+    "snooker_env.physics.engine": ["run_batch"], "snooker_env.simulation": ["_collide_balls", "_collide_cushion"],
+    "snooker_env.tasks.visit": ["_address", "_conclude", "_begin"], "snooker_env.game.layouts": ["deal_tables"],
+    "snooker_env.game.apply_ruling": ["settle_one"], "snooker_env.game.paths": ["_paths"], "snooker_env.game.snookered": ["_snookered"],
+    "agents.features.pot_features": ["_add_pots"], "agents.features.indirect_pots": ["_indirect"],
+    "agents.players.aim_search": ["_solved"], "agents.features.lookahead": ["_as_actions"],
+}  # fmt: skip
+"""The kernels that were seen to take over a second, each compiled first in a fresh process."""
+
+
+@pytest.mark.parametrize(("module", "name"), [(module, name) for module, names in LONG.items() for name in names])
+def test_each_long_kernel_announces_itself(module, name, capsys, monkeypatch):
+    monkeypatch.delenv("SNOOKER_ENV_QUIET")
+    kernel = getattr(importlib.import_module(module), name)
+    monkeypatch.setattr(_notices.Cost, "_missing", lambda self: set(self.uses))  # as if nothing had been compiled yet
+    event.start_event("numba:compile", data={"dispatcher": kernel})
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1 and f"compiling {kernel.cost.what}, " in err and kernel in _jit.ENTRIES
+
+
+def test_what_others_compile_is_none_of_our_business(capsys, monkeypatch):
+    monkeypatch.delenv("SNOOKER_ENV_QUIET")
+    event.start_event("numba:compile", data={"dispatcher": test_without_stderr_it_works_all_the_same})
+    event.start_event("numba:compile")
+    assert capsys.readouterr().err == ""

@@ -1,0 +1,341 @@
+"""Is the package light to import, whole, and the same everywhere? Imports, names, the cache of machine code, equal bits."""
+
+import importlib
+import inspect
+import json
+import os
+import shutil
+import typing
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env import _cache
+from tests.processes import CACHE, ROOT, copy_of_package, python, replace
+
+# Imports and names
+
+HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "pygame", "matplotlib", "scipy", "hypothesis", "pettingzoo", "moviepy", "agents"}
+
+
+def test_the_import_is_light():
+    out, _ = python(
+        "import sys, json\n"
+        "import gymnasium, numba, numpy\n"
+        "needed = set(sys.modules)\n"  # numba looks whether scipy is there; that is its own affair
+        "import snooker_env\n"
+        "print(json.dumps(sorted(set(sys.modules) - needed)))\n",
+    )
+    new = json.loads(out)
+    assert "snooker_env.simulation" in new and "snooker_env.physics.engine" in new
+    assert not {name.split(".")[0] for name in new} & HEAVY
+    assert not [name for name in new if name.startswith(("snooker_env.envs", "snooker_env.render"))]  # only when an environment is made
+
+
+WITHOUT = f"""
+import sys
+
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] in {HEAVY!r}:
+            raise ModuleNotFoundError("No module named " + name, name=name)
+
+sys.meta_path.insert(0, Missing())
+"""
+
+
+def test_with_the_core_dependencies_alone_everything_but_pictures_works():
+    out, err = python(
+        WITHOUT + "import gymnasium, numpy as np, snooker_env as sn\n"
+        "sn.warmup()\n"
+        "env = gymnasium.make('Snooker-v0', layout='random:2', render_mode='ansi', noise='club', observation='balls')\n"
+        "env.reset(seed=1); env.step(np.zeros(4, np.float32)); print('Y=yellow' in env.render()); env.close()\n"
+        "env = gymnasium.make('Snooker-v0', render_mode='rgb_array')\n"
+        "env.reset(seed=1)\n"
+        "try: env.render()\n"
+        "except ImportError as error: print(error)\n",
+    )
+    assert out.splitlines() == ["True", 'pictures need pygame-ce; install it, in a clone of snooker_env, with: pip install -e ".[render]"']
+    assert err == ""
+
+
+def test_every_public_name_is_there_once_and_explained():
+    assert sorted(set(sn.__all__)) == sorted(sn.__all__)
+    for name in sn.__all__:
+        thing = getattr(sn, name)
+        if not isinstance(thing, tuple):
+            assert len(inspect.getdoc(thing)) > 20, name
+            assert inspect.getdoc(thing) != inspect.getdoc(type(thing)), name
+        if inspect.isclass(thing):
+            for member, value in vars(thing).items():
+                if not member.startswith("_") and (inspect.isfunction(value) or isinstance(value, classmethod | property)):
+                    assert inspect.getdoc(getattr(thing, member)), f"{name}.{member}"
+    public = {n for n, v in vars(sn).items() if not n.startswith("_") and not inspect.ismodule(v)}
+    assert public == set(sn.__all__)
+    promised = {"Physics", "collide_balls", "collide_cushion", "strike", "Table", "simulate", "simulate_batch", "EventKind", "warmup"}
+    assert promised <= set(sn.__all__)
+
+
+def test_options_keep_the_order_that_was_promised():
+    """Users call these with positional arguments: design.md's list is the contract."""
+    for function, names in {
+        sn.collide_balls: "v1 w1 v2 w2 normal physics fidelity", sn.collide_cushion: "v w normal physics fidelity",
+        sn.strike: "speed aim side top elevation physics", sn.simulate: "positions velocities spins table physics fidelity",
+        sn.simulate_batch: "positions velocities spins table physics fidelity", sn.warmup: "",
+    }.items():  # fmt: skip
+        parameters = inspect.signature(function).parameters.values()
+        assert " ".join(p.name for p in parameters if p.kind is not p.KEYWORD_ONLY) == names
+        defaults = {"table": "match", "physics": None, "fidelity": "standard", "side": 0.0, "top": 0.0, "elevation": 0.0, "threads": None}
+        for p in parameters:
+            if p.name in defaults:
+                assert p.default == defaults[p.name], p.name
+
+
+def test_the_package_is_marked_as_typed():
+    marker = ROOT / "snooker_env" / "py.typed"
+    assert marker.is_file() and marker.read_bytes() == b""
+    assert typing.get_type_hints(sn.Shot)["duration"] is float
+
+
+def test_a_second_import_is_silent():
+    entry = gymnasium.registry["Snooker-v0"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        again = importlib.reload(sn)
+    assert again is sn and gymnasium.registry["Snooker-v0"] is entry
+    out, err = python(
+        "import warnings; warnings.simplefilter('error')\n"
+        "import gymnasium, snooker_env, importlib, sys\n"
+        "importlib.reload(snooker_env)\n"
+        "del sys.modules['snooker_env']\n"
+        "import snooker_env\n"
+        "print(gymnasium.make('snooker_env:Snooker-v0').spec.id)\n",
+    )
+    assert (out, err) == ("Snooker-v0\n", "")
+
+
+def test_the_warning_of_an_overwritten_id_would_be_seen():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        entry = gymnasium.registry["Snooker-v0"]
+        with pytest.raises(UserWarning, match="Overriding"):
+            gymnasium.register(id="Snooker-v0", entry_point="snooker_env.envs.snooker:SnookerEnv")
+        gymnasium.registry["Snooker-v0"] = entry
+
+
+# The cache of machine code
+
+
+def test_the_cache_folder_depends_on_every_source_file(tmp_path):
+    root = copy_of_package(tmp_path) / "snooker_env"
+    first = _cache.source_hash(root)
+    assert first == _cache.source_hash(root) == _cache.source_hash(ROOT / "snooker_env")
+    seen = {first}
+    files = sorted(root.rglob("*.py"))
+    assert len(files) > 25
+    for path in files:
+        text = path.read_bytes()
+        path.write_bytes(text.replace(b"e", b"f", 1) if b"e" in text else text + b"#")  # same size, other content
+        seen.add(_cache.source_hash(root))
+        path.write_bytes(text)
+        os.utime(path, (1e9, 1e9))  # its age does not matter
+    assert len(seen) == len(files) + 1
+    (root / "new.py").write_text("")
+    seen.add(_cache.source_hash(root))
+    (root / "new.py").rename(root / "newer.py")
+    seen.add(_cache.source_hash(root))
+    (root / "newer.py").unlink()
+    assert len(seen) == len(files) + 3
+    assert _cache.source_hash(root) == first
+    (root / "notes.txt").write_text("no source")
+    assert _cache.source_hash(root) == first
+
+
+def test_the_cache_is_where_it_is_said_to_be(tmp_path, monkeypatch):
+    for name in CACHE:
+        monkeypatch.delenv(name, raising=False)
+    key = _cache.source_hash()
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    assert _cache.cache_folder() == tmp_path / "home" / ".cache" / "snooker_env" / key
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    assert _cache.cache_folder() == tmp_path / "xdg" / "snooker_env" / key
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "numba"))
+    assert _cache.cache_folder() == tmp_path / "numba" / "snooker_env" / key
+    assert _cache.cache_folder().is_dir() and not list(_cache.cache_folder().iterdir())  # the trial file is gone
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
+    with pytest.warns(RuntimeWarning, match="is not writable"):
+        assert _cache.cache_folder() is None
+
+
+SPOT = """
+import numpy as np
+from snooker_env import _jit
+from snooker_env.game import balls, spotting
+positions, on_table = spotting.spot_colours(np.zeros((22, 2)), np.zeros(22, bool), 1 << balls.BLACK)
+hits = sum(spotting._spot.stats.cache_hits.values()) if _jit.CACHE_FOLDER else -1
+print(positions[balls.BLACK, 1], hits, _jit.CACHE_FOLDER)
+"""
+
+
+def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
+    """numba looks at the file of the entry kernel (spotting.py) only; the black's place is frozen in from balls.py."""
+    at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
+    runs = [python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() for _ in range(2)]
+    assert [run[:2] for run in runs] == [["1.4605", "0"], ["1.4605", "1"]]  # compiled once, then loaded
+    assert runs[0][2].startswith(cache)
+    replace(at / "snooker_env/game/balls.py", "spots[BLACK] = 0.0, 1.4605", "spots[BLACK] = 0.0, 1.4005")
+    run = python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()
+    assert run[:2] == ["1.4005", "0"] and run[2] != runs[0][2]
+    replace(at / "snooker_env/game/balls.py", "spots[BLACK] = 0.0, 1.4005", "spots[BLACK] = 0.0, 1.4605")
+    assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() == runs[1]  # and the old code's cache is good again
+
+
+def test_without_the_hash_a_change_would_be_missed(tmp_path):
+    """The control: one folder for all sources, and numba runs the old machine code. So the test above can fail."""
+    at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
+    replace(at / "snooker_env/_cache.py", 'home / "snooker_env" / source_hash()', 'home / "snooker_env" / "one"')
+    assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()[:2] == ["1.4605", "0"]
+    replace(at / "snooker_env/game/balls.py", "spots[BLACK] = 0.0, 1.4605", "spots[BLACK] = 0.0, 1.4005")
+    assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()[:2] == ["1.4605", "1"]
+
+
+SHOT = """
+import numpy as np, snooker_env as sn
+shot = sn.simulate([(0.1, -1.0), (0.3, 0.6)], [(0.9, 2.4), (0.0, 0.0)], np.zeros((2, 3)))
+print(repr(shot.positions.tolist()))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("physics/cloth.py", None, None),
+        ("physics/impact/contact.py", "phys[P_E_C] - phys[P_E_SLOPE]", "0.5 * phys[P_E_C] - phys[P_E_SLOPE]"),
+    ],
+)
+def test_a_shot_is_never_computed_by_old_code(tmp_path, file, old, new):
+    """The same with the whole engine: a constant or a term changed below the entry kernel changes the next run's shot."""
+    at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
+    first = python(SHOT, at=at, NUMBA_CACHE_DIR=cache)
+    assert python(SHOT, at=at, NUMBA_CACHE_DIR=cache) == first
+    path = at / "snooker_env" / file
+    if old is None:  # more friction wherever the cloth's kernels read it
+        text = path.read_text()
+        assert "phys[P_MU_R]" in text
+        path.write_text(text.replace("phys[P_MU_R]", "(2.0 * phys[P_MU_R])"))
+    else:
+        replace(path, old, new)
+    assert python(SHOT, at=at, NUMBA_CACHE_DIR=cache) != first
+
+
+@pytest.mark.parametrize("where", ["NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME"])
+def test_without_a_place_for_the_cache_it_works_from_memory(tmp_path, where):
+    """A file stands where the folder should be (tests may run as root, whom no access bits stop)."""
+    (tmp_path / "file").write_text("")
+    variables = dict.fromkeys(CACHE) | {where: str(tmp_path / "file")}
+    out, err = python(SPOT, warn="error,default::RuntimeWarning", **variables)
+    assert out.split() == ["1.4605", "-1", "None"]
+    assert err.count("Warning") == 1 and "is not writable: every process compiles for itself; set NUMBA_CACHE_DIR" in err
+    assert (tmp_path / "file").read_text() == ""
+
+
+def test_a_cache_that_is_taken_away_does_no_harm(tmp_path):
+    code = SPOT.replace("positions, on_table", "import shutil; shutil.rmtree(_jit.CACHE_FOLDER)\npositions, on_table")
+    assert python(code, NUMBA_CACHE_DIR=str(tmp_path / "cache"))[0].split()[0] == "1.4605"
+
+
+# The same bits everywhere
+
+GOLDEN = """
+import hashlib, json, sys
+import numpy as np, snooker_env as sn
+from snooker_env.game import layouts
+
+def shots(count):
+    rng = np.random.default_rng(2014)
+    r, v, w, here = np.zeros((count, 22, 2)), np.zeros((count, 22, 2)), np.zeros((count, 22, 3)), np.zeros((count, 22), bool)
+    for k in range(count):
+        r[k], here[k] = layouts.layout(("break_off", "opened", "line_up", "random:9", "colours")[k % 5], rng)
+        speed, aim, side, top = rng.uniform((0.5, -np.pi, -0.3, -0.3), (7.0, np.pi, 0.3, 0.3))
+        velocity, w[k, 0] = sn.strike(speed, aim, side, top)
+        v[k, 0] = velocity[:2]
+    return r, v, w, here
+
+def digest(batch):
+    h = hashlib.sha256()
+    for a in (batch.positions, batch.potted, batch.on_table, batch.duration, batch.event_count):
+        h.update(np.ascontiguousarray(a).tobytes())
+    return h.hexdigest()
+
+def run(count=40, threads=1, **options):
+    r, v, w, here = shots(count)
+    return sn.simulate_batch(r, v, w, on_table=here, threads=threads, **options)
+"""
+
+
+@pytest.fixture(scope="module")
+def golden():
+    space = {}
+    exec(GOLDEN, space)  # the very text that the other processes run
+    return space
+
+
+@pytest.mark.parametrize("options", [{}, {"physics": "match", "table": "tight"}, {"fidelity": "fast"}], ids=["paper", "match", "fast"])
+def test_the_same_bits_in_every_process_and_for_any_number_of_threads(golden, options):
+    batch = golden["run"](**options)
+    want = golden["digest"](batch)
+    assert golden["digest"](golden["run"](threads=2, **options)) == golden["digest"](golden["run"](threads=7, **options)) == want
+    code = GOLDEN + f"options = {options!r}\nprint(digest(run(**options)), digest(run(threads=2, **options)))"
+    for _ in range(2):
+        assert python(code)[0].split() == [want, want]
+    assert golden["digest"](golden["run"](physics={"mu_s": 0.2100000001})) != want
+    assert batch.event_count.min() >= 1 and batch.event_count.max() > 100 and (batch.potted >= 0).any()
+
+
+def test_one_shot_is_the_same_alone_and_in_a_batch(golden):
+    r, v, w, here = golden["shots"](40)
+    batch = golden["run"](events=True)
+    assert golden["digest"](batch) == golden["digest"](golden["run"]())  # asking for the log changes nothing
+    for k in range(0, 40, 3):
+        shot = sn.simulate(r[k], v[k], w[k], on_table=here[k])
+        assert shot.positions.tobytes() == batch.positions[k].tobytes() and shot.duration == batch.duration[k]
+        assert np.array_equal(shot.potted, batch.potted[k]) and np.array_equal(shot.on_table, batch.on_table[k])
+        assert shot.events.tobytes() == batch.events[k].tobytes() and len(shot.events) == batch.event_count[k]
+
+
+@pytest.mark.slow
+def test_fresh_and_cached_machine_code_give_the_same_bits(golden, tmp_path):
+    code = GOLDEN + "print(digest(run()))"
+    want = golden["digest"](golden["run"]())
+    (tmp_path / "file").write_text("")
+    for cache in (tmp_path / "cache", tmp_path / "cache", tmp_path / "file"):
+        assert python(code, NUMBA_CACHE_DIR=str(cache))[0].split() == [want]
+
+
+def test_a_pickled_shot_and_world_stay_what_they_are():
+    import pickle
+
+    shot = sn.simulate([(0.0, 0.0), (0.3, 0.0)], [(1.0, 0.0), (0.0, 0.0)], np.zeros((2, 3)), physics="match")
+    again = pickle.loads(pickle.dumps(shot))
+    assert again.physics == shot.physics == sn.Physics.preset("match") != sn.Physics()
+    assert np.array_equal(again.positions, shot.positions) and all(map(np.array_equal, again.at(0.3), shot.at(0.3)))
+    assert pickle.loads(pickle.dumps(sn.Table.preset("tight"))) is sn.Table.preset("tight")
+
+
+def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(tmp_path):
+    """A column number baked into a kernel of agents/ comes from another folder of agents/."""
+    code = "from agents.players.aim_search import _solved as k; from snooker_env import _jit; print(_jit.CACHE_FOLDER, k._cache.cache_path)"
+    copy_of_package(tmp_path)
+    shutil.copytree(ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip"))
+    seen = []
+    for change in ("", "\n# other columns"):
+        with (tmp_path / "agents/features/indirect_pots.py").open("a") as file:
+            file.write(change)
+        seen.append(python(code, at=tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "cache"))[0].split())
+    assert seen[0][0] == seen[1][0] and seen[0][1] != seen[1][1]
+    assert all(path.startswith(folder) for folder, path in seen)

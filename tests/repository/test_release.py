@@ -1,0 +1,67 @@
+"""May people use this, and how? Licence, authors, citation, change log, and the words that tell how to install it."""
+
+import re
+import subprocess
+import sys
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+import yaml
+
+import snooker_env as sn
+
+ROOT = Path(__file__).parents[2]
+TEXTS = [p for p in ROOT.rglob("*") if p.suffix in (".py", ".md", ".sh", ".toml") and not set(p.parts) & {".venv", "tests", ".git"}]
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """The metadata of a wheel built from this tree."""
+    out = tmp_path_factory.mktemp("wheel")
+    pip = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", str(out), str(ROOT)]
+    subprocess.run(pip, check=True, capture_output=True, timeout=280)
+    (wheel,) = out.glob("*.whl")
+    subprocess.run([sys.executable, "-m", "zipfile", "-e", str(wheel), str(out / "x")], check=True)
+    (info,) = (out / "x").glob("*.dist-info")
+    return metadata.Distribution.at(info)
+
+
+def test_the_wheel_says_who_may_use_it(built):
+    told = built.metadata
+    assert told["License-Expression"] == "MIT" and told.get_all("License-File") == ["LICENSE"]
+    assert told["Author"] == "the snooker_env authors" and told["Version"] == sn.__version__
+    text = built.read_text("licenses/LICENSE")
+    assert text == (ROOT / "LICENSE").read_text()
+    assert text.startswith("MIT License\n") and "the snooker_env authors" in text
+
+
+def released():
+    """The versions that the change log tells of, newest first."""
+    return re.findall(r"^## (\d+\.\d+\.\d+)", (ROOT / "CHANGELOG.md").read_text(), re.M)
+
+
+def number(version):
+    return tuple(map(int, version.split(".")[:3]))
+
+
+def test_the_citation_names_the_last_release():
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    assert cited["version"] == released()[0] and cited["license"] == "MIT" and cited["cff-version"] == "1.2.0"
+    assert cited["authors"] == [{"name": "the snooker_env authors"}]
+
+
+def test_the_change_log_tells_of_this_version_and_of_every_one_before():
+    versions, text = released(), (ROOT / "CHANGELOG.md").read_text()
+    assert versions[-1] == "0.1.0" and versions == sorted(versions, key=number, reverse=True)
+    if ".dev" in sn.__version__:  # of the release to come
+        assert number(sn.__version__) > number(versions[0]) and "## Unreleased\n" in text
+    else:
+        assert sn.__version__ == versions[0] and "## Unreleased\n" not in text
+
+
+def test_nobody_is_told_to_install_from_an_index_that_does_not_have_it():
+    """The package is on no index: a bare ``pip install snooker-env`` would fail, or fetch whatever takes that name."""
+    told = [f"{p.relative_to(ROOT)}: {line}" for p in TEXTS for line in p.read_text(encoding="utf-8").splitlines() if "pip install" in line]
+    assert len(told) > 5
+    assert not [line for line in told if re.search(r"pip install [\"'\w -]*snooker[-_]env", line)]

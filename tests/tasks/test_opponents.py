@@ -1,0 +1,244 @@
+"""Who may play against the agent, and how well does he? Callables, the ghost-ball player, saved models."""
+
+import copy
+import pickle
+import random
+import zipfile
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import data_equivalence
+
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.game.layouts import layout
+from snooker_env.tasks.frame_table import FrameTable
+from snooker_env.tasks.opponents import GhostBall
+from snooker_env.tasks.saved_models import Saved
+from snooker_env.tasks.stroke import shooter_of
+from tests.bombs import bombed, rezipped, told
+from tests.tables import PLACES, frame_env, frame_state
+
+
+def test_any_callable_may_play_and_sees_the_table_from_its_own_side():
+    seen = []
+
+    def opponent(observation, rng):
+        seen.append(observation)
+        return np.array([-0.9, 0, 0, rng.uniform(-1, 1), 0, 0, 0])
+
+    env = frame_state(frame_env(opponent=opponent), PLACES, {"scores": (31, 62)})
+    env.step([-0.9, 0, 0, 1.0, 0, 0, 0])
+    assert seen and env.observation_space.contains(seen[0])
+    own, other, lead = seen[0][121:124] * 155
+    assert (own, other, lead) == pytest.approx((62, 31, 31), abs=1e-3)  # the stroke before was fair and scored nothing
+
+
+@pytest.mark.parametrize(
+    ("answer", "says"),
+    [
+        (np.zeros(3), r"opponent's action = array of shape \(3,\): must have shape \(7,\), real numbers"),
+        (None, r"opponent's action = None: must have shape \(7,\), real numbers"),
+        ([2.0] * 7, r"opponent's action = \[2.0.*\]: must be finite and within \[-1, 1\]"),
+    ],
+)
+def test_what_a_callable_answers_is_checked(answer, says):
+    env = frame_env(opponent=lambda observation, rng: answer)
+    with pytest.raises(ValueError, match=f"^{says}$"):
+        [env.reset(seed=seed) for seed in range(10)]
+
+
+def test_what_a_callable_itself_raises_is_left_as_it_is():
+    def opponent(observation, rng):
+        raise ValueError("my own fault")
+
+    env = frame_env(opponent=opponent)
+    with pytest.raises(ValueError, match=r"^my own fault$"):
+        [env.reset(seed=seed) for seed in range(10)]
+
+
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
+def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
+    """His turn was cut short: the agent's next action is not his, and the next episode begins as ever."""
+
+    def opponent(observation, rng):
+        if failing:
+            raise error("no turn")
+        return np.zeros(7)
+
+    env, miss, failing = frame_env(opponent=opponent), [-0.9, 0, 0, 1.0, 0, 0, 0], True
+    frame_state(env, PLACES, {})
+    with pytest.raises(error, match="no turn"):
+        env.step(miss)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(miss)
+    with pytest.raises(error, match="no turn"):
+        [env.reset(seed=seed) for seed in range(10)]  # he breaks off
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(miss)
+    failing = False
+    env.reset(seed=0)
+    env.step(miss)
+    assert env.frames.table.frame.striker == 0
+
+
+def test_the_ghost_ball_player_pots_what_is_there():
+    rng, potted = np.random.default_rng(0), 0
+    shooter = shooter_of("absolute", False, False, False, "none", "paper", "match", "standard")
+    for _ in range(60):
+        table = FrameTable(shooter)
+        table.start(*layout("pots:easy", rng), breaker=0, in_hand=False)
+        potted += GhostBall().play(table, None, rng, False).verdict.points
+    assert potted > 30
+
+
+def test_the_ghost_ball_player_beats_the_random_one():
+    wins = 0
+    for seed in range(8):
+        env = frame_env(opponent="ghost_ball", decision=False)
+        env.reset(seed=seed)
+        rng = np.random.default_rng(seed)
+        while not env.over:
+            env.step(rng.uniform(-1, 1, 6))
+        wins += env.frames.table.frame.winner
+    assert wins >= 7
+
+
+# models from files -----------------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory):
+    """Untrained models' files: of this environment's visit, of its discrete choices, with another view, of another environment."""
+    sb3, contrib = pytest.importorskip("stable_baselines3"), pytest.importorskip("sb3_contrib")
+    folder = tmp_path_factory.mktemp("saved")
+    sb3.PPO("MlpPolicy", SnookerEnv(), seed=1, device="cpu").save(folder / "visit.zip")
+    sb3.PPO("MultiInputPolicy", SnookerEnv(observation="balls"), device="cpu").save(folder / "balls.zip")
+    sb3.PPO("MlpPolicy", SnookerEnv(elevation=True), device="cpu").save(folder / "elevation.zip")
+    sb3.PPO("MlpPolicy", "Pendulum-v1", device="cpu").save(folder / "pendulum.zip")
+    contrib.MaskablePPO("MlpPolicy", SnookerEnv(action="discrete"), device="cpu").save(folder / "choices.zip")
+    contrib.RecurrentPPO("MlpLstmPolicy", SnookerEnv(placement=True), device="cpu").save(folder / "recurrent.zip")
+    return folder
+
+
+@pytest.mark.parametrize("name", ["A2C", "TD3", "DDPG", "TQC", "TRPO", "CrossQ"])
+def test_who_saved_a_model_is_read_from_it(tmp_path, name):
+    library = pytest.importorskip("stable_baselines3" if name in ("A2C", "TD3", "DDPG") else "sb3_contrib")
+    getattr(library, name)("MlpPolicy", SnookerEnv(), device="cpu").save(tmp_path / "model.zip")
+    found = Saved.of(tmp_path / "model.zip", "opponent")
+    assert issubclass(getattr(library, name), getattr(library, found.algorithm[1]))  # DDPG is a TD3
+    assert found.network(True, "") is not None
+
+
+@pytest.mark.parametrize(("task", "name"), [("visit", "PPO"), ("frame", "SAC")])
+def test_a_saved_model_may_play(tmp_path, task, name):
+    sb3 = pytest.importorskip("stable_baselines3")
+    options = {"aim": "target", "placement": True, "layout": "random:2"}
+    trained = getattr(sb3, name)("MlpPolicy", SnookerEnv(task=task, **options), seed=1, device="cpu")
+    path = str(tmp_path / "model.zip")
+    trained.save(path)
+    for decision in (False, True):
+        env = SnookerEnv(task="frame", opponent=path, trust=True, decision=decision, **options)
+        network = env.frames.opponent.policy._network
+        assert all((a == b).all() for a, b in zip(network.parameters(), trained.policy.parameters(), strict=True))
+        runs = []
+        for one in (env, copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
+            one.reset(seed=2)
+            out = [one.step(np.zeros(one.action_space.shape)) for _ in range(3) if not one.over]
+            runs.append(out)
+            assert one.frames.opponent.policy._network is not None
+        assert data_equivalence(runs[0], runs[1], exact=True) and data_equivalence(runs[0], runs[2], exact=True)
+
+
+CONSENT = "holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come with trust=True"
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("balls", 'must be a model that sees observation="flat" of the visit or frame task'),
+        ("pendulum", 'must be a model that sees observation="flat" of the visit or frame task'),
+        ("elevation", "must be a model with 6 or 7 actions"),
+        ("choices", "must be a model whose actions are a Box"),
+        ("recurrent", "must be a model of MaskablePPO, TQC, TRPO, "),
+    ],
+)
+@pytest.mark.parametrize("trust", [False, True])
+def test_a_model_that_does_not_fit_is_refused_when_made_and_none_of_it_runs(saved, tmp_path, name, says, trust):
+    file = bombed(saved / f"{name}.zip", tmp_path / "model.zip", tmp_path / "mark")
+    with pytest.raises(ValueError) as info:
+        SnookerEnv(task="frame", opponent=str(file), trust=trust, placement=True, decision=True)
+    assert str(info.value).startswith(f"opponent = {str(file)!r}: {says}")
+    assert not (tmp_path / "mark").exists()
+
+
+@pytest.mark.parametrize("weights", [False, True])
+def test_nothing_of_a_model_runs_without_consent(saved, tmp_path, weights):
+    file = bombed(saved / "visit.zip", tmp_path / "model.zip", tmp_path / "mark", weights)
+    for options in ({}, {"trust": False}):
+        with pytest.raises(ValueError) as info:
+            gymnasium.make("Snooker-v0", task="frame", opponent=str(file), **options)
+        assert str(info.value) == f"opponent = {str(file)!r}: {CONSENT}"
+    assert not (tmp_path / "mark").exists()
+    with pytest.raises(ValueError, match=r"opponent = .*: must be a model that PPO can load"):
+        SnookerEnv(task="frame", opponent=str(file), trust=True)
+    assert (tmp_path / "mark").exists()  # these bombs are sharp
+
+
+@pytest.mark.parametrize("change", [{"_shape": [121]}, {":type:": "<class 'gymnasium.spaces.box.Box'>", "_shape": [121]}])
+def test_a_model_that_holds_other_than_it_says_is_refused_when_made(saved, tmp_path, change):
+    path = rezipped(saved / "pendulum.zip", tmp_path / "model.zip", data=told(lambda found: found["observation_space"].update(change)))
+    path = rezipped(path, tmp_path / "lie.zip", data=told(lambda found: found["action_space"].update({"_shape": [4]})))
+    with pytest.raises(ValueError, match=r"opponent = .*: must be a model that sees observation"):
+        SnookerEnv(task="frame", opponent=path, trust=True)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda found: found.clear(), lambda found: found.pop("action_space"), lambda found: found.update(observation_space=3),
+        lambda found: found.update(observation_space={}), lambda found: found["action_space"].update({":type:": 3}),
+        lambda found: found["action_space"].update(_shape=None), lambda found: found.update(action_space=None),
+    ],
+)  # fmt: skip
+def test_a_file_that_tells_nothing_sound_is_refused(saved, tmp_path, change):
+    file = bombed(saved / "visit.zip", tmp_path / "model.zip", tmp_path / "mark", change=change)
+    with pytest.raises(ValueError, match=r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \("):
+        SnookerEnv(task="frame", opponent=str(file), trust=True)
+    assert not (tmp_path / "mark").exists()
+
+
+def test_a_small_file_that_unpacks_to_gigabytes_is_not_unpacked(tmp_path):
+    with zipfile.ZipFile(tmp_path / "model.zip", "w", zipfile.ZIP_DEFLATED) as file:
+        file.writestr("data", b"{}" + b" " * 2**26)
+    with pytest.raises(ValueError, match="data is larger than 67108864 bytes"):
+        SnookerEnv(task="frame", opponent=str(tmp_path / "model.zip"))
+
+
+@pytest.mark.parametrize("content", [b"", b"junk", b"[]", b"{", b"[" * 100_000, b"\xff\xff", b"3"])
+def test_a_file_that_is_none_of_stable_baselines_is_refused(tmp_path, content):
+    (tmp_path / "plain.zip").write_bytes(content)
+    with zipfile.ZipFile(tmp_path / "data.zip", "w") as made:
+        made.writestr("data", content)
+    with zipfile.ZipFile(tmp_path / "large.zip", "w", zipfile.ZIP_DEFLATED) as made:
+        made.writestr("data", bytes(2**28 + 1))
+    for name in ("plain", "data", "large"):
+        with pytest.raises(ValueError, match=rf"^opponent = '.*{name}.zip': must be a model saved by Stable-Baselines3 \("):
+            SnookerEnv(task="frame", opponent=str(tmp_path / f"{name}.zip"), trust=True)
+
+
+@pytest.mark.parametrize("name", ["ppo_mask", "ppo_target"])
+def test_the_agents_of_this_project_see_more_than_a_frame_shows(name):
+    file = Path(__file__).parents[2] / f"agents/pretrained/{name}.zip"
+    with pytest.raises(ValueError, match=r"opponent = .*: must be a model that sees what the environment shows and nothing else"):
+        SnookerEnv(task="frame", opponent=file, trust=True)
+
+
+def test_consent_is_a_plain_option_of_the_frame_task(saved):
+    env = gymnasium.make("Snooker-v0", task="frame", opponent=str(saved / "visit.zip"), trust=True)
+    spec = gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())
+    assert gymnasium.make(spec).unwrapped.frames.opponent.policy._network is not None
+    state = random.getstate()
+    copy.deepcopy(env.unwrapped).frames.opponent.policy(env.observation_space.sample(), None)
+    assert random.getstate() == state  # loading takes no seed from the file
