@@ -5,7 +5,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from snooker_env._check import refuse
+from snooker_env.checks import refuse
 
 
 def write_atomic(path, data):

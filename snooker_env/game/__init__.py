@@ -9,6 +9,7 @@ from .balls import (
     N_BALLS,
     NAMES,
     SPOTS,
+    TOUCH,
     VALUES,
     BallOn,
     balls_on,
@@ -21,5 +22,5 @@ from .pots import POCKETS
 
 __all__ = [
     "BALL_RADIUS", "COLOUR_NAMES", "CUE", "HALF_LENGTH", "HALF_WIDTH", "HELD_OUT", "LAYOUTS", "NAMES", "N_BALLS", "POCKETS", "POT_WINDOWS",
-    "SPOTS", "VALUES", "BallOn", "Plan", "balls_on", "ids_of", "layout", "mask_of", "plan_of",
+    "SPOTS", "TOUCH", "VALUES", "BallOn", "Plan", "balls_on", "ids_of", "layout", "mask_of", "plan_of",
 ]  # fmt: skip

@@ -14,6 +14,7 @@ as an action (``as_actions``, ``actions_of``, ``pot_aim``)? What does it lead to
 (2, (2, 121))
 """
 
+from .._processors import processors
 from .geometry import Paths, Pots, clear_paths, obstructions, pots
 from .planner import Outcomes, Planner
 from .position import Position
@@ -22,5 +23,5 @@ from .strokes import action_masks, actions_of, as_actions, pot_aim
 
 __all__ = [
     "Outcomes", "Paths", "Planner", "Position", "Positions", "Pots", "action_masks", "actions_of", "as_actions", "clear_paths",
-    "obstructions", "pot_aim", "pots",
+    "obstructions", "pot_aim", "pots", "processors",
 ]  # fmt: skip

@@ -282,10 +282,13 @@ def _streams(keys: ArrayLike | None, n: int, silent: bool) -> NDArray[np.uint64]
     streams = np.zeros((n, 2), np.uint64)
     if keys is None and silent:
         return streams
-    given = np.asarray(keys)
-    fine = given.dtype.kind == "u" or (given.dtype.kind == "i" and (given >= 0).all()) or (given.size == 0 and n == 0)
-    if not fine or given.shape not in ((n,), (n, 2)):
-        found = f"{given.dtype} array of shape {given.shape}" if given.dtype.kind != "i" or fine else "negative numbers"
-        raise refuse_what("keys", found, f"must be {n} integers in [0, 2**64), a noise sample for each stroke")
-    streams[:, : 2 if given.ndim == 2 else 1] = given if given.ndim == 2 else given[:, None]
+    allowed = f"must be {n} integers in [0, 2**64), a noise sample for each stroke"
+    given = keys if isinstance(keys, np.ndarray) else np.array(keys, object)  # NumPy makes floats of a list of large and small integers
+    if given.dtype == object and all(isinstance(k, int | np.integer) and 0 <= k < 2**64 for k in given.flat):
+        given = given.astype(np.uint64)
+    if given.shape not in ((n,), (n, 2)):
+        raise refuse_what("keys", f"array of shape {given.shape}", allowed)
+    if given.dtype.kind not in "iu" or (given.dtype.kind == "i" and (given < 0).any()):
+        raise refuse_what("keys", "negative numbers" if given.dtype.kind == "i" else f"array of {given.dtype}", allowed)
+    streams[:, : given.ndim] = given.reshape(n, -1)
     return streams

@@ -163,7 +163,10 @@ def _name(ball: int) -> str:
 def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], table: Table) -> None:
     """Raise ValueError, by the ball's name, unless the balls fit on the table."""
     for ball in np.flatnonzero(on_table).tolist():
-        table.check(positions[ball : ball + 1], BALL_RADIUS, _name(ball))
+        try:
+            table.check(positions[ball : ball + 1], BALL_RADIUS, _name(ball))
+        except ValueError as error:
+            raise ValueError(str(error).replace(f"{_name(ball)}[0] = ", f"{_name(ball)} = ", 1)) from None
         others = np.flatnonzero(on_table[:ball])
         apart = np.hypot(*(positions[others] - positions[ball]).T)
         if len(others) and 2 * BALL_RADIUS - apart.min() > 1e-6:
