@@ -22,6 +22,8 @@ from ._check import choice, integer, refuse
 from .envs.vector import SnookerVectorEnv
 from .tasks.visit import COUNTS, REALS
 
+__all__ = ["SnookerVecEnv"]
+
 
 class SnookerVecEnv(VecEnv):
     """``num_envs`` tables as SB3 takes them; all other arguments are those of ``SnookerVectorEnv``.

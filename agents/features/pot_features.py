@@ -55,11 +55,11 @@ def _add_pots(observations, shown):
 
 
 def with_pots(observations):
-    """Flat observations (n, OBSERVATION_SIZE) with the four widest direct pots appended, ``POT_ENTRIES`` numbers each; all 0 where there are fewer.
+    """Flat observations (n, OBSERVATION_SIZE) with the four widest direct pots appended, ``POT_ENTRIES`` numbers each, 0 where none is.
 
     1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance, the ball's value and place (x, y),
-    the pocket's place. A small network cannot find these
-    lines itself in a few minutes: without them the same run makes a third of the pots.
+    the pocket's place. A small network cannot find these lines itself in a few minutes: without them the same run makes a third of the
+    pots.
     """
     shown = np.empty((len(observations), SHOWN), np.float32)
     _add_pots(np.ascontiguousarray(observations), shown)

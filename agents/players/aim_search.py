@@ -91,7 +91,7 @@ class Aimer:
         return lines + steps * (starts + 0.5 * (lengths - 1) - 0.5 * (AIMS - 1)), steps * lengths
 
     def _solve(self, at, rows, shots, speeds):
-        """The direction of the cue ball [rad] that sends the first ball of each shot (m, COLUMNS) to its aim point, at each speed: (m, s)."""
+        """Directions of the cue ball (m, s) [rad] that send the first ball of each shot (m, COLUMNS) to its aim point at each speed."""
         m, s = len(shots), len(speeds)
         aims = np.empty((m, s))
         plain = shots[:, BALL] < 0.0

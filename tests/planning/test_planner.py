@@ -30,11 +30,12 @@ def same(one, other):
 @pytest.mark.parametrize(
     "options",
     [
-        {"aim": "target", "noise": "amateur"}, {"action": "discrete", "noise": "club", "layout": "random:6"},
+        {"aim": "target", "noise": "amateur"},
+        {"action": "discrete", "noise": "club", "layout": "random:6"},
         {"aim": "target", "elevation": True, "placement": True, "layout": "break_off", "noise": "professional"},
         {"aim": "target", "physics": "match", "table": "tight", "fidelity": "fast", "layout": "line_up"},
     ],
-)  # fmt: skip
+)
 def test_a_planned_stroke_is_the_stroke_of_the_environment(options):
     """From the same state, with the same stream: points, end, table, game and observation, bit for bit."""
     env = sn.SnookerEnv(**options)
@@ -161,16 +162,24 @@ STROKE = [[0.0, 0.0, 0.0, 0.2]]
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        ((AT, [1], STROKE), r"rows\[0\] = 1: must be in \[0, 1\)"), ((AT, [-1], STROKE), r"rows\[0\] = -1"),
-        ((AT, [0.0], STROKE), "rows = float64 array"), ((AT, [[0]], STROKE), r"rows = int64 array of shape \(1, 1\)"),
-        ((AT, [0, 0], STROKE), r"actions = array of shape \(1, 4\)"), ((AT, [0], [[0.0, 0.0, 0.0]]), r"actions = array of shape \(1, 3\)"),
-        ((AT, [0], [[0.0, 0.0, 0.0, np.nan]]), r"actions\[0\] = .*must be finite"), ((AT, [0], [[0.0, 0.0, 0.0, 1.1]]), r"actions\[0\] ="),
-        ((AT, [0], [["a", "b", "c", "d"]]), "actions = "), ((AT, [0], STROKE, [1, 2]), r"keys = array of shape \(2,\)"),
-        ((AT, [0], STROKE, [-1]), "keys = array of object: must be 1 integers"), ((AT, [0], STROKE, [0.5]), "keys = array of object"),
-        ((None, [0], STROKE), "positions = a NoneType"), (([], [0], STROKE), "positions = a list"),
-        ((AT, [0], STROKE, np.array([-1])), "keys = negative numbers: must be 1"), (({"points": 1}, [0], STROKE), "state = a dict without"),
+        ((AT, [1], STROKE), r"rows\[0\] = 1: must be in \[0, 1\)"),
+        ((AT, [-1], STROKE), r"rows\[0\] = -1"),
+        ((AT, [0.0], STROKE), "rows = float64 array"),
+        ((AT, [[0]], STROKE), r"rows = int64 array of shape \(1, 1\)"),
+        ((AT, [0, 0], STROKE), r"actions = array of shape \(1, 4\)"),
+        ((AT, [0], [[0.0, 0.0, 0.0]]), r"actions = array of shape \(1, 3\)"),
+        ((AT, [0], [[0.0, 0.0, 0.0, np.nan]]), r"actions\[0\] = .*must be finite"),
+        ((AT, [0], [[0.0, 0.0, 0.0, 1.1]]), r"actions\[0\] ="),
+        ((AT, [0], [["a", "b", "c", "d"]]), "actions = "),
+        ((AT, [0], STROKE, [1, 2]), r"keys = array of shape \(2,\)"),
+        ((AT, [0], STROKE, [-1]), "keys = array of object: must be 1 integers"),
+        ((AT, [0], STROKE, [0.5]), "keys = array of object"),
+        ((None, [0], STROKE), "positions = a NoneType"),
+        (([], [0], STROKE), "positions = a list"),
+        ((AT, [0], STROKE, np.array([-1])), "keys = negative numbers: must be 1"),
+        (({"points": 1}, [0], STROKE), "state = a dict without"),
     ],
-)  # fmt: skip
+)
 def test_what_makes_no_sense_is_refused_by_name(arguments, complaint):
     with pytest.raises(ValueError, match=complaint):
         SILENT.play(*arguments)
@@ -202,7 +211,7 @@ def test_no_strokes_are_no_error():
         (lambda at: at.positions[2, 1].__setitem__(0, 0.9), r"positions\[2\]\[1\] = \(0.9, 0.3\): overlaps the cushion"),
         (lambda at: at.on_table[2].__setitem__(0, False), r"positions\[2\].cue = None: must be on the table"),
         (lambda at: at.ball_on.__setitem__(2, 9), r"positions\[2\].ball_on = 9: must be in \[-1, 7\]"),
-        (lambda at: at.ball_on.__setitem__(2, 7), r"positions\[2\].ball_on = 'black': must be"),
+        (lambda at: at.ball_on.__setitem__(2, 7), r"positions\[2\].ball_on = 'black': must name balls"),
         (lambda at: at.ball_on.__setitem__(2, -1), r"positions\[2\].ball_on = 'nothing': must name balls"),
         (lambda at: at.points.__setitem__(2, 200), r"positions\[2\].points = 200"),
     ],

@@ -45,17 +45,25 @@ def test_a_cue_ball_in_hand_lies_in_the_d():
     ("words", "complaint"),
     [
         ({"reds": [(0.1, -1.21)]}, r"reds\[0\] = \(0.1, -1.21\): overlaps cue at \(0.1, -1.2\) by 0.0425 m"),
-        ({"pink": (0.0, 1.44)}, r"black = .*overlaps pink"), ({"blue": (0.88, 0.5)}, r"blue = \(0.88, 0.5\): overlaps the cushion at x = 0.889"),
-        ({"yellow": (3.0, 0.0)}, r"yellow = \(3.0, 0.0\): must be on the table"), ({"green": (-0.889, -1.7845)}, r"green = .* is over a pocket"),
-        ({"black": (np.nan, 0.0)}, r"black\[0\] = nan"), ({"brown": 3.0}, "brown"), ({"cue": "centre"}, "cue"),
+        ({"pink": (0.0, 1.44)}, r"black = .*overlaps pink"),
+        ({"blue": (0.88, 0.5)}, r"blue = \(0.88, 0.5\): overlaps the cushion at x = 0.889"),
+        ({"yellow": (3.0, 0.0)}, r"yellow = \(3.0, 0.0\): must be on the table"),
+        ({"green": (-0.889, -1.7845)}, r"green = .* is over a pocket"),
+        ({"black": (np.nan, 0.0)}, r"black\[0\] = nan"),
+        ({"brown": 3.0}, "brown"),
+        ({"cue": "centre"}, "cue"),
         ({"reds": [(0.04 * k - 0.5, 0.3) for k in range(16)]}, "reds = 16 places: must be at most 15"),
         ({"on": "puce"}, "on = 'puce': must be one of"),
-        ({"on": "black"}, "on = 'black': must be 'red' or 'any_colour'"), ({"on": "blue"}, "on = 'blue': must name balls of which one"),
-        ({"reds": [], "on": "black"}, "on = 'black': must be 'any_colour' or 'pink'"), ({"cue": None}, "cue = None: must be on the table"),
-        ({"reds": [], "pink": None, "black": None}, "on = 'nothing': must name balls"), ({"points": 156}, "points = 156"),
-        ({"in_hand": 1}, "in_hand = 1: must be True or False"), ({"table": "oval"}, "table = 'oval'"),
+        ({"on": "black"}, "on = 'black': must be 'red' or 'any_colour'"),
+        ({"on": "blue"}, "on = 'blue': must name balls of which one"),
+        ({"reds": [], "on": "black"}, "on = 'black': must be 'any_colour' or 'pink'"),
+        ({"cue": None}, "cue = None: must be on the table"),
+        ({"reds": [], "pink": None, "black": None}, "on = 'nothing': must name balls"),
+        ({"points": 156}, "points = 156"),
+        ({"in_hand": 1}, "in_hand = 1: must be True or False"),
+        ({"table": "oval"}, "table = 'oval'"),
     ],
-)  # fmt: skip
+)
 def test_a_position_that_cannot_be_is_refused(words, complaint):
     with pytest.raises(ValueError, match=complaint):
         Position(**FULL | words)

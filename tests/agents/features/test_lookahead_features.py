@@ -1,13 +1,14 @@
 """Does the look ahead show what will happen, entry by entry, and are the errors it tries even?"""
 
 import numpy as np
-from positions import position, tables
+from positions import tables
 
 from agents.evaluation.rollouts import play, summary
-from agents.features import lookahead, lookahead_features, pot_features
+from agents.features import lookahead_features, pot_features, prospects
 from agents.features.noise_samples import LOOKS, errors_of, find, unevenness
 from agents.players.built_in import DISCRETE, GhostBall, player_of
 from snooker_env.game.balls import BallOn
+from snooker_env.planning import Planner, Positions
 from snooker_env.tasks.discrete_actions import SIZE
 from snooker_env.tasks.visit import BALL_ON
 
@@ -45,7 +46,7 @@ def test_foresight_is_the_mean_over_looks_with_the_errors_of_the_tables():
     """Against the tables themselves, given the streams of each look in turn."""
     env, other = tables(4, noise="club", **DISCRETE), tables(4, noise="club", **DISCRETE)
     seen = rows_of(lookahead_features.Foresight(1)(env, env.reset(seed=8)[0]))
-    spread = lookahead.spread_of(env.visits.rules.shooter.noise, env.visits.rules.shooter.physics)
+    spread = prospects.spread_of(env.visits.rules.shooter.noise, env.visits.rules.shooter.physics)
     for stroke in (1, 10):
         points, worth, cue, on = (np.zeros((5, 4)) for _ in range(4))
         next_best = np.zeros((5, 4, 3))
@@ -53,7 +54,7 @@ def test_foresight_is_the_mean_over_looks_with_the_errors_of_the_tables():
             other.reset(options={"states": env.get_state()})
             other.visits.streams[:] = (key, 0)
             _, points[i], ended, _, _ = other.step(lookahead_features.PICKS[np.full(4, stroke)])
-            values, chances = lookahead.prospects_of(position(other), spread, most=8)
+            values, chances = prospects.prospects_of(Positions.of(other), spread, most=8)
             on[i], worth[i], next_best[i] = ~ended, ~ended * values, ~ended[:, None] * -np.sort(-chances)[:, :3]
             cue[i] = ~ended * other.visits.positions[:, 0, 1]
         row, goes_on = seen[:, stroke], np.maximum(1, on.sum(0))
@@ -73,9 +74,9 @@ def test_foresight_says_which_stroke_it_is():
     """Strokes in the docstring's order: each of two pots, then speed, then top."""
     env = tables(6, noise="professional", layout="random:6", **DISCRETE)
     env.visits.game[:3, BALL_ON], env.visits.game[3:, BALL_ON] = int(BallOn.RED), int(BallOn.ANY_COLOUR)
-    rules, at, masks = env.visits.rules, position(env), env.action_masks()[:, lookahead_features.PICKS]
-    rows = lookahead_features.Foresight(1).ahead(rules, at, masks)
-    chances = lookahead.prospects_of(at, lookahead.spread_of(rules.shooter.noise, rules.shooter.physics))[1]
+    planner, at, masks = Planner(env), Positions.of(env), env.action_masks()[:, lookahead_features.PICKS]
+    rows = lookahead_features.Foresight(1).ahead(env, at, masks)
+    chances = prospects.prospects_of(at, prospects.spread_of(planner.noise, planner.physics))[1]
     strokes = [(pot, speed, top) for pot in (0, 1) for speed in (1.3, 2.3, 3.6, 5.3) for top in (-0.4, 0.0, 0.4)]
     there = np.array([[chances[k, pot] > 0 for pot, _, _ in strokes] for k in range(6)])
     assert len(strokes) == lookahead_features.STROKES_SEEN and np.array_equal(rows[..., lookahead_features.THERE] > 0, there)
