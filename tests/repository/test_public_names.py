@@ -53,10 +53,9 @@ def private(source):
             for name in [alias.name for alias in node.names]:
                 if name not in [*ALL.get(node.module, ()), "__version__"] and f"{node.module}.{name}" not in ALL:
                     found.append(f"{node.module}: {name}")
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in aliases:
-            if node.attr not in [*ALL["snooker_env"], "__version__"] and f"snooker_env.{node.attr}" not in ALL:
-                found.append(f"snooker_env.{node.attr}")
+    attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)]
+    used = {node.attr for node in attributes if isinstance(node.value, ast.Name) and node.value.id in aliases}
+    found += [f"snooker_env.{name}" for name in used - {*ALL["snooker_env"], "__version__"} if f"snooker_env.{name}" not in ALL]
     return found + re.findall(r"\b(?:env|tables|venv)\.(?:frames|shooter|visits)\b", source)  # what environments are made of
 
 
