@@ -16,14 +16,17 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from multiprocessing import get_context
+from typing import NamedTuple
 
 import numpy as np
 
-from snooker_env.game.balls import BALL_RADIUS, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of
-from snooker_env.game.layouts import break_off
-from snooker_env.tasks.frame_table import FrameTable
-from snooker_env.tasks.opponents import GhostBall, RandomPlayer
-from snooker_env.tasks.stroke import mask, shooter_of
+from snooker_env.game.balls import BALL_RADIUS, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of, mask_of_present
+from snooker_env.game.frame import Frame
+from snooker_env.tasks.frame import Frames
+from snooker_env.tasks.opponents import GhostBallOpponent, UniformOpponent
+from snooker_env.tasks.options import Options
+from snooker_env.tasks.stroke import DOWN, ShotBuffers
+from snooker_env.tasks.tables import I_BALL_ON, I_FOULS, I_PENALTY, I_POINTS, Crew
 
 from ._common.command import at_least, command, run
 
@@ -31,7 +34,7 @@ MOST_STROKES = 20_000
 """A frame that is longer counts as a failure."""
 REPLAYED = 20
 """Strokes played again from the JSON."""
-PLAYERS = {"random": RandomPlayer(), "ghost_ball": GhostBall()}
+PLAYERS = {"random": UniformOpponent(), "ghost_ball": GhostBallOpponent()}
 KINDS = (("random", "off"), ("random", "clear_path"), ("ghost_ball", "off"))
 
 
@@ -52,9 +55,67 @@ def check(true, what, *values):
         raise AssertionError(f"{what}: {values}")
 
 
+class Played(NamedTuple):
+    """One stroke."""
+
+    striker: int
+    ball_on: int
+    """What was on before it, a ``BallOn``."""
+    potted: int
+    """Mask of the balls that went down."""
+    points: int
+    penalty: int
+    fouls: int
+
+
+class Table:
+    """One frame in progress, played turn by turn by the same player on both sides, the rules' own arrays behind it."""
+
+    def __init__(self, miss):
+        options = Options(task="frame", aim="target", placement=True, decision=True, miss=miss, max_strokes=None)
+        self.tables, self.buffers, self.generator = Frames(options.rules, 1), ShotBuffers(1), np.random.default_rng()
+
+    def start(self, seed):
+        """Deal a new frame."""
+        self.generator = np.random.default_rng(seed)
+        self.tables.seed(0, self.generator)
+        self.tables.deal(np.zeros(1, np.int64), drawn=True)
+
+    @property
+    def frame(self) -> Frame:
+        """As it stands."""
+        return self.tables.frame(0)
+
+    @property
+    def over(self):
+        """Whether it has ended."""
+        return bool(self.tables.ended()[0])
+
+    def turn(self, player):
+        """One turn: what was ``Played``, or None where the table was only handed over."""
+        striker, out = self.frame.striker, self.tables.output()
+        crew = Crew(self.buffers)
+
+        def prepare(which, buffers):
+            return player.prepare(self.tables, which, player.ask(self.tables, which, ()), buffers)
+
+        if not self.tables.turn(prepare, out, crew)[0]:
+            return None
+        counts, potted = out.counts[0].tolist(), int((self.buffers.enlarged or self.buffers).seen[0, DOWN])
+        return Played(striker, counts[I_BALL_ON], potted, int(out.reals[0, I_POINTS]), counts[I_PENALTY], counts[I_FOULS])
+
+    def as_json(self):
+        """Everything that decides how the frame goes on."""
+        return json.dumps(self.tables.get_state(0) | {"rng": self.generator.bit_generator.state})
+
+    def take(self, text):
+        """Take over what ``as_json`` gave."""
+        self.tables.set_state(0, self.tables.checked(json.loads(text), self.generator, either=True))
+
+
 def fair_points(played, free_ball):
     """What a fair stroke scores, counted from the balls that went down: reds 1 each, else the ball on once; a free ball for the ball on."""
-    potted = played.stroke.potted & ~CUE_BIT
+    potted = played.potted & ~CUE_BIT
     if played.ball_on == BallOn.RED:
         reds, others = bin(potted & REDS_MASK).count("1"), bin(potted & COLOURS_MASK).count("1")
         check(others <= free_ball, "colours potted with reds on", ids_of(potted))
@@ -66,13 +127,13 @@ def fair_points(played, free_ball):
 
 def check_stroke(table, before, played):
     """Points and balls of one stroke; ``before``: the ``Frame`` before it."""
-    frame, verdict, me = table.frame, played.verdict, played.striker
+    frame, me = table.frame, played.striker
     gained = frame.scores[me] - before.scores[me], frame.scores[1 - me] - before.scores[1 - me]
-    if verdict.fouls:
-        check(gained[0] == 0 and gained[1] == verdict.penalty and 4 <= verdict.penalty <= 7, "a foul", gained, verdict)
+    if played.fouls:
+        check(gained[0] == 0 and gained[1] == played.penalty and 4 <= played.penalty <= 7, "a foul", gained, played)
     else:
         check(gained == (fair_points(played, before.free_ball), 0), "a fair stroke", gained, played)
-    reds = before.on_table & REDS_MASK & ~played.stroke.potted
+    reds = before.on_table & REDS_MASK & ~played.potted
     if not table.over:
         check_table(table)
         check(frame.on_table & REDS_MASK == reds, "reds", ids_of(frame.on_table), ids_of(reds))
@@ -80,88 +141,77 @@ def check_stroke(table, before, played):
 
 def check_table(table):
     """No ball lost or doubled: the balls on the table are those of the frame, apart from each other and between the cushions."""
-    frame, here = table.frame, mask(table.on_table)
+    frame, positions, on_table = table.frame, table.tables.positions[0], table.tables.on_table[0]
+    here = mask_of_present(on_table)
     check(here == frame.on_table | CUE_BIT, "balls", ids_of(here), ids_of(frame.on_table))
     if frame.ball_on <= BallOn.RED:
         check(here & COLOURS_MASK == COLOURS_MASK, "colours", ids_of(here))
     else:
         left = sum(1 << (on + 14) for on in range(frame.ball_on, BallOn.BLACK + 1))
         check(here == left | CUE_BIT, "the sequence", ids_of(here), frame.ball_on)
-    placed = table.positions[table.on_table]
+    placed = positions[on_table]
     far = np.hypot(*(placed[:, None] - placed[None]).T) + 9.0 * np.eye(len(placed))
     check(far.min() > 2 * BALL_RADIUS - 1e-6, "two balls in one place", far.min())
-    table.shooter.table.check(table.positions, BALL_RADIUS, "positions", table.on_table)
+    table.tables.rules.table.check(positions, BALL_RADIUS, "positions", on_table)
 
 
-def as_json(table, rng):
-    """Everything that decides how the frame goes on."""
-    return json.dumps({"table": table.get_state(), "rng": rng.bit_generator.state})
-
-
-def turn(table, player, rng):
-    """One turn, or None where the table was only handed over."""
-    return player.play(table, lambda: None, rng, False)
-
-
-def check_replay(text, wanted, player, fresh):
+def check_replay(text, wanted, player, miss):
     """The saved state, in a new table, leads to the same states."""
-    table, rng, saved = fresh(), np.random.default_rng(), json.loads(text)
-    table.set_state(saved["table"])
-    rng.bit_generator.state = saved["rng"]
+    table = Table(miss)
+    table.take(text)
+    table.generator.bit_generator.state = json.loads(text)["rng"]
     for want in wanted:
-        turn(table, player, rng)
-        check(as_json(table, rng) == want, "played on otherwise")
+        table.turn(player)
+        check(table.as_json() == want, "played on otherwise")
 
 
-def ending(table, played):
+def ending(before, played, frame):
     """How the frame ended."""
-    if not played.verdict.over:
+    if before.warned and played.fouls and frame.on_table:
         return "third miss"
-    if table.frame.respotted_black:
+    if frame.respotted_black:
         return "re-spotted black"
-    return "foul on the black" if played.verdict.fouls else "black potted"
+    return "foul on the black" if played.fouls else "black potted"
 
 
 def play_frame(seed, kind, miss):
     """One frame from the break to its end, everything checked; returns its ``Tally``. Raises AssertionError."""
-    player, rng, tally = PLAYERS[kind], np.random.default_rng(seed), Tally()
-    shooter = shooter_of("target", False, True, True, "none", "paper", "match", "standard")
-    fresh = partial(FrameTable, shooter, miss=miss)
-    table = fresh()
-    table.start(*break_off(rng), breaker=int(rng.integers(2)), in_hand=True)
+    player, rng, tally, table = PLAYERS[kind], np.random.default_rng(seed), Tally(), Table(miss)
+    table.start(seed)
     save_at, saved, following, visit, given = int(rng.integers(5, 50)), None, [], 0, [0, 0]
     while not table.over:
         if tally.strokes == save_at and saved is None:
-            saved = as_json(table, rng)
+            saved = table.as_json()
         before = table.frame
-        played = turn(table, player, rng)
+        played = table.turn(player)
         if saved is not None and len(following) < REPLAYED:
-            following.append(as_json(table, rng))
+            following.append(table.as_json())
         if played is None:
             continue
         if before.phase == "choice":
             before = before.choose("play")  # the only decision with a stroke in the same turn
         tally.strokes += 1
-        tally.fouls += bool(played.verdict.fouls)
+        tally.fouls += bool(played.fouls)
         check_stroke(table, before, played)
-        given[played.striker] += played.verdict.points
-        given[1 - played.striker] += played.verdict.penalty
-        visit += played.verdict.points
+        given[played.striker] += played.points
+        given[1 - played.striker] += played.penalty
+        visit += played.points
         check(visit <= 155, "a visit", visit)
-        if not played.verdict.points:
+        if not played.points:
             tally.breaks += [visit] if visit else []
             visit = 0
         elif not table.over and not table.frame.respotted_black:
             check(table.frame.break_points == visit, "the break", table.frame.break_points, visit)
         check(tally.strokes < MOST_STROKES, "a frame without end", seed)
         if table.over:
-            tally.ending = ending(table, played)
+            tally.ending = ending(before, played, table.frame)
     tally.breaks += [visit] if visit else []
-    check(tuple(given) == table.frame.scores, "the scores", given, table.frame.scores)
+    frame = table.frame
+    check(tuple(given) == frame.scores, "the scores", given, frame.scores)
     leader = int(given[1] > given[0])
-    check(tally.ending == "third miss" or (given[0] != given[1] and table.frame.winner == leader), "the winner", table.frame.winner)
+    check(tally.ending == "third miss" or (given[0] != given[1] and frame.winner == leader), "the winner", frame.winner)
     if saved is not None:
-        check_replay(saved, following, player, fresh)
+        check_replay(saved, following, player, miss)
     return tally
 
 

@@ -21,7 +21,8 @@ from gymnasium.vector import AutoresetMode
 import snooker_env
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.tasks.visit import Visits, Work
+from snooker_env.tasks import stroke
+from snooker_env.tasks.stroke import ShotBuffers
 
 from ._common.command import at_least, command, run, save_json, writable
 
@@ -107,18 +108,18 @@ class Recorded:
     """Notes what the engine is given, so that the same shots can be played by it alone."""
 
     def __init__(self):
-        self.original, self.shots = Visits._run, []
+        self.original, self.shots = stroke.run, []
 
     def __enter__(self):
-        def run(visits, work, m):
-            self.shots.append([a[:m].copy() for a in (work.r, work.v, work.w, work.here)])
-            self.original(visits, work, m)
+        def run(buffers, m, rules, phys):
+            self.shots.append([a[:m].copy() for a in (buffers.r, buffers.v, buffers.w, buffers.here)])
+            self.original(buffers, m, rules, phys)
 
-        setattr(Visits, "_run", run)  # noqa: B010 - the parameter is not called self
+        setattr(stroke, "run", run)  # noqa: B010 - a type checker must not think that it is always so
         return self
 
     def __exit__(self, *_):
-        setattr(Visits, "_run", self.original)  # noqa: B010
+        setattr(stroke, "run", self.original)  # noqa: B010
 
 
 def outside(tables, repeats):
@@ -126,19 +127,19 @@ def outside(tables, repeats):
     env = native(tables, 1)
     step, pairs = stepper(env), []
     for k in range(1, repeats + 1):
-        visits = env.visits
+        visits = env.tables
         before = [a.copy() for a in (visits.positions, visits.on_table, visits.game, visits.streams)]
         with Recorded() as recorded:
             step(k)
         for a, old in zip((visits.positions, visits.on_table, visits.game, visits.streams), before, strict=True):
             a[:] = old
-        work = Work(len(recorded.shots[0][0]))
+        work = ShotBuffers(len(recorded.shots[0][0]))
         engine = 0.0
         for shots in recorded.shots:
             for target, source in zip((work.r, work.v, work.w, work.here), shots, strict=True):
                 target[: len(source)] = source
             start = time.perf_counter()
-            visits._run(work, len(shots[0]))
+            stroke.run(work, len(shots[0]), visits.rules, visits.packed[2])
             engine += time.perf_counter() - start
         start = time.perf_counter()
         step(k)

@@ -12,7 +12,7 @@ Public are the names in ``__all__`` of this package and of these modules of it; 
 * ``snooker_env.sb3``: many tables for Stable-Baselines3
 """
 
-from typing import TYPE_CHECKING, Any
+import typing as _typing
 
 from gymnasium.envs import registration as _gymnasium
 
@@ -24,7 +24,7 @@ from .physics.parameters import Physics
 from .physics.table import POCKETS, Table
 from .simulation import Shot, ShotBatch, SimulationError, collide_balls, collide_cushion, simulate, simulate_batch, strike
 
-if TYPE_CHECKING:
+if _typing.TYPE_CHECKING:
     from . import planning
     from .envs.snooker import SnookerEnv
     from .envs.vector import SnookerVectorEnv
@@ -46,7 +46,7 @@ _LATER = {
 _register(_gymnasium)
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> _typing.Any:
     from importlib import import_module
 
     if name == "planning":

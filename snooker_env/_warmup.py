@@ -28,9 +28,14 @@ def warmup():
         env.reset(seed=0)
         env.action_masks()
         env.step(0)
-        frame = SnookerEnv(task="frame", aim="target", noise="club", placement=True, miss="clear_path")
-        frame.reset(seed=0)
-        frame.step([0.0] * 6)
+        frames = {"task": "frame", "placement": True, "decision": True, "miss": "clear_path", "opponent": "ghost_ball"}
+        env = SnookerEnv(**frames)
+        for seed in range(3):  # one of them with the opponent's break
+            env.reset(seed=seed)
+            env.step([0.0] * 7)
+        env = SnookerEnv(task="frame", opponent="random")
+        env.reset(seed=0)
+        env.step([0.0] * 4)
         pots(env.positions, env.on_table, REDS_MASK)
         line(env.positions, env.on_table, REDS_MASK)
         is_snookered(env.positions, env.on_table, REDS_MASK)

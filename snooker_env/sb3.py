@@ -20,7 +20,6 @@ except ModuleNotFoundError as error:
 
 from ._check import choice, integer, refuse
 from .envs.vector import SnookerVectorEnv
-from .tasks.visit import COUNTS, REALS
 
 __all__ = ["SnookerVecEnv"]
 
@@ -41,7 +40,8 @@ class SnookerVecEnv(VecEnv):
         if "autoreset_mode" in kwargs:
             raise refuse("autoreset_mode", kwargs["autoreset_mode"], "must be left out: Stable-Baselines3 needs SAME_STEP")
         self.tables = SnookerVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **kwargs)
-        self.info_keys = tuple(choice("info_keys", key, (*REALS, *COUNTS, "foul")) for key in info_keys)
+        known = (*self.tables.tables.REALS, *self.tables.tables.COUNTS, "foul")
+        self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
         self._actions = None
         self._returns, self._lengths = np.zeros(num_envs), np.zeros(num_envs, np.int64)

@@ -38,7 +38,7 @@ def frame_state(env, places, frame, **state):
         positions[ball], on_table[ball] = place, True
     env.reset(seed=1)
     mask = sum(1 << ball for ball in places if ball)
-    fields = {"on_table": mask, "in_hand": False, "miss": env.frames.table.miss} | frame
+    fields = {"on_table": mask, "in_hand": False, "miss": env.options.miss} | frame
     plain = Frame(**fields).to_dict()
     saved = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": plain}
     env.reset(options={"state": env.get_state() | saved | state})

@@ -1,19 +1,22 @@
-"""How do two agents play a frame against each other? PettingZoo's AEC interface around a ``FrameTable``."""
+"""How do two agents play a frame against each other? PettingZoo's AEC interface around one table of ``tasks.frame``."""
+
+import copy
+from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium import spaces
 from gymnasium.utils import seeding
 from pettingzoo import AECEnv
 
 from .._check import choice, refuse
-from ..game.layouts import layout as deal
+from ..game.frame_columns import POINTS, STROKES
 from ..tasks import observations
-from ..tasks.frame import frame_text
-from ..tasks.frame_table import MAX_STROKES, FrameTable
-from ..tasks.rewards import FRAME_REWARDS
-from ..tasks.stroke import shooter_of
-from ..tasks.table_fit import fitted
+from ..tasks.discrete_actions import Choices
+from ..tasks.frame import Frames
+from ..tasks.options import Options, options_of
+from ..tasks.rewards import frame_reward
+from ..tasks.stroke import ShotBuffers
+from ..tasks.tables import I_FOULS, I_PENALTY, I_POINTS, Crew
 from .pictures import FPS, MODES, Pictures
 
 PLAYERS = ("player_0", "player_1")
@@ -34,6 +37,9 @@ class MatchEnv(AECEnv):
     that option the player plays himself, with the rest of this same action. The first two play no stroke: the step only turns the table
     over to the offender. ``placement=False``, ``decision=False`` leave them out: the cue ball is then played from where it was put, and
     everybody plays after a foul. The colour after a red, and the free ball, is the one first struck. Nobody concedes or claims.
+
+    ``action="discrete"``: ``Discrete(n)`` as in ``Snooker-v0``, without place and decision; the choices that there are for the player whose
+    turn it is are ``action_mask(agent)`` and, as PettingZoo's own games have it, ``infos[agent]["action_mask"]``.
 
     ## Observation space
     That of ``Snooker-v0`` with ``task="frame"`` as each player sees it: his own score first, and whether it is his turn.
@@ -61,31 +67,48 @@ class MatchEnv(AECEnv):
 
     metadata = {"name": "snooker_match_v0", "render_modes": list(MODES), "is_parallelizable": False, "render_fps": FPS}  # noqa: RUF012
 
-    def __init__(
-        self, *, layout="break_off", aim="absolute", observation="flat", noise="none", reward="points", elevation=False, placement=True,
-        decision=True, miss="off", physics="paper", table="match", fidelity="standard", max_strokes=MAX_STROKES, render_mode=None,
-    ):  # fmt: skip
+    def __init__(self, options: Options | None = None, *, render_mode: str | None = None, **given: Any):
         super().__init__()
-        shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity)
-        self._plan = fitted(layout, shooter.table)
-        self.layout, self.observation = layout, observation
-        self.reward = FRAME_REWARDS[choice("reward", reward, FRAME_REWARDS)]
+        if options is None:
+            box = given.get("action", "box") == "box"
+            given = {"task": "frame", "placement": box, "decision": box, **given}
+        self.options = options_of(options, given)
+        if self.options.task != "frame" or self.options.opponent != "none" or self.options.trust:
+            what = f"task={self.options.task!r}, opponent={self.options.opponent!r}, trust={self.options.trust!r}"
+            raise ValueError(f'options = {what}: must be task="frame", opponent="none" and trust=False: a match has two players')
         if render_mode is not None:
             choice("render_mode", render_mode, MODES)
         self.render_mode = render_mode
-        self.table = FrameTable(shooter, miss=miss, max_strokes=max_strokes)
+        self.tables = Frames(self.options.rules, 1)
+        """The one table: ``tasks.frame.Frames``."""
         self.possible_agents = list(PLAYERS)
         self.agents = []
-        self.observation_spaces = {name: observations.space(observation, frame=True) for name in PLAYERS}
-        self.action_spaces = {name: spaces.Box(-1.0, 1.0, (shooter.actions.size,), np.float32) for name in PLAYERS}
+        self.observation_spaces = {name: observations.space(self.options.observation, frame=True) for name in PLAYERS}
+        self.action_spaces = {name: copy.deepcopy(self.options.rules.actions.space) for name in PLAYERS}  # each with its own generator
         self.np_random, _ = seeding.np_random()
-        self._last_played = None
-        self._pictures = Pictures(shooter.table, render_mode)
+        self._seeded = False
+        self._buffers, self._last, self._shot = ShotBuffers(1, path=render_mode is not None), None, None
+        self._pictures = Pictures(self.options.rules.table, render_mode)
+
+    @property
+    def positions(self):
+        """Where the balls lie: (22, 2) [m]."""
+        return self.tables.positions[0].copy()
+
+    @property
+    def on_table(self):
+        """Which balls are on the table: (22,) bool."""
+        return self.tables.on_table[0].copy()
+
+    @property
+    def frame(self):
+        """The ``snooker_env.game.frame.Frame`` that is played."""
+        return self.tables.frame(0)
 
     @property
     def strokes(self):
         """How many strokes both players have played."""
-        return self.table.strokes
+        return int(self.tables.game[0, STROKES])
 
     def observation_space(self, agent):
         """The same object each time."""
@@ -97,7 +120,15 @@ class MatchEnv(AECEnv):
 
     def observe(self, agent):
         """What ``agent`` sees now; a fresh array (or dict of arrays)."""
-        return observations.observe_frame(self.observation, self.table, PLAYERS.index(agent))
+        rows = self.tables.observe(np.zeros(1, np.int64), PLAYERS.index(agent))
+        return observations.shaped(self.options.observation, rows[0])
+
+    def action_mask(self, agent):
+        """With ``action="discrete"``: which choices ``agent`` has, int8 (n,); none unless it is his turn."""
+        if not isinstance(self.options.rules.actions, Choices):
+            raise refuse("action", "box", 'must be "discrete": a Box has no masks')
+        there = agent == self.agent_selection and not self.tables.ended()[0]
+        return (self.tables.action_masks()[0] & there).astype(np.int8)
 
     def reset(self, seed=None, options=None):
         """A new frame. options: None or {"state": a state of ``get_state``}; other keys are not read, PettingZoo's own test gives some."""
@@ -105,32 +136,35 @@ class MatchEnv(AECEnv):
             raise refuse("options", options, 'must be None or {"state": ...}')
         given = None
         if options and "state" in options:
-            given = self.table.checked(options["state"], self.np_random)
+            given = self.tables.checked(options["state"], self.np_random, either=True)
         if seed is not None:
             self.np_random, _ = seeding.np_random(seed)
         if given is not None:
-            self._take(given, noise=seed is None)
+            self._take(given, seeded=seed is not None)
         else:
-            self._last_played = None
-            breaker = int(self.np_random.integers(2))
-            self.table.start(*deal(self._plan, self.np_random), breaker=breaker, in_hand=self._plan.in_hand)
+            if seed is not None or not self._seeded:
+                self.tables.seed(0, self.np_random)
+                self._seeded = True
+            self.tables.deal(np.zeros(1, np.int64), drawn=True)
             self._begin()
         if self.render_mode == "human":
             self._show(film=False)
 
     def _begin(self):
         """PettingZoo's book-keeping for a table as it is."""
+        self._last = self._shot = None
         self.agents = list(PLAYERS)
         self.rewards = dict.fromkeys(PLAYERS, 0.0)
         self._cumulative_rewards = dict.fromkeys(PLAYERS, 0.0)
         self._account()
 
     def _account(self):
-        over = self.table.over
+        frame = self.frame
+        over = frame.phase == "over"
         self.terminations = dict.fromkeys(PLAYERS, over)
-        self.truncations = dict.fromkeys(PLAYERS, self.table.stopped)
-        self.infos = {name: self._info(k) for k, name in enumerate(PLAYERS)}
-        self.agent_selection = PLAYERS[self.table.frame.striker]
+        self.truncations = dict.fromkeys(PLAYERS, bool(self.tables.stopped()[0]) and not over)
+        self.agent_selection = PLAYERS[frame.striker]
+        self.infos = {name: self._info(frame, k) for k, name in enumerate(PLAYERS)}
 
     def step(self, action):
         """The selected player's action, None once he has terminated. ValueError if it is not finite, of the right shape and in [-1, 1]."""
@@ -140,53 +174,65 @@ class MatchEnv(AECEnv):
         if self.terminations[name] or self.truncations[name]:
             self._was_dead_step(action)
             return
-        a = self.table.shooter.actions.check(action)
-        before = self.table.frame
-        self._last_played = self.table.act(a, self.np_random, path=self.render_mode is not None)
+        a = self.options.rules.actions.check(action)
+        before = self.tables.lead()[0]
+        out = self.tables.output()
+        crew = Crew(self._buffers, (), self._watch)
+        played = self.tables.turn(lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers), out, crew)[0]
+        self._last = out if played else None
+        if not played:
+            self._shot = None
         self._cumulative_rewards[name] = 0.0
-        self.rewards = {player: self.reward(before, self.table.frame, k) for k, player in enumerate(PLAYERS)}
+        gained, winner = int(self.tables.lead()[0] - before), self.frame.winner
+        self.rewards = {player: frame_reward(self.options.reward, gained, winner, k) for k, player in enumerate(PLAYERS)}
         self._account()
         self._accumulate_rewards()
         if self.render_mode == "human":
-            self._show(film=self._last_played is not None)
+            self._show(film=bool(played))
 
-    def _info(self, player):
-        frame, played = self.table.frame, self._last_played
-        return {
-            "points": 0.0 if played is None else float(played.verdict.points),
-            "penalty": 0 if played is None else int(played.verdict.penalty),
-            "fouls": 0 if played is None else int(played.verdict.fouls),
+    def _watch(self, k, buffers, j, own):
+        self._shot = buffers.shot(j, self.options.rules.physics)
+
+    def _info(self, frame, player):
+        last, row = self._last, self.tables.game[0]
+        info = {
+            "points": 0.0 if last is None else float(last.reals[0, I_POINTS]),
+            "penalty": 0 if last is None else int(last.counts[0, I_PENALTY]),
+            "fouls": 0 if last is None else int(last.counts[0, I_FOULS]),
             "score": float(frame.scores[player]), "opponent_score": float(frame.scores[1 - player]),
-            "strokes": self.strokes, "break": float(frame.break_points),
+            "strokes": int(row[STROKES]), "break": float(row[POINTS]),
             "choice": frame.phase == "choice", "free_ball": frame.free_ball, "winner": -1 if frame.winner is None else frame.winner,
         }  # fmt: skip
+        if isinstance(self.options.rules.actions, Choices):
+            info["action_mask"] = self.action_mask(PLAYERS[player])
+        return info
 
     def get_state(self):
-        """The whole state as JSON types: table, frame, strokes and random generator."""
-        return self.table.get_state() | {"rng": self.np_random.bit_generator.state}
+        """The whole state as JSON types: table, frame, strokes and random numbers."""
+        return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state):
         """Take over a state from ``get_state``; the next stroke plays on identically. Rewards not yet collected are zero.
 
         ValueError if it is not sound, and then nothing has changed.
         """
-        self._take(self.table.checked(state, self.np_random), noise=True)
+        self._take(self.tables.checked(state, self.np_random, either=True), seeded=False)
 
-    def _take(self, sound, *, noise):
-        self.table.take(sound)
-        if noise:
+    def _take(self, sound, *, seeded):
+        self.tables.set_state(0, sound)
+        if seeded:
+            self.tables.seed(0, self.np_random)
+        else:
             self.np_random.bit_generator.state = sound.rng
-        self._last_played = None
+        self._seeded = True
         self._begin()
 
     def render(self):
         """The table with the cue ball's last path: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise."""
-        shot = None if self._last_played is None else self._last_played.shot
-        return self._pictures.render(self.table.positions, self.table.on_table, shot, frame_text(self.table.frame))
+        return self._pictures.render(self.tables.positions[0], self.tables.on_table[0], self._shot, self.tables.text(0))
 
     def _show(self, *, film):
-        shot = None if self._last_played is None else self._last_played.shot
-        self._pictures.show(self.table.positions, self.table.on_table, shot, frame_text(self.table.frame), film=film)
+        self._pictures.show(self.tables.positions[0], self.tables.on_table[0], self._shot, self.tables.text(0), film=film)
 
     def close(self):
         """Close the window, if there is one."""

@@ -5,33 +5,20 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from .._check import choice, refuse, truth
-from ..game.balls import REDS_MASK, BallOn, balls_on
+from .._check import choice, refuse
+from ..game.balls import BallOn
+from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
-from ..tasks.frame import AGENT, FrameTask
-from ..tasks.frame_table import MAX_STROKES
-from ..tasks.rewards import REWARDS
-from ..tasks.states import checked
-from ..tasks.stroke import mask, shooter_of
-from ..tasks.table_fit import fitted
-from ..tasks.visit import BALL_ON, IN_HAND, OVER, POINTS, Returned, Rules, Visits, Work
+from ..tasks.frame import Frames
+from ..tasks.options import Options, options_of
+from ..tasks.stroke import ShotBuffers
+from ..tasks.tables import Crew, Tables
+from ..tasks.visit import Visits
 from .pictures import FPS, MODES, Pictures
 
-TASKS = ("visit", "frame")
-FRAME_ONLY = {"opponent": "none", "trust": False, "miss": "off", "decision": False, "max_strokes": MAX_STROKES}
-"""Arguments that mean something in the frame task only, and the values that they must have in a visit."""
-LAYOUTS = {"visit": "opened", "frame": "break_off"}
-"""What layout="default" is in each task."""
-
-
-def visit_only(reward, **frame_only):
-    """Raise ValueError unless these arguments make sense in a visit; ``frame_only``: those that ``FRAME_ONLY`` names."""
-    choice("reward", reward, REWARDS)
-    for name, value in frame_only.items():
-        usual = FRAME_ONLY[name]
-        if not isinstance(value, (type(usual), np.bool_)) or value != usual:
-            raise refuse(name, value, f'must be {usual!r} with task="visit"; it belongs to task="frame"')
+TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames}
+"""Who plays each task."""
 
 
 class SnookerEnv(gymnasium.Env):
@@ -133,39 +120,17 @@ class SnookerEnv(gymnasium.Env):
 
     metadata = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012 - Gymnasium's own convention
 
-    def __init__(
-        self, *, task="visit", layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points",
-        elevation=False, placement=False, physics="paper", table="match", fidelity="standard", render_mode=None, opponent="none",
-        miss="off", decision=False, max_strokes=MAX_STROKES, trust=False,
-    ):  # fmt: skip
-        whole = choice("task", task, TASKS) == "frame"
-        layout = LAYOUTS[task] if isinstance(layout, str) and layout == "default" else layout
-        self.layout, self.observation, self.reward = layout, observation, reward
-        self.shooter = shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action)
-        self._plan = fitted(layout, self.shooter.table)
-        self.actions, self.noise, self.physics = self.shooter.actions, self.shooter.noise, self.shooter.physics
-        self.table, self.fidelity = self.shooter.table, self.shooter.fidelity
-        self.action_space = self.actions.space
-        self.observation_space = observations.space(observation, frame=whole)
-        self.frames: Any = None
-        """The ``FrameTask``; None in a visit."""
-        self.visits: Any = None
-        """The ``Visits`` of one table; None in a frame."""
-        self._unbegun = True
-        if whole and action == "discrete":
-            raise refuse("action", action, 'must be "box" with task="frame"')
-        if whole:
-            self.frames = FrameTask(
-                self.shooter, opponent=opponent, trust=trust, miss=miss, reward=reward, observation=observation, max_strokes=max_strokes
-            )
-        else:
-            visit_only(reward, opponent=opponent, trust=truth("trust", trust), miss=miss, decision=decision, max_strokes=max_strokes)
-            self.visits = Visits(Rules(self.shooter, self._plan, reward), 1)
-            self._work, self._seeded = Work(1, path=render_mode is not None), False
+    def __init__(self, options: Options | None = None, *, render_mode: str | None = None, **given: Any):
+        self.options = options_of(options, given)
+        self.tables = TABLES[self.options.task](self.options.rules, 1)
+        """The one table: ``tasks.tables.Tables``."""
+        self.action_space: Any = self.options.rules.actions.space
+        self.observation_space = observations.space(self.options.observation, frame=self.options.task == "frame")
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
-        self._pictures = Pictures(self.table, render_mode)
+        self._pictures = Pictures(self.options.rules.table, render_mode)
+        self._buffers, self._seeded = ShotBuffers(1, path=render_mode is not None), False
         self.last_shot = None
         """The ``Shot`` of the last step, with its path when a render mode is set; None before the first."""
 
@@ -174,64 +139,73 @@ class SnookerEnv(gymnasium.Env):
     @property
     def positions(self):
         """Where the balls lie: (22, 2) [m]."""
-        return self.frames.table.positions if self.visits is None else self.visits.positions[0].copy()
+        return self.tables.positions[0].copy()
 
     @property
     def on_table(self):
         """Which balls are on the table: (22,) bool."""
-        return self.frames.table.on_table if self.visits is None else self.visits.on_table[0].copy()
+        return self.tables.on_table[0].copy()
 
     @property
     def ball_on(self):
         """What is on, a ``BallOn``."""
-        return self.frames.table.frame.ball_on if self.visits is None else BallOn(self.visits.game[0, BALL_ON])
+        return BallOn(self.tables.game[0, BALL_ON])
 
     @property
     def in_hand(self):
         """Whether the cue ball is in hand."""
-        return self.frames.table.frame.in_hand if self.visits is None else bool(self.visits.game[0, IN_HAND])
+        return bool(self.tables.game[0, IN_HAND])
 
     @property
     def points(self):
-        """Points of the visit so far."""
-        return self.frames.table.frame.break_points if self.visits is None else int(self.visits.game[0, POINTS])
+        """Points of the visit so far; in a frame of the striker's."""
+        return int(self.tables.game[0, POINTS])
 
     @property
     def over(self):
         """Whether the visit or frame has ended, stopped by the referee too, or not yet begun."""
-        return self._unbegun or self.frames.table.ended if self.visits is None else bool(self.visits.game[0, OVER])
+        return bool(self.tables.ended()[0])
 
     @property
     def on(self):
-        """Mask of the balls on, bit i for ball i."""
-        return balls_on(self.ball_on, mask(self.on_table)) if self.frames is None else self.frames.table.on
+        """Mask of the balls that may be struck first, bit i for ball i."""
+        return self.tables.on(0)
+
+    @property
+    def frame(self):
+        """The ``snooker_env.game.frame.Frame`` that is played; None in a visit."""
+        return self.tables.frame(0) if isinstance(self.tables, Frames) else None
+
+    @property
+    def physics(self):
+        """The ``Physics`` it is played by."""
+        return self.options.rules.physics
+
+    @property
+    def table(self):
+        """The ``Table`` it is played on."""
+        return self.options.rules.table
+
+    @property
+    def noise(self):
+        """The ``Noise`` of its strokes."""
+        return self.options.rules.noise
 
     def get_state(self):
         """The whole state as JSON types: table, game and random numbers. ``set_state`` brings it back exactly."""
-        table = self.frames.table.get_state() if self.visits is None else self.visits.get_state(0)
-        return table | {"rng": self.np_random.bit_generator.state}
+        return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state):
         """Take over a state from ``get_state``; the next shot plays on identically. ValueError if it is not sound, with nothing changed."""
-        self._take(self._checked(state), seed=None)
-
-    def _checked(self, state, *, to_play=False):
-        """The ``State`` or ``FrameState`` that it is; ValueError if it is not sound, or if it is ``to_play`` and there is no shot left."""
-        if self.visits is None:
-            return self.frames.checked(state, self.np_random, to_play=to_play)
-        return checked(state, self.table, self.physics.R, self.np_random, to_play=to_play)
+        self._take(self.tables.checked(state, self.np_random), seed=None)
 
     def _take(self, sound, *, seed):
         """Take over a sound state; with a seed the random numbers are not the state's but those of ``np_random``."""
         if seed is None:
             self.np_random.bit_generator.state, self._np_random_seed = sound.rng, -1  # Gymnasium's number for "not from a seed"
-        if self.visits is None:
-            self.frames.take(sound)
-            self._unbegun = False
-            return
-        self.visits.set_state(0, sound)
+        self.tables.set_state(0, sound)
         if seed is not None:
-            self.visits.seed(0, self.np_random)
+            self.tables.seed(0, self.np_random)
         self._seeded = True
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
@@ -242,103 +216,58 @@ class SnookerEnv(gymnasium.Env):
             raise refuse("options", options, 'must be None or {"state": ...}')
         for key in options or {}:
             choice("options", key, ("state",))
-        sound = self._checked(options["state"], to_play=True) if options else None
+        sound = self.tables.checked(options["state"], self.np_random, to_play=True) if options else None
         super().reset(seed=seed)
         if sound is not None:
             self._take(sound, seed=seed)
+        elif seed is not None or not self._seeded:
+            self.tables.seed(0, self.np_random)
+            self._seeded = True
         self.last_shot = None
-        if self.visits is None:
-            observation, info = self._reset_frame(sound is None)
-        else:
-            observation, info = self._reset_visit(sound is None, seed)
+        out = self.tables.output()
+        self.tables.reset(np.array([sound is None]), out, self._crew())
         if self.render_mode == "human":
             self._show()
-        return observation, info
-
-    def _reset_visit(self, fresh, seed):
-        if fresh and (seed is not None or not self._seeded):
-            self.visits.seed(0, self.np_random)
-            self._seeded = True
-        out = Returned(1)
-        self.visits.begin(np.array([fresh]), out, others=True)
-        return observations.shaped(self.observation, out.observations[0]), out.info(0)
-
-    def _reset_frame(self, fresh):
-        if fresh:
-            self._unbegun = True  # until the opponent has played, if it is he who breaks
-            self.frames.start(self._plan, self.np_random, self._watch if self.render_mode is not None else None)
-            self._unbegun = False
-        return self.frames.observe(), self._frame_info(None)
+        return observations.shaped(self.options.observation, out.observations[0]), self.tables.info(out, 0)
 
     def step(self, action):
         """Play one shot. ValueError if the action is not finite and within [-1, 1]."""
-        a = self.actions.check(action)
-        if self.over:
-            raise gymnasium.error.ResetNeeded(f"the {'visit' if self.frames is None else 'frame'} is over: call reset() before step()")
-        return self._visit_step(a) if self.frames is None else self._frame_step(a)
+        a = self.options.rules.actions.check(action)
+        tables = self.tables
+        if tables.ended()[0]:
+            raise gymnasium.error.ResetNeeded(f"the {self.options.task} is over: call reset() before step()")
+        out = tables.output()
+        try:
+            tables.step(np.array([a]), np.zeros(1, np.bool_), out, self._crew())
+        except BaseException:
+            tables.interrupted()
+            raise
+        observation = observations.shaped(self.options.observation, out.observations[0])
+        return observation, float(out.rewards[0]), bool(out.terminated[0]), bool(out.truncated[0]), tables.info(out, 0)
 
     def action_masks(self):
         """With ``action="discrete"``: which choices there are, bool (n,), as sb3-contrib's maskable algorithms ask for them."""
-        if self.frames is not None or not isinstance(self.actions, Choices):
+        if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
-        return self.visits.action_masks()[0]
+        return self.tables.action_masks()[0]
 
-    def _visit_step(self, a):
-        out = Returned(1)
-        self.visits.play(np.array([a]), np.zeros(1, np.bool_), out, self._work)
-        self.last_shot = (self._work.enlarged or self._work).shot(0, self.physics)
-        if self.render_mode == "human":
-            self._show(film=True)
-        observation = observations.shaped(self.observation, out.observations[0])
-        return observation, float(out.rewards[0]), bool(out.terminated[0]), False, out.info(0)
+    def _crew(self):
+        return Crew(self._buffers, (self.np_random,), self._watch)
 
-    def _frame_step(self, a):
-        try:
-            reward, played = self.frames.step(a, self.np_random, self._watch if self.render_mode is not None else None)
-        except BaseException:
-            self._unbegun = self.frames.table.frame.striker != AGENT  # the next action would be played for the opponent
-            raise
-        if played is not None and self.render_mode is None:
-            self.last_shot = played.shot
-        table = self.frames.table
-        return self.frames.observe(), reward, table.over, table.stopped, self._frame_info(played)
-
-    def _watch(self, shot):
-        """Called after each stroke of a frame, of either player, when there is something to see."""
-        self.last_shot = shot
+    def _watch(self, k, buffers, j, own):
+        """Called after each stroke of either player: all are shown, else the agent's own is kept."""
+        if own or self.render_mode is not None:
+            self.last_shot = buffers.shot(j, self.options.rules.physics)
         if self.render_mode == "human":
             self._show(film=True)
 
     def render(self):
         """The table with the cue ball's last path: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise."""
-        return self._pictures.render(self.positions, self.on_table, self.last_shot, self._text())
+        return self._pictures.render(self.positions, self.on_table, self.last_shot, self.tables.text(0))
 
     def close(self):
         """Close the window, if there is one."""
         self._pictures.close()
 
-    def _frame_info(self, played):
-        """What a step of a frame tells: of the agent's own stroke, if there was one, and of the frame; always the same keys."""
-        info = {
-            "points": 0.0, "break": float(self.points), "foul": False, "penalty": 0, "pots": 0, "fouls": 0, "ball_on": int(self.ball_on),
-            "first_ball": -1, "events": 0, "seconds": 0.0,
-        }  # fmt: skip
-        if played is not None:
-            stroke, verdict, shot = played.stroke, played.verdict, played.shot
-            info |= {
-                "points": float(verdict.points), "foul": bool(verdict.fouls), "penalty": int(verdict.penalty),
-                "pots": (stroke.potted & ~1).bit_count(), "fouls": int(verdict.fouls), "ball_on": int(played.ball_on),
-                "first_ball": (stroke.first & -stroke.first).bit_length() - 1, "events": len(shot.events), "seconds": shot.duration,
-            }  # fmt: skip
-        return info | self.frames.info()
-
-    # pictures --------------------------------------------------------------------------------------------------------------
-
-    def _text(self):
-        if self.frames is not None:
-            return self.frames.text()
-        reds = (mask(self.on_table) & REDS_MASK).bit_count()
-        return f"break {self.points}   on: {self.ball_on.name.lower().replace('_', ' ')}   reds: {reds}"
-
     def _show(self, *, film=False):
-        self._pictures.show(self.positions, self.on_table, self.last_shot, self._text(), film=film)
+        self._pictures.show(self.positions, self.on_table, self.last_shot, self.tables.text(0), film=film)

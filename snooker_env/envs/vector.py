@@ -4,9 +4,6 @@ gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry
 """
 
 import copy
-import os
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from typing import Any
 
 import gymnasium
@@ -16,20 +13,12 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from .._check import choice, integer, refuse, refuse_what
-from .._processors import processors
-from ..game.balls import BallOn
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
-from ..tasks.frame_table import MAX_STROKES
-from ..tasks.states import checked
-from ..tasks.visit import BALL_ON, COUNTS, NEVER, POINTS, REALS, Returned, Visits, Work
+from ..tasks.options import NEVER, Options, options_of
+from ..tasks.threads import Threads, processors
 from .pictures import Pictures
-from .snooker import SnookerEnv
-
-CHUNK = 128
-"""Most tables played in one go: few enough for a work space that stays in the cache, enough to make the calls from Python cheap."""
-LEAST = 8
-"""Fewest tables that are worth a thread or a chunk of their own."""
+from .snooker import TABLES, SnookerEnv
 
 PICTURES = ("rgb_array", "ansi")
 NOT_OF_A_TABLE = {
@@ -40,60 +29,80 @@ NOT_OF_A_TABLE = {
 """What ``call`` does not do for single tables, and what there is instead: the tables play, end and begin together."""
 
 
+OUTPUTS = {"observations": "observations", "rewards": "rewards", "terminations": "terminated", "truncations": "truncated"}
+"""What a step can write into arrays that it is given, and what ``StepOutput`` calls it."""
+DTYPES = {"observations": np.float32, "rewards": np.float64, "terminations": np.bool_, "truncations": np.bool_}
+
+
+def _check_out(name, a, shape, dtype):
+    """The array ``out[name]``; ValueError unless results can be written right into it."""
+    fits = isinstance(a, np.ndarray) and a.shape == shape and a.dtype == dtype
+    if not fits or not (a.flags.c_contiguous and a.flags.writeable and a.flags.aligned):
+        found = f"array of {a.dtype} and shape {a.shape}" if isinstance(a, np.ndarray) else type(a).__name__
+        raise refuse_what(f'out["{name}"]', found, f"must be a C-contiguous, writeable array of {np.dtype(dtype)} and shape {shape}")
+    return a
+
+
 class SnookerVectorEnv(VectorEnv):
-    """Many visits side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
+    """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
     ``num_envs`` tables; ``autoreset_mode``: NEXT_STEP, SAME_STEP or DISABLED (of ``gymnasium.vector.AutoresetMode``, or its value);
-    ``threads``: how many to use, None for one per core, results do not depend on it; ``max_episode_steps``: strokes after which a visit
-    is truncated. All other arguments are those of ``SnookerEnv`` in a visit; a frame needs "sync" or "async". Pictures show the balls as
-    they lie, without paths; a window ("human") shows one environment only.
+    ``threads``: how many to use, None for one per core, results do not depend on it; ``max_episode_steps``: steps after which an episode
+    is truncated. All other arguments are those of ``SnookerEnv``: keywords, or ``options``, which holds them all. Pictures show the balls
+    as they lie, without paths; a window ("human") shows one environment only.
+
+    In a frame the opponents "random" and "ghost_ball" play as kernels. A callable is asked in Python, table by table; one that has a method
+    ``many(observations, generators, masks) -> actions`` is called once for all tables that wait for it, and so is a saved model (whose
+    arithmetic on many rows may differ in the last bits from that on one).
 
     ``reset(seed=...)`` takes an int, a list or None as ``SyncVectorEnv`` does; options: "reset_mask" (bool array: only those tables),
     "state" (of ``SnookerEnv.get_state``, for all of them) or "states" (of ``get_state``: a list of one each). A state holds its random
     numbers, so that all tables given one state meet the same errors of ``noise``; with a seed too, table k draws them from seed + k.
+
+    ``reset`` and ``step`` write into arrays that they are given: ``out={"observations": ..., "rewards": ..., "terminations": ...,
+    "truncations": ...}``, any of them, of the right shape and dtype, C-contiguous (shared memory, for instance); these are returned.
     """
 
     metadata = SnookerEnv.metadata
 
     def __init__(
-        self, num_envs=1, *, max_episode_steps=None, render_mode=None, autoreset_mode=AutoresetMode.NEXT_STEP, threads=None, task="visit",
-        layout="default", action="box", aim="absolute", observation="flat", noise="none", reward="points", elevation=False, placement=False,
-        physics="paper", table="match", fidelity="standard", opponent="none", miss="off", decision=False, max_strokes=MAX_STROKES,
-        trust=False,
-    ):  # fmt: skip
-        if task == "frame":
-            raise refuse("task", task, 'must be "visit" here; for frames gymnasium.make_vec has vectorization_mode="sync" and "async"')
-        choice("task", task, ("visit",))
+        self,
+        num_envs: int = 1,
+        options: Options | None = None,
+        *,
+        max_episode_steps: int | None = None,
+        render_mode: str | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        threads: int | None = None,
+        **given: Any,
+    ):
         self.num_envs = integer("num_envs", num_envs, 1, 2**24)
-        self._threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
+        threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
         self.autoreset_mode = autoreset_mode if isinstance(autoreset_mode, AutoresetMode) else AutoresetMode(autoreset_mode)
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
         if render_mode is not None:
             choice("render_mode", render_mode, PICTURES)
-        self._one = SnookerEnv(
-            task=task, layout=layout, action=action, aim=aim, observation=observation, noise=noise, reward=reward, elevation=elevation,
-            placement=placement, physics=physics, table=table, fidelity=fidelity, render_mode=render_mode, opponent=opponent, miss=miss,
-            decision=decision, max_strokes=max_strokes, trust=trust,
-        )  # fmt: skip
-        shooter = self._one.shooter
+        self.options = options_of(options, given)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
-        self.render_mode, self.observation, self.shooter = render_mode, observation, shooter
+        self.render_mode = render_mode
+        self._one = SnookerEnv(self.options, render_mode=render_mode)
         self.single_action_space, self.single_observation_space = self._one.action_space, self._one.observation_space
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
-        self.visits = Visits(replace(self._one.visits.rules, limit=limit), self.num_envs)
-        self._pictures = Pictures(shooter.table, render_mode)
+        self.tables = TABLES[self.options.task](self.options.rules, self.num_envs, limit=limit)
+        """The tables: ``tasks.tables.Tables``."""
+        self._pictures = Pictures(self.options.rules.table, render_mode)
         self._generators: list[Any] = [None] * self.num_envs
         self._generator_seeds = [-1] * self.num_envs
         self._keyed = np.zeros(self.num_envs, np.bool_)  # has the table's stream a key?
         self._begun = np.zeros(self.num_envs, np.bool_)
         self._done = np.zeros(self.num_envs, np.bool_)
-        self._pool, self._pool_process, self._works = None, 0, []
+        self._crew = Threads(threads)
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
-    def reset(self, *, seed: int | list[int | None] | None = None, options=None):
-        """New visits on all tables, or on those of ``options["reset_mask"]``."""
+    def reset(self, *, seed: int | list[int | None] | None = None, options=None, out=None):
+        """New visits or frames on all tables, or on those of ``options["reset_mask"]``."""
         options = {} if options is None else options
         if not isinstance(options, dict):
             raise refuse("options", options, "must be None or a dict")
@@ -103,6 +112,7 @@ class SnookerVectorEnv(VectorEnv):
         states = self._states(options)
         if not (wanted | self._begun).all():
             raise gymnasium.error.ResetNeeded(f"table {int(np.argmin(wanted | self._begun))} has no visit yet: reset all tables first")
+        given = self._given(out, ("observations",))
         tables = np.flatnonzero(wanted).tolist()
         made = {k: seeding.np_random(seeds[k]) for k in tables if seeds[k] is not None or self._generators[k] is None}
         for k, own in made.items():
@@ -111,47 +121,55 @@ class SnookerVectorEnv(VectorEnv):
             if states is not None:
                 self._set_state(k, states[k], seeded=seeds[k] is not None)
             if seeds[k] is not None or not self._keyed[k]:
-                self.visits.seed(k, self._generators[k])
+                self.tables.seed(k, self._generators[k])
                 self._keyed[k] = True
         fresh = wanted if states is None else np.zeros(self.num_envs, np.bool_)
+        written = self.tables.output(given=given)
+        self._crew.generators = self._generators
+        try:
+            self.tables.reset(fresh, written, self._crew)
+        except BaseException:
+            self._begun[:] = False  # an opponent who breaks has played on some tables and not on others
+            raise
         self._begun |= wanted
         self._done[wanted] = False
-        out = Returned(self.num_envs)
-        self.visits.begin(fresh, out, others=True)
-        return observations.shaped(self.observation, out.observations), self._infos(out.reals, out.counts, wanted)
+        return self._shaped(written, out), self.tables.infos(written.reals, written.counts, wanted)
 
-    def step(self, actions):
-        """One stroke on each table. ValueError, before anything is played, if an action is not finite and within [-1, 1]."""
-        a = self.shooter.actions.check_many(actions, self.num_envs)
+    def step(self, actions, *, out=None):
+        """One step of each table. ValueError, before anything is played, if an action is not finite and within [-1, 1]."""
+        a = self.options.rules.actions.check_many(actions, self.num_envs)
+        given = self._given(out, OUTPUTS)
         if not self._begun.all():
             raise gymnasium.error.ResetNeeded("call reset() before step()")
         mode = self.autoreset_mode
         if mode == AutoresetMode.DISABLED and self._done.any():
             k = int(np.argmax(self._done))
-            raise gymnasium.error.ResetNeeded(f'the visit on table {k} is over: reset(options={{"reset_mask": ...}}) before step()')
+            what = self.options.task
+            raise gymnasium.error.ResetNeeded(f'the {what} on table {k} is over: reset(options={{"reset_mask": ...}}) before step()')
         same_step = mode == AutoresetMode.SAME_STEP
         waiting = self._done if mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, np.bool_)
-        out = Returned(self.num_envs, last=same_step)
+        written = self.tables.output(last=same_step, given=given)
+        self._crew.generators = self._generators
         try:
-            self._play(a, waiting, out, same_step)
+            self.tables.step(a, waiting, written, self._crew, same_step=same_step)
         except BaseException:
             self._begun[:] = False  # some tables have played and some not
             raise
-        done = out.terminated | out.truncated
-        infos = self._infos(out.reals, out.counts, np.ones(self.num_envs, np.bool_))
+        done = written.terminated | written.truncated
+        infos = self.tables.infos(written.reals, written.counts, np.ones(self.num_envs, np.bool_))
         if same_step:
             self._done = np.zeros(self.num_envs, np.bool_)
             if done.any():
-                infos |= self._final(out, done)
+                infos |= self._final(written, done)
         else:
             self._done = done
-        return observations.shaped(self.observation, out.observations), out.rewards, out.terminated, out.truncated, infos
+        return self._shaped(written, out), written.rewards, written.terminated, written.truncated, infos
 
     def action_masks(self):
         """With ``action="discrete"``: which choices there are on each table, bool (num_envs, n)."""
-        if not isinstance(self.shooter.actions, Choices):
+        if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
-        return self.visits.action_masks()
+        return self.tables.action_masks()
 
     def call(self, name, *args, **kwargs):
         """For each table what ``SnookerEnv`` calls ``name``, an attribute or a method (which gets the arguments): a tuple, as
@@ -172,30 +190,23 @@ class SnookerVectorEnv(VectorEnv):
 
     def _table(self, k, generator):
         """Table k as a ``SnookerEnv``; they share the table's state."""
-        env, visits, here = copy.copy(self._one), copy.copy(self.visits), slice(k, k + 1)
-        visits.positions, visits.on_table, visits.game = self.visits.positions[here], self.visits.on_table[here], self.visits.game[here]
-        visits.n, visits.streams = 1, self.visits.streams[here]
-        env.visits, env._np_random, env._np_random_seed = visits, generator, self._generator_seeds[k]
+        env = copy.copy(self._one)
+        env.tables, env._np_random, env._np_random_seed = self.tables.view(k), generator, self._generator_seeds[k]
         return env
 
     def render(self):
         """A picture of each table: uint8 (H, W, 3) for "rgb_array", str for "ansi"."""
-        shown = []
-        for p, on, game in zip(self.visits.positions, self.visits.on_table, self.visits.game, strict=True):
-            text = f"break {game[POINTS]}   on: {BallOn(game[BALL_ON]).name.lower().replace('_', ' ')}"
-            shown.append(self._pictures.render(p, on, None, text))
-        return tuple(shown)
+        t = self.tables
+        return tuple(self._pictures.render(t.positions[k], t.on_table[k], None, t.text(k)) for k in range(self.num_envs))
 
     def close_extras(self, **kwargs):
         """End the threads."""
-        if self._pool is not None and self._pool_process == os.getpid():
-            self._pool.shutdown()
-        self._pool = None
+        self._crew.shutdown()
 
     @property
     def threads(self):
         """How many threads play the tables, fixed when the environment is made."""
-        return self._threads
+        return self._crew.threads
 
     @property
     def np_random(self):
@@ -217,16 +228,13 @@ class SnookerVectorEnv(VectorEnv):
 
     def get_state(self):
         """The state of each table, as ``SnookerEnv.get_state`` gives it; strokes towards ``max_episode_steps`` are not part of it."""
-        return [self.visits.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)]
+        return [self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)]
 
     def _set_state(self, k, state, *, seeded):
         if not seeded:
             self._generators[k].bit_generator.state, self._generator_seeds[k] = state.rng, -1
-        self.visits.set_state(k, state)
+        self.tables.set_state(k, state)
         self._keyed[k] = True
-
-    def __getstate__(self):
-        return self.__dict__ | {"_pool": None, "_works": []}  # threads belong to one process
 
     # parts of reset and step -----------------------------------------------------------------------------------------------
 
@@ -248,7 +256,7 @@ class SnookerVectorEnv(VectorEnv):
         return mask.copy()
 
     def _states(self, options):
-        """The ``State`` of each table, checked, or None."""
+        """The sound state of each table, or None."""
         if "state" in options:
             states, each = [options["state"]], self.num_envs
         elif "states" in options:
@@ -259,48 +267,42 @@ class SnookerVectorEnv(VectorEnv):
         else:
             return None
         generator = self.np_random[0]
-        return [checked(state, self.shooter.table, self.shooter.physics.R, generator, to_play=True) for state in states] * each
+        return [self.tables.checked(state, generator, to_play=True) for state in states] * each
 
-    def _play(self, actions, waiting, out, same_step):
-        """Share the tables out among the threads, a chunk at a time."""
-        threads = max(1, min(self.threads, self.num_envs // LEAST))
-        even = self.num_envs if threads == 1 else max(LEAST, -(-self.num_envs // (4 * threads)))  # shots differ in length
-        size = min(CHUNK, even)
-        while len(self._works) < threads:
-            self._works.append(Work(size))
-        starts = iter(range(0, self.num_envs, size))
+    def _given(self, out, names):
+        """The arrays to write into, by the names of ``StepOutput``. Raises ValueError unless they are what is written."""
+        if out is None:
+            return {}
+        if not isinstance(out, dict):
+            raise refuse("out", type(out).__name__, f"must be None or a dict of {', '.join(names)}")
+        for name in out:
+            choice("out", name, names)
+        n, found = self.num_envs, {}
+        for name, a in out.items():
+            if name == "observations" and self.options.observation != "flat":
+                if not isinstance(a, dict) or set(a) != {"balls", "state"}:
+                    raise refuse('out["observations"]', type(a).__name__, 'must be a dict of "balls" and "state"')
+                for part, box in self.observation_space.spaces.items():  # type: ignore[attr-defined]
+                    _check_out(f"observations.{part}", a[part], box.shape, np.float32)
+                continue
+            shape = (n, self.tables.SIZE) if name == "observations" else (n,)
+            found[OUTPUTS[name]] = _check_out(name, a, shape, DTYPES[name])
+        return found
 
-        def play(work):
-            for start in starts:  # a range's iterator gives each start once, whichever thread asks
-                here = slice(start, start + size)
-                self.visits.play(actions[here], waiting[here], out, work, start, same_step=same_step)
-
-        if threads == 1:
-            play(self._works[0])
-            return
-        if self._pool is None or self._pool_process != os.getpid():  # a forked process has none of its parent's threads
-            self._pool, self._pool_process = ThreadPoolExecutor(threads - 1, "snooker"), os.getpid()
-        others = [self._pool.submit(play, work) for work in self._works[1:threads]]
-        try:
-            play(self._works[0])
-        finally:
-            for other in others:
-                other.exception()  # wait for all of them, whatever happened
-        for other in others:
-            other.result()
-
-    def _infos(self, reals, counts, there):
-        """Infos as Gymnasium's vector environments give them: an array a key, and a mask of the tables that it is about."""
-        columns = [*zip(REALS, reals.T, strict=True), *zip(COUNTS, counts.T, strict=True)]
-        infos: dict[str, Any] = {name: column * there for name, column in columns}
-        infos["foul"] = infos["fouls"] != 0
-        return infos | {f"_{name}": there.copy() for name in infos}
+    def _shaped(self, written, out):
+        """The observations as the environment's kind; in the arrays of ``out`` if these are given."""
+        made = observations.shaped(self.options.observation, written.observations)
+        if out is not None and "observations" in out and self.options.observation != "flat":
+            for name, array in out["observations"].items():
+                array[...] = made[name]
+            return out["observations"]
+        return made
 
     def _final(self, out, done):
-        """What SAME_STEP adds: how the visits ended that ended in this step."""
-        rows = observations.shaped(self.observation, out.last_observations)
-        each = rows if self.observation == "flat" else ({name: rows[name][k] for name in rows} for k in range(self.num_envs))
+        """What SAME_STEP adds: how the episodes ended that ended in this step."""
+        rows = observations.shaped(self.options.observation, out.last_observations)
+        each = rows if self.options.observation == "flat" else ({name: rows[name][k] for name in rows} for k in range(self.num_envs))
         final = np.fromiter(each, object, self.num_envs)
         final[~done] = None
-        info = self._infos(out.last_reals, out.last_counts, done)
+        info = self.tables.infos(out.last_reals, out.last_counts, done)
         return {"final_obs": final, "_final_obs": done.copy(), "final_info": info, "_final_info": done.copy()}

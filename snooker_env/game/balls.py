@@ -23,6 +23,7 @@ NAMES = ("cue", *(f"red {i}" for i in range(1, 16)), *COLOUR_NAMES)
 VALUES = np.array([0] + [1] * 15 + [2, 3, 4, 5, 6, 7], dtype=np.int64)
 """Points by id; the cue ball has none."""
 
+_BITS = 1 << np.arange(N_BALLS)
 CUE_BIT = 1
 REDS_MASK = 0xFFFE
 COLOURS_MASK = 0x3F0000
@@ -143,6 +144,11 @@ def mask_of(balls):
     for ball in balls:
         mask |= 1 << integer("ball", ball, 0, N_BALLS - 1)
     return mask
+
+
+def mask_of_present(on_table):
+    """The mask of a bool array (22,)."""
+    return int(on_table @ _BITS)
 
 
 def ids_of(mask):

@@ -151,15 +151,14 @@ def _deal(code, tables, stream, positions, on_table, found):
 
 
 @entry(what="the dealing of tables", seconds=4)
-def deal_tables(wanted, code, tables, streams, positions, on_table):
-    """Deal a new layout on each table k that is ``wanted``, from its own stream: positions (n, 22, 2), on_table (n, 22), in place.
+def deal_tables(which, code, tables, streams, positions, on_table):
+    """Deal a new layout on each of the tables ``which``, from its own stream: positions (n, 22, 2), on_table (n, 22), in place.
 
     ``code`` and ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64.
     """
     found = np.empty((1, POT_COLUMNS))
-    for k in range(wanted.shape[0]):
-        if wanted[k]:
-            _deal(code, tables, streams[k], positions[k], on_table[k], found)
+    for k in which:
+        _deal(code, tables, streams[k], positions[k], on_table[k], found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,7 +218,7 @@ def layout(plan, rng):
     """
     plan = plan if isinstance(plan, Plan) else plan_of(plan)
     positions, on_table = np.empty((1, N_BALLS, 2)), np.empty((1, N_BALLS), np.bool_)
-    deal_tables(np.ones(1, np.bool_), plan.code, plan.tables, stream_of(rng)[None], positions, on_table)
+    deal_tables(np.zeros(1, np.int64), plan.code, plan.tables, stream_of(rng)[None], positions, on_table)
     return positions[0], on_table[0]
 
 

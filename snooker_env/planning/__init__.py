@@ -14,7 +14,7 @@ as an action (``as_actions``, ``actions_of``, ``pot_aim``)? What does it lead to
 (2, (2, 121))
 """
 
-from .._processors import processors
+from ..tasks.threads import processors
 from .geometry import Paths, Pots, clear_paths, obstructions, pots
 from .planner import Outcomes, Planner
 from .position import Position

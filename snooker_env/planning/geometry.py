@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from .._check import array, integer
 from .._jit import entry, kernel
 from ..game.balls import BALL_RADIUS, N_BALLS, balls_on_kernel, bits
+from ..game.frame_columns import BALL_ON
 from ..game.paths import clear_path, full_ball_path
 from ..game.pots import POT_COLUMNS, find_pots
 from ..game.snookered import segment_distance
 from ..tasks.discrete_actions import POTS
-from ..tasks.visit import BALL_ON
 from .positions import Positions, rows_of
 
 
@@ -86,7 +86,7 @@ def pots(positions: Any, most: int = POTS) -> Pots:
     >>> from snooker_env.planning import Position, pots
     >>> found = pots(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)))
     >>> found.ball[0].tolist(), found.pocket[0].tolist(), found.tolerance[0, 0].round(5).item()
-    ([21, 21, -1, -1], [3, 4, -1, -1], 0.00156)
+    ([21, 21, -1, -1], [3, 4, -1, -1], 0.00023)
     """
     at, most = Positions.of(positions), integer("most", most, 1, 6 * (N_BALLS - 1))
     m = len(at)

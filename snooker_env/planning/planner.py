@@ -1,32 +1,24 @@
 """What would strokes lead to? ``Planner`` plays them on copies of positions, under given noise samples, with the rules, on all cores."""
 
 import copy
-import os
 import threading
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import fields, is_dataclass
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._check import integer, refuse_what
-from .._processors import processors
-from ..game.layouts import plan_of
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..tasks.noise import Noise
+from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
-from ..tasks.stroke import Shooter
-from ..tasks.visit import Returned, Rules, Visits, Work
+from ..tasks.threads import Threads, processors
+from ..tasks.visit import Visits
 from . import strokes
-from .positions import Positions, bare, check_played, frame_table, rows_of
-
-CHUNK = 128
-"""Strokes played in one go: their work space stays in the cache."""
-LEAST = 8
-"""Fewest strokes that are worth a chunk of their own."""
+from .positions import Positions, bare, check_played, rows_of
 
 
 class Outcomes(NamedTuple):
@@ -59,9 +51,9 @@ class Planner:
 
     Parameters
     ----------
-    env_or_options : environment, dict or dataclass
-        An environment, of one table or many, wrapped or not, a match too; or the keyword arguments of ``gymnasium.make("Snooker-v0",
-        ...)``. It says how actions are read, the noise, the physics, the table and the fidelity. It is only read.
+    env_or_options : environment, Options or dict
+        An environment, of one table or many, wrapped or not, a match too; or its options, as ``Options`` or as the keyword arguments of
+        ``gymnasium.make("Snooker-v0", ...)``. They say how actions are read, the noise, the physics, the table and the fidelity.
     noise : str, dict or Noise, optional
         Execution noise to plan with in place of its own; "none": strokes come out as intended.
     threads : int, optional
@@ -87,15 +79,12 @@ class Planner:
     """
 
     def __init__(self, env_or_options: Any, *, noise: Any = None, threads: int | None = None):
-        shooter = _shooter_of(env_or_options)
-        errors = shooter.noise if noise is None else Noise.of(noise)
-        self._shooter = Shooter(shooter.actions, errors, shooter.physics, shooter.table, shooter.fidelity)
-        self._threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
-        self._visits = Visits(Rules(self._shooter, plan_of("colours"), REWARDS[0]), 0)  # no visit begins here: nothing is dealt
-        self._free: list[Work] = []
+        rules = _rules_of(env_or_options)
+        errors = rules.noise if noise is None else Noise.of(noise)
+        self._rules = replace(rules, noise=errors, reward=REWARDS[0], opponent=None)
+        self._threads = Threads(min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024))
+        self._visits = Visits(self._rules, 0)
         self._lock = threading.Lock()
-        self._pool: ThreadPoolExecutor | None = None
-        self._pool_process = 0
         self._shots = 0
 
     @property
@@ -106,32 +95,32 @@ class Planner:
     @property
     def threads(self) -> int:
         """How many threads play."""
-        return self._threads
+        return self._threads.threads
 
     @property
     def noise(self) -> Noise:
         """The execution noise that strokes are played with."""
-        return self._shooter.noise
+        return self._rules.noise
 
     @property
     def physics(self) -> Physics:
         """The world that strokes are played in."""
-        return self._shooter.physics
+        return self._rules.physics
 
     @property
     def table(self) -> Table:
         """The table that strokes are played on."""
-        return self._shooter.table
+        return self._rules.table
 
     @property
     def action_space(self) -> Any:
         """The space that rows of actions are from."""
-        return self._shooter.actions.space
+        return self._rules.actions.space
 
     @property
     def discrete(self) -> bool:
         """Whether actions are choices (``action="discrete"``)."""
-        return self._shooter.actions.size == 1
+        return self._rules.actions.size == 1
 
     def play(self, positions: Any, rows: ArrayLike, actions: ArrayLike, keys: ArrayLike | None = None) -> Outcomes:
         """Play n strokes, each on a copy of its position.
@@ -168,7 +157,7 @@ class Planner:
         at = Positions.of(positions)
         which = rows_of(at, rows)
         n = len(which)
-        rows_of_actions = self._shooter.actions.check_many(actions, n)
+        rows_of_actions = self._rules.actions.check_many(actions, n)
         streams = _streams(keys, n, self.noise.silent)
         check_played(at, which, self.table, self.physics.R)
         outcomes = self._strokes(at[which], rows_of_actions, streams)
@@ -179,47 +168,11 @@ class Planner:
     def _strokes(self, after: Positions, actions: NDArray[np.float64], streams: NDArray[np.uint64]) -> Outcomes:
         """Play a stroke on each row of ``after``, which becomes its afterstate. The one place that knows how visits are played."""
         n = len(after)
-        visits, out, waiting = copy.copy(self._visits), Returned(n), np.zeros(n, np.bool_)
-        visits.n, visits.streams = n, streams
-        visits.positions, visits.on_table, visits.game = after.positions, after.on_table, after.game
-
-        def play(work: Work, start: int, end: int) -> None:
-            visits.play(actions[start:end], waiting[start:end], out, work, start)
-
-        self._share(play, n)
+        visits = copy.copy(self._visits)
+        visits.n, visits.positions, visits.on_table, visits.game, visits.streams = n, after.positions, after.on_table, after.game, streams
+        out = visits.output()
+        visits.step(actions, np.zeros(n, np.bool_), out, self._threads)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
-
-    def _share(self, play: Any, n: int) -> None:
-        """Call ``play(work, start, end)`` for chunks of n strokes, on as many threads as there are and as are worth it."""
-        threads = max(1, min(self._threads, n // LEAST))
-        size = CHUNK if threads == 1 else min(CHUNK, max(LEAST, -(-n // (4 * threads))))  # shots differ in length
-        starts = iter(range(0, n, size))
-
-        def run() -> None:
-            try:
-                work = self._free.pop()
-            except IndexError:
-                work = Work(CHUNK)
-            try:
-                for start in starts:  # a range's iterator gives each start once, whichever thread asks
-                    play(work, start, min(n, start + size))
-            finally:
-                self._free.append(work)
-
-        if threads == 1:
-            run()
-            return
-        with self._lock:
-            if self._pool is None or self._pool_process != os.getpid():  # a forked process has none of its parent's threads
-                self._pool, self._pool_process = ThreadPoolExecutor(self._threads - 1, "planner"), os.getpid()
-            others = [self._pool.submit(run) for _ in range(threads - 1)]
-        try:
-            run()
-        finally:
-            for other in others:
-                other.exception()  # wait for all of them, whatever happened
-        for other in others:
-            other.result()
 
     def as_actions(self, positions: Any, rows: ArrayLike, choices: ArrayLike) -> NDArray[np.float32]:
         """``snooker_env.planning.as_actions`` in this planner's world.
@@ -234,7 +187,7 @@ class Planner:
         float32 (n, 4)
             Actions of ``aim="absolute"``.
         """
-        return strokes.solved_choices(Positions.of(positions), rows, choices, (self.physics, self._shooter.fidelity))
+        return strokes.solved_choices(Positions.of(positions), rows, choices, (self.physics, self._rules.fidelity))
 
     def pot_aim(
         self, positions: Any, rows: ArrayLike, balls: ArrayLike, targets: ArrayLike, speeds: ArrayLike, *, side: ArrayLike = 0.0,
@@ -252,29 +205,25 @@ class Planner:
         float64 (n,)
             Directions of the cue ball [rad].
         """
-        world = (self.physics, self._shooter.fidelity)
+        world = (self.physics, self._rules.fidelity)
         return strokes.solved_aims(Positions.of(positions), rows, balls, targets, speeds, side, top, elevation, ghosts, world)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_lock"} | {"_pool": None, "_free": []}
+        return {name: value for name, value in self.__dict__.items() if name != "_lock"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__ |= state | {"_lock": threading.Lock()}  # threads and locks belong to one process
+        self.__dict__.update(state, _lock=threading.Lock())  # which belongs to one process
 
 
-def _shooter_of(source: Any) -> Shooter:
-    """How an environment, or one of these options, reads actions and plays shots."""
-    if is_dataclass(source) and not isinstance(source, type):
-        source = {field.name: getattr(source, field.name) for field in fields(source)}
+def _rules_of(source: Any) -> Rules:
+    """How an environment plays, or one of these options."""
     if isinstance(source, Mapping):
-        from ..envs.snooker import SnookerEnv
-
-        return SnookerEnv(**source).shooter
-    env = bare(source)
-    shooter = getattr(env, "shooter", None) or getattr(frame_table(env), "shooter", None)
-    if not isinstance(shooter, Shooter):
-        raise refuse_what("env_or_options", f"a {type(source).__name__}", "must be an environment of snooker_env, or a dict of its options")
-    return shooter
+        source = options_of(None, source)
+    options = source if isinstance(source, Options) else getattr(bare(source), "options", None)
+    if not isinstance(options, Options):
+        allowed = "must be an environment of snooker_env, an Options, or a dict of its fields"
+        raise refuse_what("env_or_options", f"a {type(source).__name__}", allowed)
+    return options.rules
 
 
 def _streams(keys: ArrayLike | None, n: int, silent: bool) -> NDArray[np.uint64]:

@@ -7,11 +7,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._check import array, integer, refuse, refuse_what, truth
-from ..game.balls import BALL_RADIUS, COLOUR_NAMES, CUE, N_BALLS, N_REDS, REDS_MASK, SPOTS, BallOn, balls_on, colour, next_on
+from ..game.balls import (
+    BALL_RADIUS,
+    COLOUR_NAMES,
+    CUE,
+    N_BALLS,
+    N_REDS,
+    REDS_MASK,
+    SPOTS,
+    BallOn,
+    balls_on,
+    colour,
+    mask_of_present,
+    next_on,
+)
 from ..game.frame import MOST_BREAK
 from ..game.in_hand import place_cue, within_d
 from ..physics.table import Table
-from ..tasks.stroke import mask
 
 ON = tuple(ball.name.lower() for ball in BallOn)
 """What may be on, in words."""
@@ -90,7 +102,7 @@ class Position:
             positions[CUE] = place_cue(positions, on_table, *SPOTS[CUE].tolist())
             put("cue", tuple(positions[CUE].tolist()))
         _check_layout(positions, on_table, Table.of(table))
-        put("on", _named(self.on, mask(on_table)))
+        put("on", _named(self.on, mask_of_present(on_table)))
         if not self.over:
             check_playable(on_table, BallOn[str(self.on).upper()], on="on", cue="cue", balls="the balls given")
             if self.in_hand and not within_d(*positions[CUE]):
@@ -182,7 +194,7 @@ def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue
 
     The rules are those of a saved state (``tasks.states.checked``).
     """
-    there = mask(on_table)
+    there = mask_of_present(on_table)
     if not there & 1:
         raise refuse(cue, None, "must be on the table while the visit goes on")
     if not balls_on(ball_on, there):

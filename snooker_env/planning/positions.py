@@ -8,17 +8,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._check import array, refuse, refuse_what
 from .._jit import entry
-from ..game.balls import CUE, N_BALLS, BallOn, balls_on_kernel, bits
+from ..game.balls import CUE, N_BALLS, BallOn, balls_on_kernel, bits, mask_of_present
 from ..game.frame import MOST_BREAK
+from ..game.frame_columns import BALL_ON, FREE_BALL, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
 from ..physics.table import Table
-from ..tasks.frame_table import FrameTable
 from ..tasks.observations import SIZE, observe_into
-from ..tasks.stroke import mask
-from ..tasks.visit import BALL_ON, IN_HAND, OVER, POINTS, Visits
+from ..tasks.tables import Tables
 from .position import Position, check_playable
-
-COLUMNS = 5
-"""Columns of ``Positions.game``: ball on, in hand, points, over, strokes."""
 
 
 @entry
@@ -72,8 +68,8 @@ class Positions:
         there, columns = np.asarray(on_table), np.asarray(game)
         if there.shape != (m, N_BALLS) or there.dtype != np.bool_:
             raise refuse_what("on_table", f"{there.dtype} array of shape {there.shape}", f"must be bool of shape {(m, N_BALLS)}")
-        if columns.shape != (m, COLUMNS) or columns.dtype.kind not in "iu":
-            raise refuse_what("game", f"{columns.dtype} array of shape {columns.shape}", f"must be integers of shape {(m, COLUMNS)}")
+        if columns.shape != (m, VISIT_COLUMNS) or columns.dtype.kind not in "iu":
+            raise refuse_what("game", f"{columns.dtype} array of shape {columns.shape}", f"must be integers of shape {(m, VISIT_COLUMNS)}")
         self.on_table: NDArray[np.bool_] = np.ascontiguousarray(there)
         self.game: NDArray[np.int64] = np.ascontiguousarray(columns, np.int64)
 
@@ -104,13 +100,9 @@ class Positions:
         if isinstance(source, list | tuple) and source and all(isinstance(one, Position | Mapping) for one in source):
             positions, on_table, game = zip(*map(_arrays, source), strict=True)
             return cls(np.stack(positions), np.stack(on_table), np.stack(game))
-        env = bare(source)
-        visits = getattr(env, "visits", None)
-        if isinstance(visits, Visits):
-            return cls(visits.positions.copy(), visits.on_table.copy(), visits.game.copy())
-        table = frame_table(env)
-        if table is not None:
-            return _of_frame(table)
+        tables = getattr(bare(source), "tables", None)
+        if isinstance(tables, Tables):
+            return _of_tables(tables)
         raise refuse_what(
             "positions", f"a {type(source).__name__}", "must be Positions, a Position, a state, a list of these, or an environment"
         )
@@ -205,24 +197,20 @@ def _arrays(one: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[n
 
 
 def bare(env: Any) -> Any:
-    """The environment below all wrappers, of Gymnasium, PettingZoo or Stable-Baselines3."""
+    """The environment of this package below all wrappers, of Gymnasium, PettingZoo or Stable-Baselines3."""
     env = getattr(env, "unwrapped", env)
-    return getattr(env, "tables", env)
+    inner = getattr(env, "tables", None)
+    return env if inner is None or isinstance(inner, Tables) else inner  # SnookerVecEnv has an environment of many tables
 
 
-def frame_table(env: Any) -> FrameTable | None:
-    """The table of an environment that plays whole frames, or of a match; None if it plays none."""
-    table = getattr(getattr(env, "frames", None), "table", None) or getattr(env, "table", None)
-    return table if isinstance(table, FrameTable) else None
-
-
-def _of_frame(table: FrameTable) -> Positions:
-    """The stroke to come in a frame, as one of a visit."""
-    frame = table.frame
-    if frame.free_ball:
-        raise refuse("free_ball", True, "must be False: a planned stroke is judged as one of a visit, which knows no free ball")
-    game = [[int(frame.ball_on), frame.in_hand, frame.break_points, frame.phase == "over", 0]]
-    return Positions(np.array(table.positions)[None], np.array(table.on_table)[None], np.array(game, np.int64))
+def _of_tables(tables: Tables) -> Positions:
+    """Of an environment's tables; the stroke to come in a frame as one of a visit."""
+    game = tables.game[:, :VISIT_COLUMNS].copy()
+    game[:, STEPS] = 0
+    if tables.game.shape[1] > FREE_BALL and (free := tables.game[:, FREE_BALL] != 0).any():
+        field = f"free ball on table {int(np.argmax(free))}"
+        raise refuse(field, True, "must be False: a planned stroke is judged as one of a visit, which knows no free ball")
+    return Positions(tables.positions.copy(), tables.on_table.copy(), game)
 
 
 def rows_of(at: Positions, rows: ArrayLike, n: int | None = None) -> NDArray[np.int64]:
@@ -273,6 +261,6 @@ def _refuse_row(at: Positions, k: int) -> None:
     ball_on = int(at.ball_on[k])
     if not BallOn.NOTHING <= ball_on <= BallOn.BLACK:
         raise refuse(f"{at_k}.ball_on", ball_on, f"must be in [{int(BallOn.NOTHING)}, {int(BallOn.BLACK)}]")
-    balls = f"mask {mask(at.on_table[k]):#x} of {at_k}.on_table"
+    balls = f"mask {mask_of_present(at.on_table[k]):#x} of {at_k}.on_table"
     check_playable(at.on_table[k], BallOn(ball_on), on=f"{at_k}.ball_on", cue=f"{at_k}.cue", balls=balls)
     raise refuse(f"{at_k}.points", int(at.points[k]), f"must be in [0, {MOST_BREAK}]")

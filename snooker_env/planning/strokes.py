@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._check import array, integer, number, refuse, refuse_what
 from .._jit import entry
 from ..game.balls import BALL_RADIUS, N_BALLS, balls_on_kernel, bits
+from ..game.frame_columns import BALL_ON
 from ..game.pots import POT_COLUMNS
 from ..physics.cloth import COLUMNS
 from ..physics.cue import MAX_ELEVATION, squirt
@@ -21,7 +22,6 @@ from ..physics.parameters import Physics
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.discrete_actions import POTS, SIZE, chosen, masks
 from ..tasks.pot_aim import solved_aim
-from ..tasks.visit import BALL_ON
 from .positions import Positions, rows_of
 
 World = tuple[Physics, tuple[int, int]]
@@ -52,7 +52,7 @@ def action_masks(positions: Any) -> NDArray[np.bool_]:
     """
     at = Positions.of(positions)
     out = np.empty((len(at), SIZE), np.bool_)
-    masks(at.positions, at.on_table, at.ball_on.copy(), out)  # contiguous, as it is compiled for
+    masks(np.arange(len(at)), at.positions, at.on_table, at.game, out)
     return out
 
 

@@ -9,7 +9,8 @@ from gymnasium import spaces
 
 from .._check import refuse, refuse_what
 from .._jit import entry, kernel
-from ..game.balls import BALL_RADIUS, balls_on_kernel, bits
+from ..game.balls import BALL_RADIUS, bits
+from ..game.frame_columns import strikeable
 from ..game.pots import POCKETS, POT_COLUMNS, find_pots
 from ..physics.cue import squirt
 from .box_actions import line_of
@@ -52,20 +53,22 @@ def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_ste
 
 
 @entry
-def masks(positions, on_table, ball_on, out):
-    """Which choices there are on n tables: ``out`` (n, SIZE) bool."""
+def masks(which, positions, on_table, game, out):
+    """Which choices there are on the tables ``which``: a row of ``out`` each, bool (SIZE,). ``game`` (n, columns): of visits or frames."""
     found = np.empty((POTS, POT_COLUMNS))
-    for k in range(len(out)):
-        on = balls_on_kernel(ball_on[k], bits(on_table[k]))
+    for j in range(which.shape[0]):
+        k = which[j]
+        on = strikeable(game[k], bits(on_table[k]))
         many = find_pots(positions[k], on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
         for c in range(SIZE):
-            out[k, c] = c < STROKES * max(1, many)
+            out[j, c] = c < STROKES * max(1, many)
 
 
 class Choices:
     """The discrete action space's meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``POTS``, ``SPEEDS``, ``SIDES``, ``TOPS``."""
 
     size = 1
+    placement = decision = False
 
     def __init__(self, physics):
         self.physics = physics

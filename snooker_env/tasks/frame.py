@@ -1,110 +1,429 @@
-"""How does one agent play a whole frame? The agent's stroke, then the opponent's visit, until the agent is to play or the frame ends.
+"""How is a frame played, on one table or on thousands? Turns of two players by the rules of ``game.frame_columns``, each table on its own.
 
-The agent is player 0 of the ``Frame``, the opponent player 1. With no opponent ("none") the agent plays alone: whenever the table would
-go to the other player it comes straight back, penalties still go to the other's score, and after a foul the agent plays on from where
-the balls lie, without a free ball.
+A turn is the striker's: ``_decide`` (after a foul of the other), ``stroke.address``, ``stroke.run`` and ``_conclude``, the referee. A step
+of the frame task is the agent's turn and all turns of the opponent up to the agent's next; the agent is player 0, the opponent player 1.
+Alone, the agent gets the table back at once whenever it would go to the other: penalties still go to the other's score, and after a foul
+he plays on from where the balls lie, without a free ball. A match is played turn by turn, whoever strikes.
+
+A cue ball in hand is put at once on the free place of the D nearest to its usual place for the break, so that it can be seen; whoever plays
+may place it elsewhere first. The physics is planar: no ball leaves the table and the cue ball jumps none, so those fouls cannot come up.
 """
 
-from dataclasses import replace
+import numpy as np
 
-from .._check import choice, refuse
-from ..game.layouts import layout
-from . import observations
-from .frame_table import FrameTable
-from .opponents import opponent_of
-from .rewards import FRAME_REWARDS
+from .._check import refuse
+from .._jit import entry, kernel
+from ..game.apply_ruling import settle
+from ..game.balls import BALL_RADIUS, COLOURS_MASK, CUE, N_BALLS, SPOTS, bits, mask_of_present
+from ..game.frame_columns import (
+    BALL_ON,
+    CHOICE,
+    COLUMNS,
+    FREE_BALL,
+    IN_HAND,
+    LOT,
+    MISS_CALLED,
+    ON_TABLE,
+    OVER,
+    PHASE,
+    PLAY,
+    PLAY_AGAIN,
+    POINTS,
+    REPLACE,
+    RESPOTTED_BLACK,
+    SCORE_0,
+    SCORE_1,
+    STEPS,
+    STRIKER,
+    STROKES,
+    WINNER,
+    Layouts,
+    after_stroke,
+    available,
+    begin_frame,
+    choose,
+    draw,
+    frame_of,
+    lead_of,
+    strikeable,
+    write_frame,
+)  # fmt: skip
+from ..game.layouts import deal_tables
+from ..game.paths import clear_path, full_ball_path
+from ..game.philox import pair
+from ..game.ruling import AUTO
+from ..physics.engine import Status
+from .observations import FRAME_SIZE, SIZE, observe_into
+from .options import NEVER
+from .rewards import FRAME_REWARDS, frame_reward_of
+from .states import checked_frame
+from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, SPEED, TOUCHING, address, place, see
+from .tables import COUNTS, I_BREAK, REALS, Tables, keep_last, tell_nothing, tell_stroke
 
 AGENT = 0
+_OK = int(Status.OK)
+(I_SCORE, I_OPPONENT_SCORE) = range(len(REALS), len(REALS) + 2)
+(I_STROKES, I_REPLIES, I_WINNER, I_CHOICE, I_FREE_BALL, I_NEEDS_SNOOKERS) = range(len(COUNTS), len(COUNTS) + 6)
 
 
-class FrameTask:
-    """A frame of the agent against ``opponent``, on ``table``, a ``FrameTable``."""
+@entry(what="the decisions after a foul", seconds=1)
+def _decide(which, actions, decision, positions, on_table, game, saved, plays):
+    """What the strikers of the tables ``which`` decide where the other has fouled: below -1/3 of the action's last number, if it has that
+    ``decision``, the offender plays again; above 1/3 from the position before, if a miss was called. ``plays[j]``: is there a stroke?"""
+    for j in range(which.shape[0]):
+        k = which[j]
+        row, plays[j] = game[k], True
+        if row[PHASE] != CHOICE:
+            continue
+        wish = actions[k, actions.shape[1] - 1] if decision else 0.0
+        what = PLAY_AGAIN if wish < -1.0 / 3.0 else REPLACE if wish > 1.0 / 3.0 and row[MISS_CALLED] else PLAY
+        choose(row, what)
+        plays[j] = what == PLAY
+        if what == REPLACE:
+            for i in range(N_BALLS):
+                positions[k, i, 0], positions[k, i, 1] = saved.positions[k, i, 0], saved.positions[k, i, 1]
+                on_table[k, i] = saved.on_table[k, i]
 
-    def __init__(self, shooter, *, opponent, trust, miss, reward, observation, max_strokes):
-        self.table = FrameTable(shooter, miss=miss, max_strokes=max_strokes)
-        self.reward = FRAME_REWARDS[choice("reward", reward, FRAME_REWARDS)]
-        self.observation = observation
-        self.opponent = opponent_of(opponent, observation, shooter.actions, trust)
-        self.opponent_strokes = 0
-        """Strokes that the opponent played in the last step (or before the first)."""
 
-    def start(self, plan, rng, watch):
-        """A new frame, its table dealt by a ``Plan``. Who breaks is drawn from ``rng`` (alone it is the agent); an opponent who breaks has
-        played when this returns.
+@entry(what="the paths of the miss rule", seconds=2)
+def _remember(which, positions, on_table, game, saved, seen):
+    """What the miss rule needs of the tables ``which`` before their strokes: the position, and which paths are clear."""
+    for j in range(which.shape[0]):
+        k = which[j]
+        on = strikeable(game[k], bits(on_table[k]) & ~1)
+        seen[j, CLEAR_PATH] = clear_path(positions[k], on_table[k], on, BALL_RADIUS)
+        seen[j, FULL_PATH] = full_ball_path(positions[k], on_table[k], on, BALL_RADIUS)
+        for i in range(N_BALLS):
+            saved.positions[k, i, 0], saved.positions[k, i, 1] = positions[k, i, 0], positions[k, i, 1]
+            saved.on_table[k, i] = on_table[k, i]
 
-        A frame that ends within the opponent's first visit is dealt again: each episode holds a stroke of the agent.
+
+@kernel
+def _hand_back(row):
+    """Alone at the table: the agent plays on."""
+    if not row[OVER] and row[STRIKER] != AGENT:
+        if row[PHASE] == CHOICE:
+            choose(row, PLAY_AGAIN)
+        row[STRIKER], row[POINTS] = AGENT, 0
+
+
+@entry(what="the referee of frames", seconds=6)
+def _conclude(which, positions, on_table, game, streams, r, potted, status, duration, event_time, event_what, n_events, shots, seen, jaws,
+              miss, own, alone, played, reals, counts):  # fmt: skip
+    """Judge the shots that came to rest and put tables and frames in order. ``own``: infos tell of the strokes; ``played`` counts them."""
+    for j in range(which.shape[0]):
+        if status[j] != _OK:
+            continue
+        k = which[j]
+        p, on, row = positions[k], on_table[k], game[k]
+        see(j, event_time, event_what, n_events, potted, p, on, shots[j, SPEED], seen)
+        for i in range(N_BALLS):
+            p[i, 0], p[i, 1] = r[j, i, 0], r[j, i, 1]
+        ball_on = row[BALL_ON]
+        result = settle(
+            p, on, ball_on, row[FREE_BALL], lead_of(row, row[STRIKER]), seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN],
+            0, AUTO, 0, jaws, BALL_RADIUS,
+        )  # fmt: skip
+        after_stroke(row, result, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], miss)
+        row[STROKES] += 1
+        if row[PHASE] == LOT:  # the winner of the lot is taken to play first
+            u, _ = pair(streams[k])
+            draw(row, int(2.0 * u))
+        if row[IN_HAND] and not row[OVER]:
+            place(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
+        played[k] += 1
+        if own:
+            tell_stroke(j, k, result, ball_on, seen, duration, n_events, reals, counts)
+        if alone:
+            _hand_back(row)
+
+
+@kernel
+def observe_frame_into(out, positions, on_table, row, player):
+    """Write what ``player`` sees of a frame, float32 (FRAME_SIZE,): what a visit would show, then ``observations.FRAME_ENTRIES``."""
+    on = strikeable(row, bits(on_table) & ~1)
+    observe_into(out, positions, on_table, row[BALL_ON], on, row[IN_HAND], row[POINTS])
+    mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
+    to_play = not row[OVER] and row[STRIKER] == player
+    more = (
+        mine / 155.0, other / 155.0, (mine - other) / 155.0, available(row[ON_TABLE], row[BALL_ON]) / 147.0, 1.0 if to_play else 0.0,
+        1.0 if row[FREE_BALL] else 0.0, 1.0 if row[PHASE] == CHOICE else 0.0, 1.0 if row[MISS_CALLED] else 0.0,
+        1.0 if row[RESPOTTED_BLACK] else 0.0,
+    )  # fmt: skip
+    for c in range(len(more)):
+        out[SIZE + c] = min(1.0, max(-1.0, more[c]))
+
+
+@entry(what="the observations of frames", seconds=1)
+def _observe(which, player, positions, on_table, game, out):
+    """What ``player`` sees of the tables ``which``: a row of ``out`` each."""
+    for j in range(which.shape[0]):
+        k = which[j]
+        observe_frame_into(out[j], positions[k], on_table[k], game[k], player)
+
+
+@kernel
+def _tell(k, row, replies, reals, counts):
+    """The part of the info that tells of the frame."""
+    mine, other = row[SCORE_0 + AGENT], row[SCORE_1 - AGENT]
+    reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = row[POINTS], mine, other
+    counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies[k], row[WINNER]
+    counts[k, I_CHOICE], counts[k, I_FREE_BALL] = row[PHASE] == CHOICE, row[FREE_BALL]
+    counts[k, I_NEEDS_SNOOKERS] = other - mine > available(row[ON_TABLE], row[BALL_ON])
+
+
+@entry(what="the steps of frames", seconds=1)
+def _finish(which, positions, on_table, game, lead, replies, played, kind, limit, max_strokes, observations, rewards, terminated, truncated,
+            reals, counts):  # fmt: skip
+    """Write what a step returns of the tables ``which``; ``lead`` (n,): of the agent before it, ``played`` (n,): had he a stroke?"""
+    for j in range(which.shape[0]):
+        k = which[j]
+        row = game[k]
+        row[STEPS] += 1
+        rewards[k] = frame_reward_of(kind, lead_of(row, AGENT) - lead[k], row[WINNER] if row[OVER] else -1, AGENT)
+        terminated[k] = row[OVER]
+        truncated[k] = (not row[OVER] and row[STROKES] >= max_strokes) or row[STEPS] >= limit
+        if not played[k]:
+            tell_nothing(k, row[BALL_ON], reals, counts)
+        _tell(k, row, replies, reals, counts)
+        observe_frame_into(observations[k], positions[k], on_table[k], row, AGENT)
+
+
+@entry(what="the start of a frame", seconds=1)
+def _begin(which, drawn, in_hand, on_table, game, streams):
+    """New frames on the tables ``which``, dealt before. ``drawn``: who breaks is drawn, else it is the agent."""
+    for j in range(which.shape[0]):
+        k = which[j]
+        breaker = AGENT
+        if drawn:
+            u, _ = pair(streams[k])
+            breaker = int(2.0 * u)
+        begin_frame(game[k], bits(on_table[k]), breaker, in_hand)
+
+
+@entry(what="the resets of frames", seconds=1)
+def _show(which, fresh, positions, on_table, game, replies, out):
+    """Write what a reset returns of the tables ``which``; of ``fresh`` ones the last arrays of ``out`` get what their rows held before."""
+    observations, reals, counts, _, _, _ = out
+    for j in range(which.shape[0]):
+        k = which[j]
+        if fresh:
+            keep_last(k, out)
+        tell_nothing(k, game[k, BALL_ON], reals, counts)
+        _tell(k, game[k], replies, reals, counts)
+        observe_frame_into(observations[k], positions[k], on_table[k], game[k], AGENT)
+
+
+class Frames(Tables):
+    """n tables, each in the middle of its own frame."""
+
+    REALS = (*REALS, "score", "opponent_score")
+    COUNTS = (*COUNTS, "strokes", "opponent_strokes", "winner", "choice", "free_ball", "needs_snookers")
+    FLAGS = ("choice", "free_ball", "needs_snookers")
+    SIZE = FRAME_SIZE
+    COLUMNS = COLUMNS
+    KIND = "frame"
+
+    def __init__(self, rules, n, *, limit=NEVER):
+        super().__init__(rules, n, limit=limit)
+        self._saved_positions, self._saved_on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
+        self._lead, self._replies, self._played = (np.zeros(n, np.int64) for _ in range(3))
+        self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
+
+    @property
+    def saved(self):
+        """Where the balls lay before the last fouls: ``frame_columns.Layouts``."""
+        return Layouts(self._saved_positions, self._saved_on_table)
+
+    def _columns(self):
+        return (*super()._columns(), "_saved_positions", "_saved_on_table", "_lead", "_replies", "_played")
+
+    def frame(self, k):
+        """The ``game.frame.Frame`` on table k."""
+        return frame_of(self.game[k], "clear_path" if self.rules.miss else "off", self.saved, k)
+
+    def on(self, k):
+        """The mask of the balls that may be struck first on table k: those on, and with a free ball every colour."""
+        return super().on(k) | (COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, FREE_BALL] else 0)
+
+    def lead(self):
+        """The agent's scores less the opponent's: (n,)."""
+        return self.game[:, SCORE_0 + AGENT] - self.game[:, SCORE_1 - AGENT]
+
+    def stopped(self):
+        """Which frames the referee has stopped or would stop, as ``max_strokes`` have been played: bool (n,)."""
+        return self.game[:, STROKES] >= self.rules.max_strokes
+
+    def ended(self):
+        """Where there is nothing more to play: bool (n,)."""
+        return super().ended() | self.stopped()
+
+    def interrupted(self):
+        """A step or reset was cut short: a table at which it is the opponent's turn needs a reset."""
+        self.begun &= self.game[:, STRIKER] == AGENT
+
+    # a turn ----------------------------------------------------------------------------------------------------------------
+
+    def prepare(self, which, actions, buffers):
+        """The strikers' decisions on the tables ``which``, and their strokes up to the strike: the tables on which there is a stroke."""
+        if self.game[which, PHASE].any():
+            plays = np.empty(len(which), np.bool_)
+            _decide(which, actions, self.rules.actions.decision, self.positions, self.on_table, self.game, self.saved, plays)
+            which = which[plays]
+        (options, noise, phys), (fidelity, n_steps) = self.packed, self.rules.fidelity
+        b = buffers
+        address(
+            which, actions, self.positions, self.on_table, self.game, self.streams, options, noise, phys, fidelity, n_steps,
+            b.r, b.v, b.w, b.here, b.shots,
+        )  # fmt: skip
+        return which
+
+    def complete(self, which, out, buffers, crew, *, own, alone=False):
+        """Play and judge the shots of the tables ``which`` that have been struck. ``own``: ``out`` tells of them, else they are only
+        counted; ``alone``: the agent gets the table back."""
+        if not len(which):
+            return
+        if self.rules.miss:
+            _remember(which, self.positions, self.on_table, self.game, self.saved, buffers.seen)
+        unfinished = self.run(which, buffers)
+        self._conclude(which, buffers, out, own, alone)
+        for j in unfinished:
+            self._conclude(which[j : j + 1], self.again(which, j, buffers), out, own, alone)
+        crew.saw(which, buffers, own)
+
+    def _conclude(self, which, b, out, own, alone):
+        _conclude(
+            which, self.positions, self.on_table, self.game, self.streams, b.r, b.potted, b.status, b.duration, b.event_time, b.event_what,
+            b.n_events, b.shots, b.seen, self._jaws, self.rules.miss, own, alone, self._played if own else self._replies, out.reals,
+            out.counts,
+        )  # fmt: skip
+
+    def turn(self, prepare, out, crew):
+        """One turn of whoever strikes on each table: a match. ``out`` gets the infos of strokes; returns where there was one, (n,) bool.
+
+        ``prepare(which, buffers)``: decides and plays up to the strike, as the method of that name does; the tables with a stroke.
         """
-        while True:
-            breaker = AGENT if self.opponent is None else int(rng.integers(2))
-            self.table.start(*layout(plan, rng), breaker=breaker, in_hand=plan.in_hand)
-            self._until_agent(rng, watch)
-            if not self.table.ended:
-                return
+        self._played[:] = 0
+        crew(np.arange(self.n), lambda which, b: self.complete(prepare(which, b), out, b, crew, own=True))
+        return self._played > 0
 
-    def step(self, action, rng, watch):
-        """One step: its reward, and the agent's own stroke as ``Played`` (None if it had the opponent play again).
+    # steps and resets of the frame task --------------------------------------------------------------------------------------
 
-        ``watch(shot)`` is called after each stroke of either player, or is None and no paths are kept.
+    def step(self, actions, waiting, out, crew, *, same_step=False):
+        """One step of all tables: actions (n, k) float64 that were checked, results into ``out``.
+
+        ``waiting`` (n,) bool: tables that begin a new frame instead of playing; ``same_step``: those whose frame ends begin a new one at
+        once. Raises SimulationError if a shot cannot be computed: its balls are left as they lay, other tables may have been played; and
+        whatever an opponent raises.
         """
-        before = self.table.frame
-        played = self.table.act(action, rng, path=watch is not None)
-        if played is not None and watch is not None:
-            watch(played.shot)
-        self._until_agent(rng, watch)
-        return self.reward(before, self.table.frame, AGENT), played
+        anew, alone = bool(waiting.any()), self.rules.opponent is None
+        playing = np.flatnonzero(~waiting) if anew else np.arange(self.n)
+        self._replies[:] = self._played[:] = 0
+        self._lead = self.lead()
 
-    def _until_agent(self, rng, watch):
-        table, self.opponent_strokes = self.table, 0
-        while not table.over and table.frame.striker != AGENT:
-            if self.opponent is None:
-                if table.frame.phase == "choice":
-                    table.choose("play_again")
-                table.frame = replace(table.frame, striker=AGENT, break_points=0)
-                continue
-            if table.stopped:  # after this very stroke, in the middle of a visit too
-                return
-            played = self.opponent.play(table, self._opponents_view, rng, watch is not None)
-            if played is not None:
-                self.opponent_strokes += 1
-                if watch is not None:
-                    watch(played.shot)
+        def play(which, buffers):
+            self.complete(self.prepare(which, actions, buffers), out, buffers, crew, own=True, alone=alone)
+            if alone:
+                self._finish(which, out)
 
-    def checked(self, state, generator, *, to_play=False):
-        """The ``FrameState`` of a dict; ValueError if it is not sound, or if it is ``to_play`` and there is no more stroke to play."""
-        sound = self.table.checked(state, generator, to_play=to_play)
-        if sound.frame.striker != AGENT and not self.table.ends_at(sound.frame, sound.strokes):
+        crew(playing, play)
+        if not alone:
+            self._reply(playing, out, crew)
+            crew(playing, lambda which, _: self._finish(which, out))
+        if same_step:
+            self._start(np.flatnonzero(out.terminated | out.truncated), out, crew)
+        elif anew:
+            self._start(np.flatnonzero(waiting), out, crew)
+
+    def _finish(self, which, out):
+        _finish(
+            which, self.positions, self.on_table, self.game, self._lead, self._replies, self._played,
+            FRAME_REWARDS.index(self.rules.reward), self.limit, self.rules.max_strokes, out.observations, out.rewards, out.terminated,
+            out.truncated, out.reals, out.counts,
+        )  # fmt: skip
+
+    def _reply(self, which, out, crew):
+        """All that the opponent plays on the tables ``which`` until the agent is to play, or the frame has ended."""
+        opponent = self.rules.opponent
+        while len(which := which[(self.game[which, STRIKER] != AGENT) & ~self.ended()[which]]):
+            actions = opponent.ask(self, which, crew.generators)
+
+            def play(part, buffers, actions=actions):
+                self.complete(opponent.prepare(self, part, actions, buffers), out, buffers, crew, own=False)
+
+            crew(which, play)
+
+    def reset(self, wanted, out, crew):
+        """New frames on the tables ``wanted`` (n,) bool; what a reset returns of all tables into ``out``."""
+        self.begun[wanted] = False  # until the opponent has played, if it is he who breaks
+        self._start(np.flatnonzero(wanted), out, crew)
+        crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out, fresh=False))
+
+    def _start(self, which, out, crew):
+        """New frames. Those that end within the opponent's first visit are dealt again: each episode holds a stroke of the agent."""
+        alone, left = self.rules.opponent is None, which
+        while len(left):
+            self._replies[left] = 0
+            crew(left, lambda part, _: self.deal(part, drawn=not alone))
+            if not alone:
+                try:
+                    self._reply(left, out, crew)
+                except BaseException:
+                    self.begun[left] = False
+                    raise
+            left = left[self.ended()[left]]
+        crew(which, lambda part, _: self._show(part, out, fresh=True))
+
+    def deal(self, which, *, drawn):
+        """New frames on the tables ``which``; ``drawn``: who breaks is drawn, else it is the agent."""
+        plan = self.rules.plan
+        deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
+        _begin(which, drawn, plan.in_hand, self.on_table, self.game, self.streams)
+        self.begun[which] = True
+
+    def _show(self, which, out, *, fresh):
+        _show(which, fresh, self.positions, self.on_table, self.game, self._replies, out.rows)
+
+    def observe(self, which, player):
+        """What ``player`` sees of the tables ``which``: float32 (len(which), FRAME_SIZE), fresh."""
+        rows = np.empty((len(which), FRAME_SIZE), np.float32)
+        _observe(which, player, self.positions, self.on_table, self.game, rows)
+        return rows
+
+    # states ----------------------------------------------------------------------------------------------------------------
+
+    def get_state(self, k):
+        """Table k as JSON types: the parts of a ``states.FrameState`` but "rng"."""
+        return {
+            "positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist(), "frame": self.frame(k).to_dict(),
+            "strokes": int(self.game[k, STROKES]), "stream": self.streams[k].tolist(),
+        }  # fmt: skip
+
+    def checked(self, state, generator, *, to_play=False, either=False):
+        """The ``states.FrameState`` that a dict describes; ValueError if it is not sound, if it is ``to_play`` and there is no stroke left,
+        or unless ``either`` player may be the striker if it is not the agent."""
+        miss = "clear_path" if self.rules.miss else "off"
+        sound = checked_frame(state, miss, self.rules.table, self.rules.physics.R, generator)
+        over, stopped = sound.frame.phase == "over", sound.strokes >= self.rules.max_strokes
+        if to_play and over:
+            raise refuse("state.frame.phase", "over", 'must not be "over": there is no shot to play from this state')
+        if to_play and stopped:
+            limit = self.rules.max_strokes
+            raise refuse("state.strokes", sound.strokes, f"must be below max_strokes = {limit}: there is no shot left to play")
+        if not either and sound.frame.striker != AGENT and not (over or stopped):
             raise refuse("state.frame.striker", sound.frame.striker, f"must be {AGENT}, the agent, as always between two steps")
         return sound
 
-    def take(self, sound):
-        """Take over a ``FrameState``."""
-        self.table.take(sound)
-        self.opponent_strokes = 0
+    def set_state(self, k, state):
+        """Take over a sound ``states.FrameState`` on table k."""
+        self.positions[k], self.on_table[k] = state.positions, state.on_table
+        write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
+        self.streams[k] = np.array(state.stream, np.uint64)
+        self._replies[k], self.begun[k] = 0, True
 
-    def _opponents_view(self):
-        return observations.observe_frame(self.observation, self.table, 1 - AGENT)
-
-    def observe(self):
-        """What the agent sees."""
-        return observations.observe_frame(self.observation, self.table, AGENT)
-
-    def info(self):
-        """What a step of a frame tells besides its stroke; always the same keys."""
-        frame = self.table.frame
-        return {
-            "score": float(frame.scores[AGENT]), "opponent_score": float(frame.scores[1 - AGENT]),
-            "strokes": self.table.strokes, "opponent_strokes": self.opponent_strokes,
-            "winner": -1 if frame.winner is None else frame.winner,
-            "choice": frame.phase == "choice", "free_ball": frame.free_ball, "needs_snookers": frame.needs_snookers(AGENT),
-        }  # fmt: skip
-
-    def text(self):
+    def text(self, k):
         """One line for the pictures."""
-        return frame_text(self.table.frame)
-
-
-def frame_text(frame):
-    """A ``Frame`` in one line."""
-    on = frame.ball_on.name.lower().replace("_", " ")
-    ended = "" if frame.winner is None else f"   player {frame.winner} wins"
-    return f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"
+        frame = self.frame(k)
+        on = frame.ball_on.name.lower().replace("_", " ")
+        ended = "" if frame.winner is None else f"   player {frame.winner} wins"
+        return f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"

@@ -4,7 +4,7 @@ import numpy as np
 from gymnasium import spaces
 
 from .._check import choice
-from .._jit import entry, kernel
+from .._jit import kernel
 from ..game.balls import HALF_LENGTH, HALF_WIDTH, N_BALLS, REDS_MASK, VALUES, bits, count
 
 OBSERVATIONS = ("flat", "balls")
@@ -26,7 +26,8 @@ was called a miss, the black was re-spotted. With a free ball "ball_on" is 1 for
 _COLUMNS = len(BALL_COLUMNS)
 BALLS_SIZE = N_BALLS * _COLUMNS
 SIZE = BALLS_SIZE + len(STATE_ENTRIES)
-"""Numbers in the flat observation of a visit, and how many of them, at the front, are the table of balls."""
+FRAME_SIZE = SIZE + len(FRAME_ENTRIES)
+"""Numbers in the flat observation of a visit, of a frame, and how many of them, at the front, are the table of balls."""
 
 
 def space(kind, *, frame=False):
@@ -62,11 +63,6 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
     row[BALLS_SIZE + 10] = points / 155.0
 
 
-@entry
-def _observe(row, positions, on_table, ball_on, on, in_hand, points):
-    observe_into(row, positions, on_table, ball_on, on, in_hand, points)
-
-
 def shaped(kind, rows):
     """Flat observations (..., SIZE or more), which are taken over, as the observations of that kind."""
     if kind == "flat":
@@ -74,23 +70,3 @@ def shaped(kind, rows):
     lead = rows.shape[:-1]
     balls = rows[..., :BALLS_SIZE].reshape(*lead, N_BALLS, _COLUMNS)
     return {"balls": np.array(balls), "state": np.array(rows[..., BALLS_SIZE:])}
-
-
-def observe(kind, positions, on_table, ball_on, on, in_hand, points, more=()):
-    """A fresh observation: the numbers of ``observe_into``, then ``more``, the entries that a frame adds, cut to [-1, 1]."""
-    row = np.empty(SIZE + len(more), np.float32)
-    _observe(row[:SIZE], positions, on_table, int(ball_on), int(on), int(in_hand), int(points))
-    row[SIZE:] = np.clip(np.array(more, np.float32), -1.0, 1.0)
-    return shaped(kind, row)
-
-
-def observe_frame(kind, table, player):
-    """A fresh observation of a ``FrameTable`` as ``player`` sees it. Its first part is what the visit task would show."""
-    frame = table.frame
-    mine, other = frame.scores[player], frame.scores[1 - player]
-    to_play = frame.phase != "over" and frame.striker == player
-    more = (
-        mine / 155.0, other / 155.0, (mine - other) / 155.0, frame.available / 147.0, to_play, frame.free_ball, frame.phase == "choice",
-        frame.miss_called, frame.respotted_black,
-    )  # fmt: skip
-    return observe(kind, table.positions, table.on_table, frame.ball_on, table.on, frame.in_hand, frame.break_points, more)

@@ -1,52 +1,145 @@
-"""Who plays the other side of a frame? Built-in players, any callable, or a Stable-Baselines3 model from a file.
+"""Who plays the other side of a frame? Uniform play and the plain geometric player as kernels, any callable, or a saved model.
 
-A player is asked with ``play(table, observe, rng, path)`` when it is its turn on a ``FrameTable``: it decides, places and plays one
-stroke, and returns what was ``Played`` (None if it handed the table back to the offender).
+An opponent is asked for all tables at which it is its turn: ``ask(frames, which, generators)`` in Python, once, for actions (or nothing),
+then ``prepare(frames, which, actions, buffers)``, on several threads, which carries them out up to the strike.
 """
 
-from math import atan2, hypot, pi, sqrt
+from math import atan2, hypot, inf, pi, sqrt
 from pathlib import Path
 
 import numpy as np
 
 from .._check import refuse, truth
-from ..game.balls import BALL_RADIUS, BAULK_Y, CUE, D_RADIUS, N_BALLS
-from ..game.pots import POCKETS, pots
+from .._jit import entry, kernel
+from ..game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, N_BALLS, bits
+from ..game.frame_columns import CHOICE, IN_HAND, PHASE, PLAY, choose, strikeable
+from ..game.philox import pair
+from ..game.pots import POCKETS, POT_COLUMNS, find_pots
 from . import observations
+from .discrete_actions import SIZE as CHOICES
+from .discrete_actions import Choices
 from .saved_models import Saved, outline
+from .stroke import place, strike
 
 OPPONENTS = ("none", "random", "ghost_ball")
+PLAYER = 1
+"""The opponent's place in the frame."""
 
 _ROLL = 0.25  # twice a rolling ball's deceleration [m/s^2]
 _SLIDE = 1.4  # speed that a ball struck in its middle must have, over that with which it rolls on
-_PLACES = [(x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8)]
+_PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8))
+_USUAL_PLACE = 2
 
 
-class Player:
-    """A player by a policy: ``policy(observation, rng) -> action`` in the environment's own spaces, decision and placement included."""
-
-    def __init__(self, policy):
-        self.policy = policy
-
-    def play(self, table, observe, rng, path):
-        """One turn. Raises ValueError, naming "opponent's action", for a wrong one."""
-        wished = self.policy(observe(), rng)
-        try:
-            action = table.shooter.actions.check(wished)
-        except ValueError as error:
-            raise ValueError(f"opponent's {error}") from None
-        return table.act(action, rng, path=path)
+@entry(what="uniform play", seconds=1)
+def _uniform(which, streams, actions):
+    """Every number of the actions of the tables ``which`` uniform in [-1, 1): the rows of ``actions`` (n, k)."""
+    size = actions.shape[1]
+    for j in range(which.shape[0]):
+        k = which[j]
+        for c in range(0, size, 2):
+            u, v = pair(streams[k])
+            actions[k, c] = 2.0 * u - 1.0
+            if c + 1 < size:
+                actions[k, c + 1] = 2.0 * v - 1.0
 
 
-class RandomPlayer:
-    """Every component of the action uniform, the decision too."""
+@entry
+def _uniform_choice(which, streams, masks, actions):
+    """One of the choices that there are on the tables ``which``, each as likely; masks (len(which), CHOICES)."""
+    for j in range(which.shape[0]):
+        k, many = which[j], 0
+        for c in range(CHOICES):
+            many += masks[j, c]
+        u, _ = pair(streams[k])
+        left = int(u * many)
+        for c in range(CHOICES):
+            if masks[j, c]:
+                if left == 0:
+                    actions[k, 0] = c
+                left -= 1
 
-    def play(self, table, observe, rng, path):
-        """One turn."""
-        return table.act(rng.uniform(-1.0, 1.0, table.shooter.actions.size).tolist(), rng, path=path)
+
+class UniformOpponent:
+    """Every component of the action uniform, the decision too; of discrete actions one that there is."""
+
+    def ask(self, frames, which, generators):
+        """Nothing: each table draws from its own stream."""
+        return np.empty((frames.n, frames.rules.actions.size))
+
+    def prepare(self, frames, which, actions, buffers):
+        """The strokes up to the strike: the tables on which there is one."""
+        if isinstance(frames.rules.actions, Choices):
+            _uniform_choice(which, frames.streams, frames.action_masks(which), actions)
+        else:
+            _uniform(which, frames.streams, actions)
+        return frames.prepare(which, actions, buffers)
 
 
-class GhostBall:
+@kernel
+def _full(positions, on_table, ball):
+    """Can the cue ball be rolled straight at the middle of ``ball``, past every other?"""
+    cx, cy = positions[0, 0], positions[0, 1]
+    dx, dy = positions[ball, 0] - cx, positions[ball, 1] - cy
+    far = hypot(dx, dy)
+    for i in range(1, N_BALLS):
+        if i == ball or not on_table[i]:
+            continue
+        ox, oy = positions[i, 0] - cx, positions[i, 1] - cy
+        along = min(max(0.0, far - 2.0 * BALL_RADIUS), max(0.0, (ox * dx + oy * dy) / far))
+        if hypot(ox - along * dx / far, oy - along * dy / far) < 2.0 * BALL_RADIUS:
+            return False
+    return True
+
+
+@kernel
+def _wanted(positions, on_table, on, found, stream):
+    """Speed [m/s] and direction [rad] of the geometric player's shot at the balls in the mask ``on``."""
+    x, y = positions[0, 0], positions[0, 1]
+    if find_pots(positions, on_table, on, BALL_RADIUS, found):
+        ball, pocket, gx, gy, cos_cut = int(found[0, 0]), int(found[0, 1]), found[0, 2], found[0, 3], found[0, 4]
+        run = hypot(POCKETS[pocket, 0] - positions[ball, 0], POCKETS[pocket, 1] - positions[ball, 1])
+        needed = _SLIDE * sqrt(_ROLL * (run + 0.6)) / max(cos_cut, 0.2)  # of the cue ball at the impact
+        return min(6.0, _SLIDE * sqrt(_ROLL * hypot(gx - x, gy - y) + needed * needed)), atan2(gy - y, gx - x)
+    near, ball = inf, -1
+    for i in range(1, N_BALLS):
+        if (on >> i) & 1 and _full(positions, on_table, i):
+            far = hypot(positions[i, 0] - x, positions[i, 1] - y)
+            if far < near:
+                near, ball = far, i
+    if ball > 0:
+        return _SLIDE * sqrt(_ROLL * near) + 0.5, atan2(positions[ball, 1] - y, positions[ball, 0] - x)
+    u, _ = pair(stream)
+    return 3.0, pi * (2.0 * u - 1.0)
+
+
+@entry(what="the geometric opponent", seconds=2)
+def _ghost_ball(which, positions, on_table, game, streams, options, noise, r, v, w, here, shots):
+    """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike."""
+    found = np.empty((1, POT_COLUMNS))
+    for j in range(which.shape[0]):
+        k = which[j]
+        p, on, row, stream = positions[k], on_table[k], game[k], streams[k]
+        fouled = row[PHASE] == CHOICE
+        if fouled:
+            choose(row, PLAY)
+        mask = strikeable(row, bits(on) & ~1)
+        if row[IN_HAND]:
+            widest, best = 0.0, _USUAL_PLACE
+            for c in range(len(_PLACES)):
+                place(p, on, *_PLACES[c])
+                if find_pots(p, on, mask, BALL_RADIUS, found) and found[0, 5] > widest:
+                    widest, best = found[0, 5], c
+            place(p, on, *_PLACES[best])
+        u, anywhere = pair(stream)
+        jitter, _ = pair(stream)
+        speed, aim = 3.0, pi * (2.0 * u - 1.0)
+        if not (fouled and anywhere < 0.1):
+            speed, aim = _wanted(p, on, mask, found, stream)
+        strike((speed * (0.9 + 0.2 * jitter), 0.0, 0.0, aim, 0.0), p, on, stream, options, noise, j, r, v, w, here, shots)
+
+
+class GhostBallOpponent:
     """The plain geometric player: the widest direct pot (``game.pots``), struck in the middle, as soft as will do.
 
     Without a pot it rolls full at the nearest ball on that it sees; seeing none, it strikes anywhere and hopes. In hand it takes the best
@@ -55,58 +148,56 @@ class GhostBall:
     stroke for ever.
     """
 
-    def play(self, table, observe, rng, path):
-        """One turn."""
-        fouled = table.frame.phase == "choice"
-        if fouled:
-            table.choose("play")
-        if table.frame.in_hand:
-            self._place(table)
-        speed, aim = 3.0, rng.uniform(-pi, pi)
-        if not (fouled and rng.random() < 0.1):
-            speed, aim = self.aim(table.positions, table.on_table, table.on, rng)
-        return table.play((speed * rng.uniform(0.9, 1.1), 0.0, 0.0, aim, 0.0), rng, path=path)
+    def ask(self, frames, which, generators):
+        """Nothing: it plays as a kernel."""
 
-    @staticmethod
-    def _place(table):
-        widest, best = 0.0, _PLACES[2]
-        for place in _PLACES:
-            table.place(*place)
-            found = pots(table.positions, table.on_table, table.on, most=1)
-            if len(found) and found[0, 5] > widest:
-                widest, best = found[0, 5], place
-        table.place(*best)
-
-    @staticmethod
-    def aim(positions, on_table, on, rng):
-        """Speed [m/s] and direction [rad] of its shot at the balls in the mask ``on``."""
-        x, y = positions[CUE]
-        found = pots(positions, on_table, on, most=1)
-        if len(found):
-            ball, pocket, gx, gy, cos_cut, _ = found[0]
-            run = hypot(*(POCKETS[int(pocket), :2] - positions[int(ball)]))
-            needed = _SLIDE * sqrt(_ROLL * (run + 0.6)) / max(cos_cut, 0.2)  # of the cue ball at the impact
-            return min(6.0, _SLIDE * sqrt(_ROLL * hypot(gx - x, gy - y) + needed * needed)), atan2(gy - y, gx - x)
-        for ball in sorted((i for i in range(1, N_BALLS) if on >> i & 1), key=lambda i: hypot(*(positions[i] - positions[CUE]))):
-            d = positions[ball] - positions[CUE]
-            if _full(positions, on_table, ball):
-                return _SLIDE * sqrt(_ROLL * hypot(*d)) + 0.5, atan2(d[1], d[0])
-        return 3.0, rng.uniform(-pi, pi)
+    def prepare(self, frames, which, actions, buffers):
+        """Its strokes up to the strike, one on each table."""
+        b = buffers
+        options, noise, _ = frames.packed
+        _ghost_ball(which, frames.positions, frames.on_table, frames.game, frames.streams, options, noise, b.r, b.v, b.w, b.here, b.shots)
+        return which
 
 
-def _full(positions, on_table, ball):
-    """Can the cue ball be rolled straight at the middle of ``ball``, past every other?"""
-    d = positions[ball] - positions[CUE]
-    far = hypot(*d)
-    others = positions - positions[CUE]
-    along = np.clip(others @ d / far, 0.0, max(0.0, far - 2 * BALL_RADIUS))
-    gaps = np.hypot(*(others - along[:, None] * d / far).T)
-    blocked = on_table & (gaps < 2 * BALL_RADIUS)
-    blocked[[CUE, ball]] = False
-    return not blocked.any()
+class AskedOpponent:
+    """A player by a policy: ``policy(observation, rng) -> action`` in the environment's own spaces, decision and placement included.
+
+    A policy that has a method ``many(observations, generators, masks) -> actions`` is called once for all tables that wait for it:
+    observations with a leading axis, as many generators, and the masks of discrete actions (None of others).
+    """
+
+    def __init__(self, policy):
+        self.policy = policy
+
+    def ask(self, frames, which, generators):
+        """Its actions on the tables ``which``: (n, k). Raises ValueError, naming "opponent's action", for a wrong one."""
+        rules, k_of = frames.rules, which.tolist()
+        seen = frames.observe(which, PLAYER)
+        wished = self._wishes(rules, seen, [generators[k] for k in k_of], frames, which)
+        actions = np.zeros((frames.n, rules.actions.size))
+        for j, k in enumerate(k_of):
+            try:
+                actions[k] = rules.actions.check(wished[j])
+            except ValueError as error:
+                raise ValueError(f"opponent's {error}") from None
+        return actions
+
+    def _wishes(self, rules, seen, generators, frames, which):
+        many = getattr(self.policy, "many", None)
+        if many is None:
+            return [self.policy(observations.shaped(rules.observation, row.copy()), rng) for row, rng in zip(seen, generators, strict=True)]
+        masks = frames.action_masks(which) if isinstance(rules.actions, Choices) else None
+        wished = many(observations.shaped(rules.observation, seen), generators, masks)
+        if len(wished) != len(which):
+            raise refuse("opponent's actions", len(wished), f"must be {len(which)}, one for each table that waits")
+        return wished
+
+    def prepare(self, frames, which, actions, buffers):
+        """The strokes up to the strike: the tables on which there is one."""
+        return frames.prepare(which, actions, buffers)
 
 
-class Model:
+class SavedPolicy:
     """A model that Stable-Baselines3 or sb3-contrib saved; its pickles run when it is loaded, which is why ``trust`` is asked for.
 
     Trained on a frame or on the visit task, with the observation kind, aim and action options of this environment: of the frame's entries
@@ -122,40 +213,53 @@ class Model:
         return self.__dict__ | {"_network": None}  # loaded again where it is needed
 
     def __call__(self, observation, rng):
-        """The action."""
+        """The action of one table."""
+        one = {name: part[None] for name, part in observation.items()} if isinstance(observation, dict) else observation[None]
+        return self.many(one, [rng], None)[0]
+
+    def many(self, observation, generators, masks):
+        """The actions of all tables whose observations these are; ``masks``: of discrete actions, if known."""
         if self._network is None:
             self._network = self._load()
         if self._network.observation_space == observations.space(self.kind):
             observation = visit_part(observation)
-        action = np.clip(self._network.predict(observation, deterministic=True)[0], -1.0, 1.0)
-        return np.append(action, 0.0) if len(action) < self.actions.size else action
+        if isinstance(self.actions, Choices):
+            masked = {"action_masks": masks} if self._masked and masks is not None else {}
+            return self._network.predict(observation, deterministic=True, **masked)[0]
+        actions = np.clip(self._network.predict(observation, deterministic=True)[0], -1.0, 1.0)
+        if actions.shape[1] < self.actions.size:
+            return np.append(actions, np.zeros((len(actions), 1), actions.dtype), axis=1)
+        return actions
 
     def _load(self):
         seen = [observations.space(self.kind), observations.space(self.kind, frame=True)]
+        discrete = isinstance(self.actions, Choices)
         sizes = sorted({self.actions.size, self.actions.size - self.actions.decision})
+        fitting = [("Discrete", str(CHOICES))] if discrete else [("Box", [size]) for size in sizes]
         saved = Saved.of(self.path, "opponent")
-        if saved.action[0] != "Box":  # a frame is played by numbers
-            raise saved.refused("must be a model whose actions are a Box")
+        if saved.action[0] != fitting[0][0]:
+            raise saved.refused(f"must be a model whose actions are a {fitting[0][0]}")
         other_view = saved.refused(f'must be a model that sees observation="{self.kind}" of the visit or frame task and nothing else')
-        other_actions = saved.refused(f"must be a model with {' or '.join(map(str, sizes))} actions")
+        other_actions = saved.refused(f"must be a model with {CHOICES if discrete else ' or '.join(map(str, sizes))} actions")
         if saved.observation not in [outline(space) for space in seen]:
             raise other_view
-        if saved.action[1] not in [[size] for size in sizes]:
+        if tuple(saved.action) not in [tuple(one) for one in fitting]:
             raise other_actions
         network = saved.network(self.trust, "trust=True")
+        self._masked = discrete and saved.algorithm[1] == "MaskablePPO"
         if network.observation_space not in seen:  # a file may say one thing and hold another
             raise other_view
-        if outline(network.action_space) not in [("Box", [size]) for size in sizes]:
+        if outline(network.action_space) not in fitting:
             raise other_actions
         return network
 
 
 def visit_part(observation):
-    """What the visit task would show of a frame's observation."""
+    """What the visit task would show of a frame's observations."""
     extra = len(observations.FRAME_ENTRIES)
     if isinstance(observation, dict):
-        return observation | {"state": observation["state"][:-extra]}
-    return observation[:-extra]
+        return observation | {"state": observation["state"][..., :-extra]}
+    return observation[..., :-extra]
 
 
 def opponent_of(opponent, kind, actions, trust=False):
@@ -163,9 +267,9 @@ def opponent_of(opponent, kind, actions, trust=False):
     allowed = "must be one of " + ", ".join(map(repr, OPPONENTS)) + ", a path to a model (.zip), or a callable(observation, rng) -> action"
     truth("trust", trust)
     if callable(opponent):
-        return Player(opponent)
+        return AskedOpponent(opponent)
     if not isinstance(opponent, str | Path) or (str(opponent) not in OPPONENTS and Path(opponent).suffix != ".zip"):
         raise refuse("opponent", opponent, allowed)
     if str(opponent) in OPPONENTS:
-        return {"none": lambda: None, "random": RandomPlayer, "ghost_ball": GhostBall}[str(opponent)]()
-    return Player(Model(opponent, kind, actions, trust))
+        return {"none": lambda: None, "random": UniformOpponent, "ghost_ball": GhostBallOpponent}[str(opponent)]()
+    return AskedOpponent(SavedPolicy(opponent, kind, actions, trust))

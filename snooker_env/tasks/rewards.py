@@ -15,15 +15,22 @@ def reward_of(kind, points, penalty):
     return float(points - penalty) if kind == 1 else float(points)
 
 
-def _points(before, after, player):
-    gained = [b - a for a, b in zip(before.scores, after.scores, strict=True)]
-    return float(gained[player] - gained[1 - player])
+FRAME_REWARDS = ("points", "win")
+"""Of a whole frame: ``"points"``: the player's points less the other's in this step, pots and penalties of both. ``"win"``: +1 or -1 when
+the frame ends, else 0."""
 
 
-def _win(before, after, player):
-    return 0.0 if after.winner is None else 1.0 if after.winner == player else -1.0
+@kernel
+def frame_reward_of(kind, gained, winner, player):
+    """The reward of a step of a frame; ``kind`` is the place in ``FRAME_REWARDS``, ``gained`` what the player's lead has grown by,
+    ``winner`` -1 while there is none."""
+    if kind == 0:
+        return float(gained)
+    return 0.0 if winner < 0 else 1.0 if winner == player else -1.0
 
 
-FRAME_REWARDS = {"points": _points, "win": _win}
-"""Of a whole frame, by the ``Frame`` before and after a step and the player: ``"points"``: his points less the other's since his last
-step, pots and penalties of both, so that the sum of a frame is its final difference. ``"win"``: +1 or -1 when the frame ends, else 0."""
+def frame_reward(name, gained, winner, player):
+    """The same for one player of a match, ``gained`` and ``winner`` (None while there is none) as player 0 sees them."""
+    if name == "points":
+        return float(gained if player == 0 else -gained)
+    return 0.0 if winner is None else 1.0 if winner == player else -1.0

@@ -1,15 +1,14 @@
 """Is a saved state sound? Checks every part of what ``get_state`` gave, of a visit and of a frame, before any of it is taken over."""
 
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from .._check import array, flags, integer, refuse, refuse_what, truth
-from ..game.balls import CUE, CUE_BIT, N_BALLS, REDS_MASK, BallOn, balls_on, next_on
+from ..game.balls import CUE, CUE_BIT, N_BALLS, REDS_MASK, BallOn, balls_on, mask_of_present, next_on
 from ..game.frame import MOST_BREAK, Frame, points_available
 from ..game.in_hand import within_d
-from .stroke import mask
 
 MOST = 2**53 - 1
 """The highest score and the most strokes of a saved frame: a float, as observations and infos give them, still holds every integer."""
@@ -38,8 +37,9 @@ class FrameState(NamedTuple):
     positions: np.ndarray
     on_table: np.ndarray
     strokes: int
-    rng: Any = None
-    """Everything is drawn from the environment's own generator; None if the table was saved alone."""
+    stream: list
+    """Key and counter of the table's stream of random numbers."""
+    rng: dict
 
 
 def check_keys(state, keys):
@@ -110,7 +110,7 @@ def checked(state, table, R, generator, *, to_play=False):
     positions, on_table = checked_layout(("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
     ball_on = BallOn(integer("state.ball_on", state["ball_on"], BallOn.NOTHING, BallOn.BLACK))
-    balls = mask(on_table)
+    balls = mask_of_present(on_table)
     if not over:  # then a shot is to be played from here
         lowest = next_on(balls)
         if not on_table[CUE]:
@@ -132,13 +132,12 @@ def checked(state, table, R, generator, *, to_play=False):
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"])
 
 
-def checked_frame(state, miss, table, R, generator=None):
+def checked_frame(state, miss, table, R, generator):
     """The ``FrameState`` that a dict describes, played by the rule ``miss``; ValueError names the first part that is wrong.
 
-    ``generator``: the numpy Generator that is to take over the part "rng", left as it is; None: there is no such part.
+    ``generator``: the numpy Generator that is to take over the part "rng"; it is left as it is.
     """
-    keys = FrameState._fields if generator is not None else FrameState._fields[:-1]
-    check_keys(state, keys)
+    check_keys(state, FrameState._fields)
     positions, on_table = checked_layout(("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R)
     frame = Frame.from_dict(state["frame"], "state.frame")
     strokes = integer("state.strokes", state["strokes"], 0, MOST)
@@ -149,14 +148,14 @@ def checked_frame(state, miss, table, R, generator=None):
     if frame.phase == "lot":
         raise refuse("state.frame.phase", frame.phase, "must not be between two steps: the lot is drawn in the step of the stroke before")
     if frame.phase != "over":
-        if mask(on_table) != frame.on_table | CUE_BIT:
+        if mask_of_present(on_table) != frame.on_table | CUE_BIT:
             raise refuse("state.on_table", on_table.tolist(), "must hold the cue ball and the balls of state.frame.on_table, no others")
         check_in_hand("state.frame.in_hand", frame.in_hand, "state.positions", positions)
     if frame.saved is not None:
         frame = replace(frame, saved=_checked_saved(frame, table, R))
-    if generator is not None:
-        check_rng(state["rng"], generator)
-    return FrameState(frame, positions, on_table, strokes, state.get("rng"))
+    stream = check_stream(state["stream"])
+    check_rng(state["rng"], generator)
+    return FrameState(frame, positions, on_table, strokes, stream, state["rng"])
 
 
 def _checked_saved(frame, table, R):
@@ -169,7 +168,7 @@ def _checked_saved(frame, table, R):
     if not isinstance(saved.layout, tuple) or len(saved.layout) != 2:
         raise refuse(field, saved.layout, "must be positions and on_table, as they were before the foul")
     positions, on_table = checked_layout((f"{field}[0]", f"{field}[1]"), *saved.layout, table, R)
-    if mask(on_table) != saved.on_table | CUE_BIT:
+    if mask_of_present(on_table) != saved.on_table | CUE_BIT:
         raise refuse(f"{field}[1]", on_table.tolist(), "must hold the cue ball and the balls of state.frame.saved.on_table, no others")
     check_in_hand("state.frame.saved.in_hand", saved.in_hand, f"{field}[0]", positions)
     return replace(saved, layout=layout_of(positions, on_table))

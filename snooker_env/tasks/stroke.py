@@ -1,30 +1,39 @@
-"""How is a shot carried out, and what does the referee see of it? Noise, strike and engine in one; the event log read as a ``Stroke``."""
+"""How is one stroke played, on one table or on thousands? From the action to the balls at rest and what the referee sees of it.
 
-from typing import Any
+Visits and frames play their strokes here: ``address`` (placement, action, execution error, strike), then ``engine.run_batch``, then each
+its own referee. Kernels go over the tables named by ``which``; row j of the ``ShotBuffers`` is the shot on table which[j]. Each table
+draws from its own stream (``game.philox``), so that no table's result depends on another, on their number or on the threads.
+"""
 
 import numpy as np
 
-from .._check import choice, refuse
 from .._jit import entry, kernel
 from ..game.balls import BALL_RADIUS, CUE, N_BALLS, TOUCH, bits
-from ..game.referee import Stroke
-from ..physics import cue
-from ..physics.engine import EventKind
-from ..physics.impact.contact import parse_fidelity
-from ..physics.parameters import Physics
-from ..physics.table import Table
-from ..simulation import play
-from .box_actions import AIMS, Actions, tip
-from .discrete_actions import Choices
-from .noise import Noise
-from .table_fit import bed_of
+from ..game.frame_columns import IN_HAND, strikeable
+from ..game.in_hand import nearest_place
+from ..game.pots import POT_COLUMNS
+from ..physics import cloth, cue, engine
+from ..physics.engine import EventKind, Status
+from ..physics.impact.polynomial import WORK
+from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
+from . import discrete_actions
+from .box_actions import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, place_of, shot_of, tip_on_disc
+from .noise import executed
 
-ACTIONS = ("box", "discrete")
 AT_ONCE = 1e-9
 """Contacts nearer than this [s] are simultaneous."""
 
-_BITS = 1 << np.arange(N_BALLS)
+# Columns of what is kept of a strike: the five numbers after it, and the speed that was intended.
+(VX, VY, WX, WY, WZ, SPEED) = range(6)
+
+# Columns of what the referee sees of a stroke: masks of balls, then the paths before it (only where misses are called).
+(FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH) = range(6)
+
 _BALL_BALL = int(EventKind.BALL_BALL)
+_WHY = {
+    Status.TOO_MANY_EVENTS: f"did not come to rest within {MAX_EVENTS} events: a ball may be held against another; try other physics",
+    Status.IMPACT_UNSOLVED: "holds an impact that did not end: try another fidelity, or less extreme friction",
+}
 
 
 @kernel
@@ -55,60 +64,123 @@ def first_struck(event_time, event_what, n_events, touching, speed):
     return first, touching & first if start * speed <= 10 * TOUCH else 0
 
 
-@entry
-def _seen(event_time, event_what, positions, on_table, potted, speed):
+@kernel
+def place(positions, on_table, x, y):
+    """Put the cue ball in hand on the free place of the D nearest to (x, y); it stays where it is if there is none."""
+    on_table[CUE] = False
+    x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS)
+    on_table[CUE] = True
+    if free:
+        positions[CUE, 0], positions[CUE, 1] = x, y
+
+
+@kernel
+def strike(intended, positions, on_table, stream, options, noise, j, r, v, w, here, shots):
+    """Shot j: the table as it lies, and the cue ball struck as ``intended`` = (speed, side, top, aim, elevation), errors included."""
+    speed, side, top, aim, elevation = executed(*intended, noise, stream)
+    side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
+    shot = shots[j]
+    (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS])
+    shot[SPEED] = intended[0]
+    for i in range(N_BALLS):
+        r[j, i, 0], r[j, i, 1], here[j, i] = positions[i, 0], positions[i, 1], on_table[i]
+        v[j, i, 0] = v[j, i, 1] = w[j, i, 0] = w[j, i, 1] = w[j, i, 2] = 0.0
+    v[j, CUE, 0], v[j, CUE, 1] = shot[VX], shot[VY]
+    w[j, CUE, 0], w[j, CUE, 1], w[j, CUE, 2] = shot[WX], shot[WY], shot[WZ]
+
+
+@entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen,))
+def address(which, actions, positions, on_table, game, streams, options, noise, phys, fidelity, n_steps, r, v, w, here, shots):
+    """Carry the actions (n, k) of the tables ``which`` out up to the strike: shot j is that of table which[j]."""
+    found = np.empty((discrete_actions.POTS if options[A_DISCRETE] else 1, POT_COLUMNS))
+    motion, phase, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    for j in range(which.shape[0]):
+        k = which[j]
+        a, p, on = actions[k], positions[k], on_table[k]
+        if game[k, IN_HAND] and options[A_PLACEMENT]:
+            x, y = place_of(a, options)
+            place(p, on, x, y)
+        mask = strikeable(game[k], bits(on))
+        if options[A_DISCRETE]:
+            intended = discrete_actions.chosen(
+                int(a[0]), p, on, mask, phys, options[A_END_MASS], fidelity, n_steps, found, motion, phase, work
+            )
+        else:
+            intended = shot_of(a, p, on, mask, options, found)
+        strike(intended, p, on, streams[k], options, noise, j, r, v, w, here, shots)
+
+
+@kernel
+def see(j, event_time, event_what, n_events, potted, positions, on_table, speed, seen):
+    """What the referee sees of shot j, played from ``positions`` and ``on_table`` (as before it): its row of ``seen``."""
     touching = touching_balls(positions, on_table)
-    first, moved = first_struck(event_time, event_what, len(event_time), touching, speed)
-    return first, touching, moved, bits(potted)
+    first, moved = first_struck(event_time[j], event_what[j], n_events[j], touching, speed)
+    down = 0
+    for i in range(N_BALLS):
+        if potted[j, i] >= 0:
+            down |= 1 << i
+    seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN] = first, touching, moved, down
 
 
-def mask(balls):
-    """The mask of a bool array (22,)."""
-    return int(balls @ _BITS)
+class ShotBuffers:
+    """Work space for up to m shots at once, each with a log of ``log`` events and, if wanted, its path."""
+
+    def __init__(self, m, log=512, *, path=False):
+        self.log = log
+        self.r, self.v, self.w = np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 3))
+        self.here, self.potted = np.zeros((m, N_BALLS), np.bool_), np.zeros((m, N_BALLS), np.int64)
+        self.shots, self.seen = np.zeros((m, 6)), np.zeros((m, 6), np.int64)
+        self.event_time, self.event_what = np.zeros((m, log)), np.zeros((m, log, 3), np.int32)
+        self.segments = np.zeros((m, 2 * log + N_BALLS + 2 if path else 0, cloth.COLUMNS + 2))
+        self.status, self.n_events, self.n_segments = (np.zeros(m, np.int64) for _ in range(3))
+        self.duration = np.zeros(m)
+        self.enlarged = None
+        """Where the last shot is that needed more room."""
+
+    def __len__(self):
+        return len(self.duration)
+
+    def again(self, j, log):
+        """Work space for shot j alone with a log of that length: struck as before, ``r`` and ``here`` to be filled in."""
+        one = ShotBuffers(1, log, path=self.segments.shape[1] > 0)
+        one.shots[0], one.seen[0] = shot, _ = self.shots[j], self.seen[j]
+        one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
+        return one
+
+    def shot(self, j, physics):
+        """Shot j as a ``Shot``."""
+        n = self.n_events[j]
+        events = np.zeros(n, EVENT)
+        events["time"] = self.event_time[j, :n]
+        for c, name in enumerate(("kind", "i", "j")):
+            events[name] = self.event_what[j, :n, c]
+        segments = self.segments[j, : self.n_segments[j]].copy()
+        return Shot(self.r[j].copy(), self.potted[j].copy(), self.here[j].copy(), float(self.duration[j]), events, segments, physics)
 
 
-class Shooter:
-    """Everything between an intended shot and the balls at rest; one for all players of an environment."""
-
-    def __init__(self, actions: Actions | Choices, noise: Noise, physics: Physics, table: Table, fidelity):
-        self.actions: Any = actions  # a frame is never played with Choices
-        self.noise, self.physics, self.table, self.fidelity = noise, physics, table, fidelity
-
-    def shoot(self, intended: tuple[float, float, float, float, float], positions, on_table, rng, *, path=False):
-        """The ``Shot`` that ``intended`` = (speed, side, top, aim, elevation) becomes; noise is drawn from ``rng``. Nothing is changed."""
-        speed, side, top, aim, elevation = self.noise.draw(rng, *intended, self.physics.R)
-        side, top = tip(float(side), float(top), self.physics.max_offset)
-        v, w = cue.strike(speed, aim, side, top, elevation, self.physics)
-        velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
-        velocities[CUE], spins[CUE] = v[:2], w
-        return play(positions, velocities, spins, on_table, self.physics, self.table, self.fidelity, path=path)
+def run(buffers, m, rules, phys):
+    """Play the first m shots of the buffers until all balls are at rest; ``phys``: the packed ``rules.physics``."""
+    table, (fidelity, n_steps) = rules.table, rules.fidelity
+    buffers.enlarged = None
+    engine.run_batch(
+        buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted, phys, table.noses, table.jaws, table.falls, fidelity, n_steps,
+        MAX_EVENTS, buffers.event_time, buffers.event_what, buffers.segments, buffers.status, buffers.n_events, buffers.n_segments,
+        buffers.duration, 0, m,
+    )  # fmt: skip
 
 
-def shooter_of(aim, elevation, placement, decision, noise, physics, table, fidelity, action="box"):
-    """The ``Shooter`` of an environment's arguments, each as documented in ``SnookerEnv``. Raises ValueError."""
-    world = Physics.of(physics)
-    if world.R != BALL_RADIUS:
-        raise refuse("physics.R", world.R, f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it")
-    world.check_stopping()
-    cloth = bed_of(table)
-    quality, errors = parse_fidelity(fidelity), Noise.of(noise)
-    if choice("action", action, ACTIONS) == "discrete":
-        for name, value in (("elevation", elevation), ("placement", placement), ("decision", decision)):
-            if value is not False:
-                raise refuse(name, value, 'must be False with action="discrete"')
-        choice("aim", aim, AIMS)  # it has no say: the aim is solved
-        return Shooter(Choices(world), errors, world, cloth, quality)
-    return Shooter(Actions(aim, elevation, placement, world, decision), errors, world, cloth, quality)
+def run_again(buffers, j, k, positions, on_table, rules, phys):
+    """Shot j, on table k, whose log was full: play it once more with more room, from the table as it lies. Returns its own buffers.
 
-
-def stroke_of(shot, positions, on_table, speed):
-    """What the referee sees of a ``Shot`` played at cue speed ``speed`` [m/s] from ``positions`` (22, 2) and ``on_table`` (22,): first
-    contact, touching balls, pots.
-
-    No ball leaves the table and the cue ball jumps none: the simulation is planar.
+    Raises SimulationError if that is not why it did not end.
     """
-    what = np.stack([shot.events[name] for name in ("kind", "i", "j")], axis=1)
-    first, touching, moved, potted = _seen(
-        shot.events["time"].copy(), what, np.array(positions), np.array(on_table), shot.potted >= 0, float(speed)
-    )
-    return Stroke(first=first, potted=potted, touching=touching, moved=moved)
+    one, status = buffers, buffers.status[j]
+    while status == Status.LOG_FULL:
+        one = buffers.again(j, 4 * one.log)
+        one.r[0], one.here[0] = positions, on_table
+        run(one, 1, rules, phys)
+        status = one.status[0]
+    if status != Status.OK:
+        raise SimulationError(f"the shot on table {k} {_WHY[Status(status)]}")
+    buffers.enlarged = one
+    return one

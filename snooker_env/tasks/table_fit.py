@@ -14,7 +14,7 @@ ROUNDING = 1e-9
 """Noses, jaws and falls may be off by this [m]."""
 
 
-def bed_of(table):
+def table_of(table):
     """The ``Table`` of an environment's argument. Raises ValueError unless every place that a layout may deal is free on it.
 
     Spots, rack, D, sprinkled balls and respotted ones all lie where a ball's centre is between the noses, |x| <= 0.86275 and
@@ -55,7 +55,7 @@ def _check_pockets(cloth):
 
 
 def fitted(layout, cloth) -> Plan:
-    """The ``Plan`` of a layout on a table that ``bed_of`` has passed: without the opened tables that do not fit its pockets."""
+    """The ``Plan`` of a layout on a table that ``table_of`` has passed: without the opened tables that do not fit its pockets."""
     plan = plan_of(layout)
     return plan_of(layout, _unfit(cloth)) if len(plan.tables) else plan
 

@@ -59,9 +59,9 @@ def random_play(env, seed, steps):
     for _ in range(steps):
         if not env.agents or any(env.terminations.values()):
             return
-        player, before = env.agent_selection, env.table.frame
+        player, before = env.agent_selection, env.frame
         env.step(rng.uniform(-1, 1, 7).astype(np.float32))
-        yield player, before, env.table.frame
+        yield player, before, env.frame
 
 
 def test_the_same_player_stays_selected_while_he_scores_and_no_longer():
@@ -85,7 +85,7 @@ def test_whole_matches_end_for_both_and_somebody_wins():
         for player in env.agent_iter():
             _, gained, terminated, truncated, info = env.last()
             totals[player] += gained
-            frame = env.table.frame
+            frame = env.frame
             env.step(None if terminated or truncated else env.action_space(player).sample())
         assert not env.agents and frame.phase == "over" and info["winner"] == frame.winner
         want = frame.scores if reward == "points" else (frame.winner == 0, frame.winner == 1)
@@ -106,7 +106,7 @@ def put(env, places, **fields):
     for ball, place in places.items():
         positions[ball], on_table[ball] = place, True
     mask = sum(1 << ball for ball in places if ball)
-    frame = Frame(**{"on_table": mask, "in_hand": False, "miss": env.table.miss} | fields)
+    frame = Frame(**{"on_table": mask, "in_hand": False, "miss": env.options.miss} | fields)
     env.reset(seed=1)
     state = env.get_state() | {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
     env.reset(options={"state": json.loads(json.dumps(state))})
@@ -121,9 +121,9 @@ def test_the_decision_after_a_foul_is_part_of_the_action(decision, turn, played)
     """Player 1 comes to the table after a foul: an easy pot if he plays; or player 0 has to play again."""
     env = put(sn.match_env(aim="target"), PLACES, phase="choice", striker=1, scores=(0, 4))
     assert env.agent_selection == "player_1" and env.infos["player_1"]["choice"]
-    before = env.table.positions.tobytes()
+    before = env.positions.tobytes()
     env.step(np.array([-0.5, 0, 0, 0, 0, 0, decision], np.float32))
-    assert env.agent_selection == turn and (env.table.positions.tobytes() != before) == played
+    assert env.agent_selection == turn and (env.positions.tobytes() != before) == played
     assert env.rewards == ({"player_0": -1.0, "player_1": 1.0} if played else {"player_0": 0.0, "player_1": 0.0})
     assert env.strokes == played
 
@@ -131,13 +131,13 @@ def test_the_decision_after_a_foul_is_part_of_the_action(decision, turn, played)
 def test_after_a_miss_the_balls_may_be_replaced():
     env = sn.match_env(miss="clear_path", layout="break_off")
     env.reset(seed=3)
-    offender, before = env.agent_selection, env.table.positions.copy()
+    offender, before = env.agent_selection, env.positions.copy()
     env.step(np.array([-0.9, 0, 0, -0.5, 0.6, -1.0, 0], np.float32))  # with the reds in sight, into the bottom cushion
-    assert env.table.frame.miss_called and env.agent_selection != offender
-    moved = env.table.positions.copy()
+    assert env.frame.miss_called and env.agent_selection != offender
+    moved = env.positions.copy()
     env.step(np.array([0, 0, 0, 0, 0, 0, 1.0], np.float32))
-    assert env.agent_selection == offender and not np.array_equal(moved, env.table.positions)
-    assert np.array_equal(before[1:], env.table.positions[1:]) and env.table.frame.in_hand
+    assert env.agent_selection == offender and not np.array_equal(moved, env.positions)
+    assert np.array_equal(before[1:], env.positions[1:]) and env.frame.in_hand
 
 
 @pytest.mark.parametrize(("x", "back", "place"), [(0.0, -1.0, (0.0, -1.0475)), (0.0, 1.0, (0.0, -1.3395)), (-1.0, 0.3, (-0.292, -1.0475))])
@@ -146,7 +146,7 @@ def test_the_place_in_the_d_is_part_of_the_action(x, back, place):
     put(env, PLACES | {CUE: (0.1, -1.2)}, in_hand=True)
     env.step(np.array([-0.5, 0, 0, 0.2, x, back, 0], np.float32))
     assert env._last_played.shot.at(0.0)[0][CUE] == pytest.approx(place, abs=1e-6)
-    moved = env.table.positions[CUE].copy()
+    moved = env.positions[CUE].copy()
     env.step(np.array([-0.5, 0, 0, 0.2, x, back, 0], np.float32))  # no longer in hand: not moved first
     assert env._last_played.shot.at(0.0)[0][CUE] == pytest.approx(moved, abs=1e-12)
 
@@ -199,7 +199,7 @@ def test_a_state_repeats_its_errors_and_a_seed_draws_others():
         env.reset(seed=seed, options={"state": state})
         assert {key for key, value in env.get_state().items() if value != state[key]} == (set() if seed is None else {"rng"})
         env.step(np.zeros(7, np.float32))
-        ends.append(env.table.positions.tobytes())
+        ends.append(env.positions.tobytes())
     assert ends[0] == ends[1] and len(set(ends)) == 51 and ends[-1] == ends[2 + 7]
 
 

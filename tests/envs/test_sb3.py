@@ -14,7 +14,7 @@ from agents.features import pot_features
 from agents.features.views import training_tables
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.sb3 import SnookerVecEnv
-from snooker_env.tasks.visit import COUNTS, REALS
+from snooker_env.tasks.tables import COUNTS, REALS
 from tests.processes import python
 from tests.refusals import refused
 
@@ -145,11 +145,11 @@ def test_without_stable_baselines_one_line_says_how_to_get_it():
 
 def test_attributes():
     env = SnookerVecEnv(2)
-    assert env.get_attr("num_envs") == [2, 2] and env.has_attr("shooter") and not env.has_attr("no_such") and not env.has_attr("last_shot")
+    assert env.get_attr("num_envs") == [2, 2] and env.has_attr("options") and not env.has_attr("no_such") and not env.has_attr("last_shot")
     env.seed(3)
     env.reset()
     assert env.get_attr("np_random_seed", [1]) == [4] and env.get_attr("points") == [0, 0]
-    assert [p.tobytes() for p in env.get_attr("positions")] == [p.tobytes() for p in env.tables.visits.positions]
+    assert [p.tobytes() for p in env.get_attr("positions")] == [p.tobytes() for p in env.tables.tables.positions]
     with pytest.raises(AttributeError, match="cannot be set"):
         env.set_attr("observation", "balls")
     with pytest.raises(ValueError, match="method_name"):

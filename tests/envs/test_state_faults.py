@@ -14,8 +14,6 @@ from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.frame import Frame, Saved
 from snooker_env.game.referee import FULL_TABLE, Stroke
-from snooker_env.tasks.frame_table import FrameTable
-from snooker_env.tasks.stroke import shooter_of
 from tests.mutations import at, frozen, kind_of, mutations, names_it
 from tests.refusals import refused
 from tests.tables import PLACES, frame_env, frame_state
@@ -47,7 +45,7 @@ def frame_states():
             if env.over or len(found) == len(WANTED):
                 break
             for name, wanted in WANTED.items():
-                if name not in found and wanted(env.frames.table.frame):
+                if name not in found and wanted(env.frame):
                     found[name] = plain(env.get_state())
             env.step(rng.uniform(-1, 1, 7))
     assert len(found) == len(WANTED), set(WANTED) - set(found)
@@ -238,21 +236,21 @@ def test_the_position_to_which_a_frame_returns_is_always_on_the_table(frame_stat
         except ValueError as error:
             assert str(error).startswith("state.frame.saved.")
             continue
-        env.table.choose("replace")
-        env.table.shooter.table.check(env.table.positions, sn.Physics.preset("paper").R, on_table=env.table.on_table)
+        env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))  # hands the table back, with the balls replaced
+        sn.Table.preset("match").check(env.positions, sn.Physics.preset("paper").R, on_table=env.on_table)
         moved += 1
     assert 20 < moved < 180
 
 
 def test_a_layout_is_kept_by_the_rule_of_the_miss_only():
-    table = FrameTable(shooter_of("target", False, True, True, "none", "paper", "match", "standard"))
-    table.start(SPOTS.copy(), np.ones(22, bool), breaker=0, in_hand=True)
-    table.play((1.0, 0.0, 0.0, -np.pi / 2, 0.0), np.random.default_rng(0))
-    state = plain(table.get_state())
+    env = sn.match_env()
+    env.reset(seed=1)
+    env.step(np.array([-0.8, 0, 0, -0.5, 0, 0, 0]))  # at the bottom cushion, hitting nothing
+    state = plain(env.get_state())
     assert state["frame"]["phase"] == "choice" and state["frame"]["saved"]["layout"] is None
-    table.set_state(state)
+    env.set_state(state)
     state["frame"]["saved"]["layout"] = [state["positions"], state["on_table"]]
-    refused(lambda: table.set_state(state), "state.frame.saved.layout", "a layout", 'must be None with miss = "off"')
+    refused(lambda: env.set_state(state), "state.frame.saved.layout", "a layout", 'must be None with miss = "off"')
 
 
 @pytest.mark.parametrize(

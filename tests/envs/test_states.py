@@ -11,7 +11,6 @@ from gymnasium.utils.env_checker import data_equivalence
 
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BallOn
-from snooker_env.tasks import observations
 from tests.tables import jsonable
 
 
@@ -40,7 +39,7 @@ def test_a_saved_state_plays_on_bit_for_bit(arguments):
     env = midway(**arguments)
     text = json.dumps(env.get_state())
     assert env.ball_on == BallOn.ANY_COLOUR and env.points > 0
-    last = observations.observe(env.observation, env.positions, env.on_table, env.ball_on, env.on, env.in_hand, env.points)
+    last, _ = copy.deepcopy(env).reset(options={"state": env.get_state()})
     want = shots(env)
     for how in ("set_state", "reset", "elsewhere"):
         other = env if how in ("set_state", "reset") else SnookerEnv(aim="target", noise="club", layout="random:6", **arguments)

@@ -13,10 +13,9 @@ from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode
 
 import snooker_env as sn
-from snooker_env.envs import vector
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.tasks import visit
+from snooker_env.tasks import stroke
 
 MODES = list(AutoresetMode)
 
@@ -102,7 +101,7 @@ def test_numbers_of_tables_and_threads_do_not_matter(monkeypatch):
     """Table k of few is table k of many, whatever the chunks."""
     runs = []
     for n, threads, chunk in [(9, 1, 128), (9, 1, 2), (300, 1, 128), (300, 3, 7), (300, 8, 64)]:
-        monkeypatch.setattr(vector, "CHUNK", chunk)
+        monkeypatch.setattr("snooker_env.tasks.threads.CHUNK", chunk)
         env = native(n, threads=threads, noise="club", aim="target", autoreset_mode=AutoresetMode.SAME_STEP)
         out = [env.reset(seed=5)[0][:9]]
         for step in range(10):
@@ -295,7 +294,7 @@ def test_copies_play_on_alike(copied):
     a = np.random.default_rng(0).uniform(-1, 1, (20, 4))
     env.step(a)
     twin = copied(env)
-    assert twin.visits.rules.plan.tables is env.visits.rules.plan.tables  # the bank is not copied
+    assert twin.tables.rules.plan.tables is env.tables.rules.plan.tables  # the bank is not copied
     for _ in range(3):
         assert same(env.step(a), twin.step(a))
 
@@ -313,10 +312,10 @@ def test_pictures_of_all_tables():
 
 def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
     """The same shots with room for three events at first as with room for 512."""
-    original, runs = visit.Work.__init__, []
+    original, runs = stroke.ShotBuffers.__init__, []
     for log in (512, 3):
         with monkeypatch.context() as patch:
-            patch.setattr(visit.Work, "__init__", lambda self, m, first=log, **more: original(self, m, first, **more))
+            patch.setattr(stroke.ShotBuffers, "__init__", lambda self, m, first=log, **more: original(self, m, first, **more))
             env = native(20, noise="club", aim="target", autoreset_mode=AutoresetMode.SAME_STEP)
             env.reset(seed=3)
             runs.append([env.step(np.full((20, 4), 0.1))[:4] for _ in range(4)])
@@ -329,14 +328,14 @@ def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_shot_that_cannot_be_computed_names_its_table(monkeypatch, threads):
-    monkeypatch.setattr(visit, "MAX_EVENTS", 40)
+    monkeypatch.setattr(stroke, "MAX_EVENTS", 40)
     env = native(40, threads=threads)
     env.reset(seed=0)
-    before = env.visits.positions.copy()
+    before = env.tables.positions.copy()
     with pytest.raises(sn.SimulationError, match=r"the shot on table \d+ did not come to rest") as info:
         env.step(np.full((40, 4), 0.9))
     k = int(str(info.value).split("table ")[1].split()[0])
-    assert np.array_equal(env.visits.positions[k], before[k])
+    assert np.array_equal(env.tables.positions[k], before[k])
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(np.zeros((40, 4)))
     env.reset()

@@ -21,7 +21,7 @@ def test_no_ghost_lies_in_a_cushion():
     deal = plan_of("opened")
     for seed in range(200):
         positions, on_table = np.zeros((1, 22, 2)), np.zeros((1, 22), bool)
-        deal_tables(np.ones(1, bool), deal.code, deal.tables, stream_of(np.random.default_rng(seed))[None], positions, on_table)
+        deal_tables(np.zeros(1, np.int64), deal.code, deal.tables, stream_of(np.random.default_rng(seed))[None], positions, on_table)
         found = pots(positions[0], on_table[0], mask_of(range(1, 16)))
         assert (np.abs(found[:, 2]) <= HALF_WIDTH - BALL_RADIUS + 1e-9).all()
         assert (np.abs(found[:, 3]) <= HALF_LENGTH - BALL_RADIUS + 1e-9).all()

@@ -8,6 +8,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game import SPOTS, BallOn
+from snooker_env.game.frame_columns import FREE_BALL
 from snooker_env.planning import Position, Positions
 
 FULL = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (-0.3, 0.7)], "pink": (0.2, 0.1), "black": (0.0, 1.4605)}
@@ -125,8 +126,9 @@ def test_arrays_of_the_wrong_shape_or_type_are_refused(arrays, complaint):
 
 
 def test_a_free_ball_is_refused():
-    env = sn.SnookerEnv(task="frame")
+    env = sn.SnookerVectorEnv(3, task="frame")
     env.reset(seed=0)
-    env.frames.table.frame = dataclasses.replace(env.frames.table.frame, free_ball=True)
-    with pytest.raises(ValueError, match="free_ball = True: must be False: a planned stroke is judged as one of a visit"):
+    assert len(Positions.of(env)) == 3
+    env.tables.game[1, FREE_BALL] = True
+    with pytest.raises(ValueError, match="free ball on table 1 = True: must be False: a planned stroke is judged as one of a visit"):
         Positions.of(env)

@@ -33,14 +33,14 @@ def test_the_masks_are_those_of_the_environment():
 
 def test_an_action_of_a_speed_and_a_direction_is_that_stroke():
     """A ball alone: where it goes and how far is what ``strike`` says; side is compensated, the ball leaves along the aim."""
-    for speed, aim, side, top in ((1.0, 0.3, 0.0, 0.0), (0.8, -2.9, 0.3, 0.1), (0.7, 3.1, -0.2, -0.3)):
+    at = Position(cue=(0.0, 0.0), black=(0.0, -1.0))
+    for speed, aim, side, top in ((0.6, 0.3, 0.0, 0.0), (0.5, 2.9, 0.3, 0.1), (0.7, 3.1, -0.2, -0.3)):
         action = actions_of([speed], [aim], side, top)
-        at = Position(cue=(0.0, 0.0), black=(-0.6, 1.7), table=None)
         left = Planner({}).play(at, [0], action).afterstates.positions[0, 0]
-        assert np.arctan2(left[1], left[0]) == pytest.approx(np.angle(np.exp(1j * aim)), abs=0.02 if side else 1e-6)
+        assert np.arctan2(left[1], left[0]) == pytest.approx(aim, abs=1e-6)
         v, w = sn.strike(speed, 0.0, abs(side), top)
-        shot = sn.simulate([(0.0, 0.0)], [v[:2]], [w])
-        assert np.hypot(*left) == pytest.approx(np.hypot(*shot.positions[0]), rel=1e-4)
+        shot = sn.simulate([(0.0, 0.0)], [v[:2]], [w], None)
+        assert np.hypot(*left) == pytest.approx(np.hypot(*shot.positions[0]), rel=1e-6)
     assert actions_of([0.2, 7.0], [np.pi, 7 * np.pi / 2]).tolist() == [[-1, 0, 0, 1], [1, 0, 0, -0.5]]
 
 
@@ -70,7 +70,7 @@ def test_a_solved_aim_pots_where_the_straight_line_misses():
     solved = planner.pot_aim(at, n, found.ball[:, 0], targets, 2.9, side=0.3)
     assert np.array_equal(solved, pot_aim(at, n, found.ball[:, 0], targets, 2.9, side=0.3, ghosts=found.ghost[:, 0]))
     made = [(planner.play(at, n, actions_of(np.full(60, 2.9), aims, 0.3)).points > 0).mean() for aims in (solved, straight)]
-    assert made[0] > 0.9 and made[1] < 0.5
+    assert made[0] > 0.8 and made[1] < 0.5
 
 
 POT = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)])

@@ -27,15 +27,14 @@ ALLOWED = {
     "_registration": set(),
     "_autoregister": set(),
     "_check": set(),
-    "_processors": set(),
     "checks": {"_check", "physics"},
     "kernels": {"_jit", "game", "tasks"},
     "physics": BASE,
     "simulation": BASE | {"physics"},
     "game": BASE,
     "tasks": BASE | {"physics", "simulation", "game"},
-    "planning": BASE | {"_processors", "physics", "simulation", "game", "tasks", "envs"},
-    "envs": BASE | {"_processors", "physics", "simulation", "game", "tasks", "planning", "render"},
+    "planning": BASE | {"physics", "simulation", "game", "tasks"},
+    "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
     "render": {"_check", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"envs"},
@@ -113,7 +112,7 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
             assert not top, f"{name} imports {library} when it is imported, not when it is wanted"
 
 
-LATE = {"envs": (".render", ".planning"), "planning": (".envs",), "_warmup": (".planning", ".envs")}
+LATE = {"envs": (".render", ".planning"), "_warmup": (".planning", ".envs")}
 """What these parts import only when it is asked for."""
 
 

@@ -39,7 +39,7 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         speed, side, top = int(rng.integers(4, 9)), int(rng.integers(3)), int(rng.integers(5))
         env = SnookerEnv(action="discrete", layout="random:1", physics=physics)
         env.reset(seed=0)
-        env.visits.positions[0], env.visits.on_table[0], env.visits.game[0, :3] = positions, on_table, (1, 0, 0)
+        env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, :3] = positions, on_table, (1, 0, 0)
         env.step(choice_of(0, speed, side, top))
         v, w = env._work.v[0, 0], env._work.w[0, 0]
         start = env._work.shots[0]
@@ -81,7 +81,7 @@ def test_one_table_and_many_play_alike(noise):
     chosen = np.array([rng.choice(np.flatnonzero(m)) for m in masks])
     observations, rewards, *_ = many.step(chosen)
     for k, one in enumerate(ones):
-        assert np.array_equal(one.visits.action_masks()[0], masks[k])
+        assert np.array_equal(one.tables.action_masks()[0], masks[k])
         observation, reward, *_ = one.step(chosen[k])
         assert np.array_equal(observation, observations[k]) and reward == rewards[k]
 
@@ -89,7 +89,7 @@ def test_one_table_and_many_play_alike(noise):
 def test_masks_offer_the_pots_there_are():
     env = native(200, layout="random:1")
     env.reset(seed=0)
-    visits, masks = env.unwrapped.visits, env.unwrapped.action_masks()
+    visits, masks = env.unwrapped.tables, env.unwrapped.action_masks()
     assert masks.shape == (200, SIZE)
     counts = set()
     for k in range(200):
@@ -105,7 +105,7 @@ def test_without_a_pot_the_nearest_ball_on_is_struck_full():
     env.reset(seed=0)
     positions, on_table = np.zeros((22, 2)), np.zeros(22, bool)
     positions[0], positions[1], on_table[:2] = (0.0, 1.0), (0.0, 1.75), True  # at the middle of the end cushion: no pot
-    env.visits.positions[0], env.visits.on_table[0], env.visits.game[0, :3] = positions, on_table, (1, 0, 0)
+    env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, :3] = positions, on_table, (1, 0, 0)
     assert env.action_masks().sum() == STROKES
     info = env.step(choice_of(0, 4, 1, 2))[4]
     assert info["first_ball"] == 1 and env.last_shot.events["time"][0] > 0

@@ -6,11 +6,9 @@ import gymnasium
 import numpy as np
 import pytest
 
-from benchmarks import frames
+import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, CUE, D_RADIUS, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import Foul
-from snooker_env.tasks.frame_table import FrameTable
-from snooker_env.tasks.stroke import shooter_of
 from tests.tables import PLACES, frame_env, frame_state
 
 TO_BLUE = 0.0
@@ -22,7 +20,7 @@ def test_a_step_ends_when_the_agent_is_to_play_or_the_frame_is_over():
     for seed in range(10):
         env.reset(seed=seed)
         while not env.over:
-            assert env.frames.table.frame.striker == 0
+            assert env.frame.striker == 0
             _, _, terminated, truncated, info = env.step(env.action_space.sample())
             assert terminated == env.over and truncated is False
             assert (info["winner"] >= 0) == terminated
@@ -44,7 +42,7 @@ def test_alone_a_miss_and_a_foul_hand_the_table_back():
     before = env.positions[BLUE].copy()
     _, reward, terminated, _, info = env.step([-0.9, 0, 0, TO_BLUE, 0, 0, 0])
     assert (reward, info["fouls"], info["opponent_score"], info["opponent_strokes"]) == (-5.0, Foul.WRONG_FIRST, 5.0, 0)
-    assert not terminated and not env.frames.table.frame.free_ball and env.frames.table.frame.phase == "stroke"
+    assert not terminated and not env.frame.free_ball and env.frame.phase == "stroke"
     assert not np.array_equal(env.positions[BLUE], before)  # from where the balls lie
 
 
@@ -70,7 +68,7 @@ FOULED = {"phase": "choice", "striker": 0, "scores": (0, 4)}
 def test_after_a_foul_the_action_decides(decision, own):
     """Without a miss called, "replace" is no option and means to play."""
     env = frame_state(frame_env(opponent="ghost_ball"), PLACES, FOULED)
-    assert env.frames.observe()[-3] == 1.0  # a decision is open
+    assert env.tables.observe(np.zeros(1, np.int64), 0)[0][-3] == 1.0  # a decision is open
     _, _, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, decision])
     assert (info["events"] > 0) == own
     assert own or info["opponent_strokes"] > 0
@@ -82,23 +80,23 @@ def test_without_the_option_the_agent_always_plays():
 
 
 def test_replacing_after_a_miss_brings_the_balls_back():
-    shooter = shooter_of("absolute", False, True, True, "none", "paper", "match", "standard")
-    table, rng = FrameTable(shooter, miss="clear_path"), np.random.default_rng(0)
-    table.start(*frames.break_off(rng), breaker=0, in_hand=True)
-    table.place(*SPOTS[CUE])
-    before = table.positions.tobytes()
-    table.play((1.0, 0.0, 0.0, -np.pi / 2, 0.0), rng)  # at the bottom cushion, hitting nothing
-    assert table.frame.choices == ("play", "play_again", "replace") and table.positions.tobytes() != before
-    after = json.loads(json.dumps(table.get_state()))
-    table.set_state(after)
-    assert table.act([0, 0, 0, 0, 0, 0, 1.0], rng) is None
-    assert table.positions.tobytes() == before and table.frame.striker == 0 and table.frame.in_hand
+    env = sn.match_env(miss="clear_path")
+    env.reset(seed=1)
+    offender = env.frame.striker
+    env.step(np.array([-0.8, 0, 0, -0.5, 0.3, 0.2, 0]))  # at the bottom cushion, hitting nothing
+    placed = 0.3 * D_RADIUS, -1.0475 - D_RADIUS * np.sqrt(1 - 0.3**2) * 0.6
+    assert env.frame.choices == ("play", "play_again", "replace") and not np.allclose(env.positions[CUE], placed)
+    after = json.loads(json.dumps(env.get_state()))
+    env.set_state(after)
+    env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))
+    assert env.strokes == 1 and np.allclose(env.positions[CUE], placed, rtol=0, atol=1e-15)
+    assert env.frame.striker == offender and env.frame.in_hand
 
 
 def test_a_free_ball_is_seen_and_scores():
     places = {CUE: (0.3, 1.1), BLUE: (0.6, 1.4), 1: (-0.5, -1.2), PINK: SPOTS[PINK], BLACK: (0.0, 0.0)}
     env = frame_state(frame_env(opponent="ghost_ball"), places, FOULED | {"free_ball": True})
-    assert env.on >> BLUE & 1 and env.on >> 1 & 1 and env.frames.observe()[-4] == 1.0
+    assert env.on >> BLUE & 1 and env.on >> 1 & 1 and env.tables.observe(np.zeros(1, np.int64), 0)[0][-4] == 1.0
     _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
     assert (reward, info["points"], env.ball_on) == (1.0, 1.0, BallOn.ANY_COLOUR)
     assert np.array_equal(env.positions[BLUE], SPOTS[BLACK])  # it came back; its own spot is taken
@@ -116,7 +114,7 @@ def test_points_add_up_to_the_difference_and_win_says_who_won(opponent):
         for reward in ("points", "win"):
             env = frame_env(opponent=opponent, reward=reward, layout="random:2", noise="club")
             env.reset(seed=seed)
-            start = env.frames.table.frame.scores
+            start = env.frame.scores
             rng, total, steps = np.random.default_rng(seed), 0.0, 0
             while not env.over:
                 _, r, _, _, info = env.step(rng.uniform(-1, 1, 7))

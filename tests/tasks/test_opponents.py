@@ -12,11 +12,9 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.layouts import layout
-from snooker_env.tasks.frame_table import FrameTable
-from snooker_env.tasks.opponents import GhostBall
 from snooker_env.tasks.saved_models import Saved
-from snooker_env.tasks.stroke import shooter_of
+from snooker_env.tasks.stroke import ShotBuffers
+from snooker_env.tasks.tables import I_POINTS, Crew
 from tests.bombs import bombed, rezipped, told
 from tests.tables import PLACES, frame_env, frame_state
 
@@ -80,16 +78,18 @@ def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
     failing = False
     env.reset(seed=0)
     env.step(miss)
-    assert env.frames.table.frame.striker == 0
+    assert env.frame.striker == 0
 
 
 def test_the_ghost_ball_player_pots_what_is_there():
-    rng, potted = np.random.default_rng(0), 0
-    shooter = shooter_of("absolute", False, False, False, "none", "paper", "match", "standard")
-    for _ in range(60):
-        table = FrameTable(shooter)
-        table.start(*layout("pots:easy", rng), breaker=0, in_hand=False)
-        potted += GhostBall().play(table, None, rng, False).verdict.points
+    potted = 0
+    env = SnookerEnv(task="frame", layout="pots:easy", opponent="ghost_ball")
+    tables, player = env.tables, env.options.rules.opponent
+    for seed in range(60):
+        env.reset(seed=seed)
+        out = tables.output()
+        tables.turn(lambda which, buffers: player.prepare(tables, which, None, buffers), out, Crew(ShotBuffers(1)))
+        potted += out.reals[0, I_POINTS]
     assert potted > 30
 
 
@@ -101,7 +101,7 @@ def test_the_ghost_ball_player_beats_the_random_one():
         rng = np.random.default_rng(seed)
         while not env.over:
             env.step(rng.uniform(-1, 1, 6))
-        wins += env.frames.table.frame.winner
+        wins += env.frame.winner
     assert wins >= 7
 
 
@@ -140,14 +140,14 @@ def test_a_saved_model_may_play(tmp_path, task, name):
     trained.save(path)
     for decision in (False, True):
         env = SnookerEnv(task="frame", opponent=path, trust=True, decision=decision, **options)
-        network = env.frames.opponent.policy._network
+        network = env.options.rules.opponent.policy._network
         assert all((a == b).all() for a, b in zip(network.parameters(), trained.policy.parameters(), strict=True))
         runs = []
         for one in (env, copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
             one.reset(seed=2)
             out = [one.step(np.zeros(one.action_space.shape)) for _ in range(3) if not one.over]
             runs.append(out)
-            assert one.frames.opponent.policy._network is not None
+            assert one.options.rules.opponent.policy._network is not None
         assert data_equivalence(runs[0], runs[1], exact=True) and data_equivalence(runs[0], runs[2], exact=True)
 
 
@@ -238,7 +238,7 @@ def test_the_agents_of_this_project_see_more_than_a_frame_shows(name):
 def test_consent_is_a_plain_option_of_the_frame_task(saved):
     env = gymnasium.make("Snooker-v0", task="frame", opponent=str(saved / "visit.zip"), trust=True)
     spec = gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())
-    assert gymnasium.make(spec).unwrapped.frames.opponent.policy._network is not None
+    assert gymnasium.make(spec).unwrapped.options.rules.opponent.policy._network is not None
     state = random.getstate()
-    copy.deepcopy(env.unwrapped).frames.opponent.policy(env.observation_space.sample(), None)
+    copy.deepcopy(env.unwrapped).options.rules.opponent.policy(env.observation_space.sample(), None)
     assert random.getstate() == state  # loading takes no seed from the file

@@ -14,7 +14,7 @@ from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.frame import Frame
 from snooker_env.game.referee import Stroke
-from snooker_env.tasks.frame_table import MAX_STROKES
+from snooker_env.tasks.options import MAX_STROKES
 from tests.refusals import refused
 
 FOUL = np.array([-1.0, 0, 0, -0.5, 0, 0, -1], np.float32)
@@ -64,7 +64,7 @@ def test_a_match_of_fouls_and_orders_to_play_again_ends_by_itself():
         if any(env.truncations.values()):
             break
     assert env.strokes == MAX_STROKES == 1000 and all(env.truncations.values())
-    assert sum(env.table.frame.scores) >= 19_980 + 4 * 900 and env.infos["player_0"]["strokes"] == 1000
+    assert sum(env.frame.scores) >= 19_980 + 4 * 900 and env.infos["player_0"]["strokes"] == 1000
     assert all(env.observation_spaces[player].contains(env.observe(player)) for player in env.possible_agents)
 
 
@@ -114,7 +114,7 @@ def test_the_referee_stops_the_frame_after_the_very_stroke(opponent):
         with pytest.raises(gymnasium.error.ResetNeeded):
             env.step(np.zeros(7))
         assert json.dumps(env.get_state()) == before
-        cut += truncated and env.frames.table.frame.striker == 1
+        cut += truncated and env.frame.striker == 1
         other = frame_of(opponent=opponent, max_strokes=6)
         other.set_state(json.loads(before))  # in the middle of a visit of the opponent, too
         assert other.over and json.dumps(other.get_state()) == before
@@ -154,7 +154,7 @@ def test_it_is_sound_for_gymnasium_and_round_trips():
         spec = copy.deepcopy(gymnasium.spec("Snooker-v0"))  # it is the registry's own
         spec.kwargs = {"task": "frame", "max_strokes": limit}
         again = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(spec.to_json()))
-        assert again.unwrapped.frames.table.max_strokes == limit
+        assert again.unwrapped.options.max_strokes == limit
 
 
 def test_wrong_limits_are_refused_and_a_visit_has_none():

@@ -72,7 +72,7 @@ def test_some_opened_tables_do_not_fit_other_pockets():
 def test_every_layout_fits_every_table_that_is_accepted(name, layout):
     env = SnookerVectorEnv(256, table=FIT[name], layout=layout)
     env.reset(seed=11)
-    FIT[name].check(env.visits.positions, BALL_RADIUS, "positions", env.visits.on_table)
+    FIT[name].check(env.tables.positions, BALL_RADIUS, "positions", env.tables.on_table)
 
 
 @pytest.mark.parametrize("name", ["match", "tight", "sharp jaws"])
@@ -94,7 +94,7 @@ def test_others_stand_in_for_the_opened_tables_that_do_not_fit_and_no_other_deal
     dealt = []
     for each in (plan, fitted("opened", MATCH)):
         positions, on_table = np.zeros((len(streams), 22, 2)), np.zeros((len(streams), 22), bool)
-        deal_tables(np.ones(len(streams), bool), each.code, each.tables, streams.copy(), positions, on_table)
+        deal_tables(np.arange(len(streams)), each.code, each.tables, streams.copy(), positions, on_table)
         dealt.append(positions)
     other = (dealt[0] != dealt[1]).any((1, 2))
     assert 0 < other.sum() < 40
@@ -142,6 +142,6 @@ def test_shots_on_a_table_of_ones_own_are_played_on_it():
         env = SnookerVectorEnv(64, table=table, layout="random:10")
         env.reset(seed=3)
         rewards = env.step(np.random.default_rng(0).uniform(-1, 1, (64, 4)).astype(np.float32))[1]
-        ends.append((rewards, env.visits.positions.copy()))
+        ends.append((rewards, env.tables.positions.copy()))
     assert np.array_equal(ends[0][0], ends[1][0]) and np.array_equal(ends[0][1], ends[1][1])
     assert not np.array_equal(ends[0][1], ends[2][1])

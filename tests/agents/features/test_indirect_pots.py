@@ -270,7 +270,7 @@ def no_direct(n, wanted=lambda shots: True):
     tables = []
     env = SnookerVectorEnv(4000, layout="random:4", aim="absolute")
     env.reset(seed=7000)
-    for p, on in zip(env.visits.positions, env.visits.on_table, strict=True):
+    for p, on in zip(env.tables.positions, env.tables.on_table, strict=True):
         if len(tables) < n and not len(pots(p, on, mask_of(range(1, 5)), most=1)):
             places = {int(i): tuple(p[i]) for i in np.flatnonzero(on)}
             if wanted(found(places)):
@@ -313,7 +313,7 @@ def test_where_the_plain_line_pots_it_is_played():
         observations, _ = env.reset(seed=3)
         going = np.ones(60, bool)
         *_, info = env.step(player_of(name).act(env, observations, going))
-        after.append((info["points"], env.visits.positions))
+        after.append((info["points"], env.tables.positions))
     (points, places), (own_points, own_places) = after
     made = points > 0
     assert 30 < made.sum() < 60

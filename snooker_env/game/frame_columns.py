@@ -1,0 +1,189 @@
+"""How are frames kept by the thousand? The ``Frame`` of ``frame.py`` as one row of integers, and its rules as kernels.
+
+``frame.Frame`` is the specification that one reads; this is the same for machine code, and the tests hold the two equal stroke for stroke.
+A row (int64, ``COLUMNS`` wide) holds the fields of a ``Frame``. Three acts change it: ``after_stroke``, ``choose`` and ``draw``. The layout
+that "replace" brings back lies beside the rows, in arrays of its own: ``Layouts`` says which.
+
+The first five columns mean the same for a visit without a frame, whose rows hold nothing else.
+"""
+
+from collections import namedtuple
+
+import numpy as np
+
+from .._jit import kernel
+from .balls import COLOURS_MASK, N_BALLS, REDS_MASK, VALUES, BallOn, balls_on_kernel, count, next_on_kernel
+from .frame import PHASES, Frame, Saved
+from .ruling import FOUL, OUTCOME
+
+(BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
+"""A ``BallOn``; flags; points of the break so far; whether it has ended by the rules; steps of the episode, for a limit on them."""
+VISIT_COLUMNS = 5
+(
+    FREE_BALL, ON_TABLE, PHASE, STRIKER, BREAKER, SCORE_0, SCORE_1, WINNER, RESPOTTED_BLACK, MISS_CALLED, FAILURES, WARNED, SAVED,
+    SAVED_ON_TABLE, SAVED_BALL_ON, SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT, STROKES,
+) = range(5, 24)  # fmt: skip
+"""The fields of ``frame.Frame`` and ``frame.Saved`` (flags whether there are a ``Saved`` and a layout in it); strokes of both players."""
+COLUMNS = 24
+
+(STROKE, CHOICE, LOT, FINISHED) = range(4)
+"""Phases, in the order of ``frame.PHASES``."""
+(PLAY, PLAY_AGAIN, REPLACE) = range(3)
+"""What may be chosen after a foul."""
+
+_MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
+
+Layouts = namedtuple("Layouts", "positions on_table")
+"""Of n tables: positions (n, 22, 2) [m] and on_table (n, 22) bool before the last foul."""
+
+
+@kernel
+def strikeable(row, mask):
+    """Of the balls in ``mask`` those that may be struck first, with a free ball every colour; ``row``: of a visit or a frame."""
+    on = balls_on_kernel(row[BALL_ON], mask)
+    if row.shape[0] > FREE_BALL and row[FREE_BALL]:
+        on |= COLOURS_MASK & mask
+    return on
+
+
+@kernel
+def available(on_table, ball_on):
+    """``frame.points_available``."""
+    points = 8 * count(on_table & REDS_MASK)
+    if ball_on == 0:
+        points += 7
+    for i in range(N_BALLS):
+        if (on_table & COLOURS_MASK) >> i & 1:
+            points += VALUES[i]
+    return points
+
+
+@kernel
+def begin_frame(row, on_table, breaker, in_hand):
+    """A new frame with the balls of the mask ``on_table``."""
+    for c in range(row.shape[0]):
+        row[c] = 0
+    row[ON_TABLE] = on_table & ~1
+    row[BALL_ON], row[IN_HAND] = next_on_kernel(row[ON_TABLE]), in_hand
+    row[STRIKER] = row[BREAKER] = breaker
+    row[WINNER] = -1
+
+
+@kernel
+def _end(row, winner):
+    """The frame is over; what is void then (``frame._SETTLED``) is cleared."""
+    row[PHASE], row[OVER], row[WINNER] = FINISHED, 1, winner
+    row[BALL_ON] = -1
+    row[FREE_BALL] = row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = 0
+
+
+@kernel
+def lead_of(row, player):
+    """The player's score less the other's."""
+    return row[SCORE_0] - row[SCORE_1] if player == 0 else row[SCORE_1] - row[SCORE_0]
+
+
+@kernel
+def _is_miss(row, result, lead_before, available_before, failures, clear, full):
+    """Whether a foul is a miss too, ``row`` being that of after the stroke: ``Frame._is_miss``."""
+    if not result.fouls & _MISSED:
+        return False
+    if full and failures:
+        return True
+    after = abs(lead_of(row, 0)) >= available(row[ON_TABLE], row[BALL_ON])
+    return (clear or full) and not (abs(lead_before) >= available_before or after)
+
+
+@kernel
+def after_stroke(row, result, miss, clear, full, layout):
+    """One stroke on which the referee gave the ``Ruling`` result: ``Frame.play``.
+
+    ``miss``: whether misses are called; ``clear``, ``full``: the paths before the stroke; ``layout``: whether that before it was kept.
+    """
+    me = row[STRIKER]
+    other = 1 - me
+    failures, warned = row[FAILURES], row[WARNED]
+    lead_before, available_before = lead_of(row, 0), available(row[ON_TABLE], row[BALL_ON])
+    on_table, ball_on, in_hand, free_ball = row[ON_TABLE], row[BALL_ON], row[IN_HAND], row[FREE_BALL]
+    row[SCORE_0 + me] += result.points
+    row[SCORE_0 + other] += result.penalty
+    row[ON_TABLE] = result.on_table
+    if result.outcome == OUTCOME.STRIKER_WINS or result.outcome == OUTCOME.OPPONENT_WINS:
+        _end(row, me if result.outcome == OUTCOME.STRIKER_WINS else other)
+        return
+    row[STRIKER] = other if result.stays == 0 else me
+    row[POINTS] = row[POINTS] + result.points if result.stays == 1 else 0
+    row[BALL_ON], row[IN_HAND], row[FREE_BALL] = result.ball_on, result.in_hand, result.free_ball
+    row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = 0
+    if result.outcome == OUTCOME.RESPOTTED_BLACK:
+        row[PHASE], row[RESPOTTED_BLACK] = LOT, 1
+        return
+    if not result.fouls:
+        return
+    if warned and full and result.fouls & _MISSED:
+        _end(row, other)
+        return
+    called = miss and _is_miss(row, result, lead_before, available_before, failures, clear, full)
+    row[PHASE], row[MISS_CALLED] = CHOICE, called
+    row[FAILURES] = failures + 1 if called and full else 0
+    row[SAVED], row[SAVED_LAYOUT] = 1, layout
+    row[SAVED_ON_TABLE], row[SAVED_BALL_ON], row[SAVED_IN_HAND], row[SAVED_FREE_BALL] = on_table, ball_on, in_hand, free_ball
+
+
+@kernel
+def choose(row, what):
+    """The decision after a foul, one that is open: ``Frame.choose``. Whoever calls it puts a replaced layout back."""
+    row[PHASE] = STROKE
+    row[MISS_CALLED] = 0
+    if what == REPLACE:
+        row[STRIKER] = 1 - row[STRIKER]
+        row[WARNED] = row[FAILURES] >= 2
+        row[ON_TABLE], row[BALL_ON], row[IN_HAND] = row[SAVED_ON_TABLE], row[SAVED_BALL_ON], row[SAVED_IN_HAND]
+        row[FREE_BALL] = row[SAVED_FREE_BALL]
+        return
+    row[FAILURES] = row[SAVED] = row[SAVED_LAYOUT] = 0
+    if what == PLAY_AGAIN:
+        row[STRIKER] = 1 - row[STRIKER]
+        row[FREE_BALL] = 0
+
+
+@kernel
+def draw(row, first):
+    """Who plays first at a re-spotted black: ``Frame.draw``."""
+    row[PHASE], row[STRIKER], row[POINTS] = STROKE, first, 0
+
+
+def frame_of(row, miss, layouts, k):
+    """The ``Frame`` that row ``row`` (COLUMNS,) means; ``miss``: its rule, ``layouts``: ``Layouts``, of which row k is read."""
+    at = row.tolist()
+    saved = None
+    if at[SAVED]:
+        layout = None
+        if at[SAVED_LAYOUT]:
+            layout = tuple(map(tuple, layouts.positions[k].tolist())), tuple(layouts.on_table[k].tolist())
+        saved = Saved(
+            on_table=at[SAVED_ON_TABLE], ball_on=BallOn(at[SAVED_BALL_ON]), in_hand=bool(at[SAVED_IN_HAND]),
+            free_ball=bool(at[SAVED_FREE_BALL]), layout=layout,
+        )  # fmt: skip
+    return Frame(
+        scores=(at[SCORE_0], at[SCORE_1]), striker=at[STRIKER], breaker=at[BREAKER], break_points=at[POINTS], on_table=at[ON_TABLE],
+        ball_on=BallOn(at[BALL_ON]), in_hand=bool(at[IN_HAND]), free_ball=bool(at[FREE_BALL]),
+        respotted_black=bool(at[RESPOTTED_BLACK]), phase=PHASES[at[PHASE]], winner=None if at[WINNER] < 0 else at[WINNER], miss=miss,
+        miss_called=bool(at[MISS_CALLED]), failures=at[FAILURES], warned=bool(at[WARNED]), saved=saved,
+    )  # fmt: skip
+
+
+def write_frame(frame, strokes, row, layouts, k):
+    """Write a sound ``Frame`` into ``row`` (COLUMNS,), and the layout that it keeps into row k of ``layouts``."""
+    row[:] = 0
+    row[[BALL_ON, IN_HAND, POINTS, OVER]] = frame.ball_on, frame.in_hand, frame.break_points, frame.phase == "over"
+    row[[FREE_BALL, ON_TABLE, PHASE]] = frame.free_ball, frame.on_table, PHASES.index(frame.phase)
+    row[[STRIKER, BREAKER, SCORE_0, SCORE_1]] = frame.striker, frame.breaker, *frame.scores
+    row[[WINNER, RESPOTTED_BLACK]] = -1 if frame.winner is None else frame.winner, frame.respotted_black
+    row[[MISS_CALLED, FAILURES, WARNED, STROKES]] = frame.miss_called, frame.failures, frame.warned, strokes
+    saved = frame.saved
+    if saved is not None:
+        row[[SAVED, SAVED_ON_TABLE, SAVED_BALL_ON]] = 1, saved.on_table, saved.ball_on
+        row[[SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT]] = saved.in_hand, saved.free_ball, saved.layout is not None
+        if saved.layout is not None:
+            layouts.positions[k], layouts.on_table[k] = np.array(saved.layout[0]), np.array(saved.layout[1])

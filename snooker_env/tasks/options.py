@@ -1,0 +1,162 @@
+"""How is the game played that an environment offers? All its options in one frozen place, checked together when they are made.
+
+``SnookerEnv``, ``SnookerVectorEnv``, ``MatchEnv``, ``SnookerVecEnv`` and ``planning.Planner`` take the same ``Options``, or the same
+keywords, of which they make one.
+"""
+
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+import numpy as np
+
+from .._check import choice, integer, refuse, truth
+from ..game.balls import BALL_RADIUS
+from ..game.frame import MISS_RULES
+from ..game.layouts import Plan
+from ..physics.impact.contact import parse_fidelity
+from ..physics.parameters import Physics
+from ..physics.table import Table
+from .box_actions import AIMS, Actions
+from .discrete_actions import Choices
+from .noise import Noise
+from .observations import OBSERVATIONS
+from .opponents import opponent_of
+from .rewards import FRAME_REWARDS, REWARDS
+from .table_fit import fitted, table_of
+
+TASKS = ("visit", "frame")
+ACTIONS = ("box", "discrete")
+LAYOUTS = {"visit": "opened", "frame": "break_off"}
+"""What layout="default" is in each task."""
+MAX_STROKES = 1000
+"""Strokes of both players after which the referee stops a frame, unless told otherwise. Uniformly random players that aim near a pot needed
+263, and in 2,000 frames never more than 516 (``benchmarks.frames``); players that only foul, or only hand the table over, never end.
+"""
+NEVER = 2**62
+"""A limit of strokes or steps that is none."""
+
+
+@dataclass(frozen=True)
+class Rules:
+    """The options of a game as its kernels need them: what ``Options.rules`` holds."""
+
+    actions: Any
+    """``Actions`` or ``Choices``."""
+    noise: Noise
+    physics: Physics
+    table: Table
+    fidelity: tuple[int, int]
+    """As ``parse_fidelity`` gives it."""
+    plan: Plan
+    """How tables are dealt."""
+    reward: str
+    observation: str
+    miss: bool = False
+    """Of a frame: whether a foul and a miss is called."""
+    max_strokes: int = NEVER
+    """Of a frame: after how many strokes of both players it is stopped."""
+    opponent: Any = None
+    """Of a frame: who plays the other side, as ``opponents.opponent_of`` gives it."""
+
+    def packed(self):
+        """For the kernels: options of the action, deviations of the noise, physical parameters."""
+        return self.actions.pack(), self.noise.pack(BALL_RADIUS), self.physics.pack()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """What may be chosen of a game; the fields are the keywords of ``gymnasium.make("Snooker-v0", ...)``, explained in ``SnookerEnv``.
+
+    Raises ValueError, naming the field, for whatever is unknown, of the wrong type, or does not go with another.
+    """
+
+    task: str = "visit"
+    layout: str = "default"
+    action: str = "box"
+    aim: str = "absolute"
+    observation: str = "flat"
+    noise: Any = "none"
+    reward: str = "points"
+    elevation: bool = False
+    placement: bool = False
+    physics: Any = "paper"
+    table: Any = "match"
+    fidelity: str = "standard"
+    opponent: Any = "none"
+    miss: str = "off"
+    decision: bool = False
+    max_strokes: int | None = MAX_STROKES
+    trust: bool = False
+    rules: Rules = field(init=False, repr=False, compare=False)
+    """The same, read."""
+
+    def __post_init__(self):
+        frame = choice("task", self.task, TASKS) == "frame"
+        if isinstance(self.layout, str) and self.layout == "default":
+            object.__setattr__(self, "layout", LAYOUTS[self.task])
+        physics, table = self._physics(), table_of(self.table)
+        fidelity, noise = parse_fidelity(self.fidelity), Noise.of(self.noise)
+        actions = self._actions(physics)
+        plan = fitted(self.layout, table)
+        choice("observation", self.observation, OBSERVATIONS)
+        truth("trust", self.trust)
+        choice("reward", self.reward, FRAME_REWARDS if frame else REWARDS)
+        miss, limit, opponent = False, NEVER, None
+        if frame:
+            miss = choice("miss", self.miss, MISS_RULES) == "clear_path"
+            limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
+            opponent = opponent_of(self.opponent, self.observation, actions, self.trust)
+        else:
+            self._check_visit()
+        read = Rules(actions, noise, physics, table, fidelity, plan, self.reward, self.observation, miss, limit, opponent)
+        object.__setattr__(self, "rules", read)
+
+    def _physics(self):
+        physics = Physics.of(self.physics)
+        if physics.R != BALL_RADIUS:
+            raise refuse("physics.R", physics.R, f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it")
+        physics.check_stopping()
+        return physics
+
+    def _actions(self, physics):
+        if choice("action", self.action, ACTIONS) == "box":
+            return Actions(self.aim, self.elevation, self.placement, physics, self.decision)
+        for name in ("elevation", "placement", "decision"):
+            if getattr(self, name) is not False:
+                raise refuse(name, getattr(self, name), 'must be False with action="discrete"')
+        choice("aim", self.aim, AIMS)  # it has no say: the aim is solved
+        return Choices(physics)
+
+    def _check_visit(self):
+        """Raise ValueError unless what belongs to a frame is left as it is."""
+        usual = {f.name: f.default for f in fields(self)}
+        for name in FRAME_ONLY:
+            value = getattr(self, name)
+            if not isinstance(value, (type(usual[name]), np.bool_)) or value != usual[name]:
+                raise refuse(name, value, f'must be {usual[name]!r} with task="visit"; it belongs to task="frame"')
+
+    def but(self, **changes):
+        """The same with some options changed."""
+        return replace(self, **changes)
+
+
+FRAME_ONLY = ("opponent", "trust", "miss", "decision", "max_strokes")
+"""Options that mean something in the frame task only."""
+NAMES = tuple(f.name for f in fields(Options) if f.init)
+
+
+def options_of(options, given):
+    """The ``Options`` of an environment that was given ``options`` (None or some) and the keywords ``given``.
+
+    Raises ValueError for what is not sound, TypeError for a keyword that is unknown.
+    """
+    if options is None:
+        for name in given:
+            if name not in NAMES:
+                raise TypeError(f"got an unexpected keyword argument {name!r}; the options are {', '.join(NAMES)}")
+        return Options(**given)
+    if not isinstance(options, Options):
+        raise refuse("options", options, "must be an Options or None")
+    if given:
+        raise refuse("options", "Options", f"must be None with the keywords {sorted(given)}: change them with options.but(...)")
+    return options

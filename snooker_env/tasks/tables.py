@@ -1,0 +1,198 @@
+"""What do visits and frames share? n tables side by side: reset, step, infos, states. What differs is in ``visit`` and ``frame``.
+
+A step of n tables is the same whoever asks: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from .._jit import kernel
+from ..game.balls import N_BALLS, balls_on, mask_of_present
+from ..game.frame_columns import BALL_ON, OVER
+from ..game.philox import stream_of
+from . import discrete_actions, stroke
+from .options import NEVER, Rules
+
+REALS = ("points", "break", "seconds")
+COUNTS = ("penalty", "pots", "fouls", "ball_on", "first_ball", "events")
+"""What the info of a step says of a stroke in floats and in integers; and "foul", whether ``fouls`` is not 0."""
+(I_POINTS, I_BREAK, I_SECONDS) = range(3)
+(I_PENALTY, I_POTS, I_FOULS, I_BALL_ON, I_FIRST, I_EVENTS) = range(6)
+
+
+@kernel
+def copy_row(row, to):
+    """Copy one row into another."""
+    for c in range(len(row)):
+        to[c] = row[c]
+
+
+@kernel
+def keep_last(k, out):
+    """Keep what table k's rows of the outputs hold where a new episode cannot overwrite it, if there is room; ``out``: six arrays."""
+    observations, reals, counts, last_observations, last_reals, last_counts = out
+    if last_observations.shape[0]:
+        copy_row(observations[k], last_observations[k])
+        copy_row(reals[k], last_reals[k])
+        copy_row(counts[k], last_counts[k])
+
+
+@kernel
+def tell_stroke(j, k, result, ball_on, seen, duration, n_events, reals, counts):
+    """Write what the info of table k says of shot j, on which the referee gave the ``Ruling`` result."""
+    reals[k, I_POINTS], reals[k, I_SECONDS] = result.points, duration[j]
+    pots, lowest = 0, -1
+    for i in range(N_BALLS - 1, 0, -1):
+        pots += (seen[j, stroke.DOWN] >> i) & 1
+        lowest = i if (seen[j, stroke.FIRST] >> i) & 1 else lowest
+    counts[k, I_PENALTY], counts[k, I_POTS], counts[k, I_FOULS] = result.penalty, pots, result.fouls
+    counts[k, I_BALL_ON], counts[k, I_FIRST], counts[k, I_EVENTS] = ball_on, lowest, n_events[j]
+
+
+@kernel
+def tell_nothing(k, ball_on, reals, counts):
+    """Write the info of table k where no stroke was played."""
+    for c in range(reals.shape[1]):
+        reals[k, c] = 0.0
+    for c in range(counts.shape[1]):
+        counts[k, c] = 0
+    counts[k, I_BALL_ON], counts[k, I_FIRST] = ball_on, -1
+
+
+class StepOutput:
+    """What a step or a reset of n tables returns, in fresh arrays; ``last`` only if one step both ends episodes and starts new ones."""
+
+    def __init__(self, n, size, reals, counts, *, last=False):
+        self.observations = np.zeros((n, size), np.float32)
+        self.rewards = np.zeros(n)
+        self.terminated, self.truncated = np.zeros(n, np.bool_), np.zeros(n, np.bool_)
+        self.reals, self.counts = np.zeros((n, len(reals))), np.zeros((n, len(counts)), np.int64)
+        m = n if last else 0
+        self.last_observations = np.zeros((m, size), np.float32)
+        self.last_reals, self.last_counts = np.zeros((m, len(reals))), np.zeros((m, len(counts)), np.int64)
+
+    @property
+    def rows(self):
+        """What an episode's start overwrites, and where its end is kept."""
+        return self.observations, self.reals, self.counts, self.last_observations, self.last_reals, self.last_counts
+
+
+class Crew:
+    """Who plays: hands the tables out to threads, or not; ``crew(which, task)`` calls ``task(part, buffers)`` for parts of ``which``.
+
+    This one plays all in one go. ``generators``: of each table, for an opponent that is asked in Python. ``watch(k, buffers, j, own)``, if
+    there is one, is called after each stroke on table k: it is shot j of the buffers, ``own``: the agent's, or in a match anybody's.
+    """
+
+    def __init__(
+        self, buffers=None, generators: Sequence[Any] = (), watch: Callable[[int, stroke.ShotBuffers, int, bool], None] | None = None
+    ):
+        self.buffers, self.generators, self.watch = buffers, generators, watch
+
+    def __call__(self, which, task):
+        """Do it."""
+        if len(which):
+            task(which, self.buffers)
+
+    def saw(self, which, buffers, own):
+        """The strokes of the tables ``which`` have just been played."""
+        if self.watch is not None:
+            enlarged = buffers.enlarged
+            for j, k in enumerate(which.tolist()):
+                self.watch(k, enlarged or buffers, 0 if enlarged else j, own)
+
+
+class Tables:
+    """n tables, each in the middle of its own episode, played by the same ``Rules``; ``limit``: steps after which one is truncated."""
+
+    REALS: tuple[str, ...] = REALS
+    COUNTS: tuple[str, ...] = COUNTS
+    FLAGS: tuple[str, ...] = ()
+    """Those of ``COUNTS`` that infos give as bool."""
+    SIZE = 0
+    """Numbers in an observation."""
+    COLUMNS = 0
+    """Of ``game``."""
+    KIND = ""
+    """The task: "visit" or "frame"."""
+
+    def __init__(self, rules: Rules, n, *, limit=NEVER):
+        self.rules, self.n, self.limit = rules, n, limit
+        self.positions, self.on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
+        self.game = np.zeros((n, self.COLUMNS), np.int64)
+        self.game[:, BALL_ON], self.game[:, OVER] = -1, True
+        self.streams = np.zeros((n, 2), np.uint64)
+        self.begun = np.zeros(n, np.bool_)
+        """Which tables have an episode, that has perhaps ended."""
+        self.packed = rules.packed()
+        """For the kernels: options of the action, deviations of the noise, physical parameters."""
+
+    def seed(self, k, rng):
+        """Give table k a new stream, its key drawn from a numpy Generator."""
+        self.streams[k] = stream_of(rng)
+
+    def output(self, *, last=False, given=None):
+        """Fresh arrays for what a step or reset returns, but for those that are ``given`` by their names."""
+        out = StepOutput(self.n, self.SIZE, self.REALS, self.COUNTS, last=last)
+        for name, array in (given or {}).items():
+            array[...] = 0
+            setattr(out, name, array)
+        return out
+
+    def info(self, out, k):
+        """The info of table k alone, as Python numbers."""
+        info: dict[str, Any] = dict(zip(self.REALS, out.reals[k].tolist(), strict=True))
+        info |= zip(self.COUNTS, out.counts[k].tolist(), strict=True)
+        info |= {name: info[name] != 0 for name in self.FLAGS}
+        return info | {"foul": info["fouls"] != 0}
+
+    def infos(self, reals, counts, there):
+        """Infos as Gymnasium's vector environments give them: an array a key, and a mask of the tables that it is about."""
+        infos: dict[str, Any] = {name: column * there for name, column in zip(self.REALS, reals.T, strict=True)}
+        infos |= {name: column * there for name, column in zip(self.COUNTS, counts.T, strict=True)}
+        infos |= {name: infos[name] != 0 for name in self.FLAGS}
+        infos["foul"] = infos["fouls"] != 0
+        return infos | {f"_{name}": there.copy() for name in infos}
+
+    def on(self, k):
+        """The mask of the balls that may be struck first on table k."""
+        return balls_on(int(self.game[k, BALL_ON]), mask_of_present(self.on_table[k]))
+
+    def action_masks(self, which=None):
+        """Which discrete actions there are on the tables ``which`` (all if None): bool (len(which), discrete_actions.SIZE)."""
+        which = np.arange(self.n) if which is None else which
+        out = np.empty((len(which), discrete_actions.SIZE), np.bool_)
+        discrete_actions.masks(which, self.positions, self.on_table, self.game, out)
+        return out
+
+    def ended(self):
+        """On which tables there is nothing more to play: bool (n,)."""
+        return ~self.begun | (self.game[:, OVER] != 0)
+
+    def view(self, k):
+        """Table k as tables of their own, of which there is one; they share its state."""
+        one = object.__new__(type(self))
+        here = slice(k, k + 1)
+        one.__dict__ = {name: value[here] if name in self._columns() else value for name, value in self.__dict__.items()} | {"n": 1}
+        return one
+
+    def _columns(self):
+        """Names of the attributes that hold a row a table."""
+        return ("positions", "on_table", "game", "streams", "begun")
+
+    def interrupted(self):
+        """A step or reset was cut short: tables whose turn it is not the agent's need a reset. In a visit there are none."""
+
+    def run(self, which, buffers):
+        """Play the shots of the tables ``which`` that have been struck; returns rows of shots that need ``again``, as a list."""
+        m = len(which)
+        stroke.run(buffers, m, self.rules, self.packed[2])
+        status = buffers.status[:m]
+        return np.flatnonzero(status).tolist() if status.any() else []
+
+    def again(self, which, j, buffers):
+        """Shot j once more with a longer log: its buffers."""
+        k = which[j]
+        return stroke.run_again(buffers, j, k, self.positions[k], self.on_table[k], self.rules, self.packed[2])

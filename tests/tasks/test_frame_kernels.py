@@ -1,0 +1,124 @@
+"""Do the kernels of frames judge every stroke as the ``Frame`` that one reads does? Random frames, stroke for stroke, all rules on."""
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from snooker_env.game.apply_ruling import settle_table
+from snooker_env.game.balls import COLOURS_MASK, CUE, SPOTS, balls_on, mask_of_present
+from snooker_env.game.frame_columns import SCORE_0, STRIKER
+from snooker_env.game.in_hand import place_cue
+from snooker_env.game.paths import paths
+from snooker_env.game.referee import Stroke
+from snooker_env.tasks.frame import Frames
+from snooker_env.tasks.options import Options
+from snooker_env.tasks.states import layout_of
+from snooker_env.tasks.stroke import DOWN, FIRST, MOVED, SPEED, TOUCHING, ShotBuffers
+from snooker_env.tasks.tables import Crew
+
+N = 40
+
+
+class Specification:
+    """One frame, played in step with the kernels by ``Frame`` and the functions around it."""
+
+    def __init__(self, tables, k):
+        self.frame, self.k = tables.frame(k), k
+        self.positions, self.on_table = tables.positions[k].copy(), tables.on_table[k].copy()
+        self.jaws = tables.rules.table.jaws[:, :3]
+        self.miss = tables.rules.miss
+
+    def decide(self, action):
+        """What the action's last number says after a foul; is there a stroke?"""
+        if self.frame.phase != "choice":
+            return True
+        what = "play_again" if action[-1] < -1 / 3 else "replace" if action[-1] > 1 / 3 and self.frame.miss_called else "play"
+        saved, self.frame = self.frame.saved, self.frame.choose(what)
+        if what == "replace":
+            self.positions, self.on_table = (np.array(part) for part in saved.layout)
+        return what == "play"
+
+    def judge(self, start, rest, seen, first_at_the_lot):
+        """The stroke that left ``start`` (positions (22, 2)) and ended at ``rest``, as the referee saw it."""
+        before, self.positions = self.frame, start
+        mask = mask_of_present(self.on_table) & ~1
+        on = balls_on(before.ball_on, mask) | (COLOURS_MASK & mask if before.free_ball else 0)
+        clear = paths(self.positions, self.on_table, on) if self.miss else (False, False)
+        layout = layout_of(self.positions, self.on_table) if self.miss else None
+        first, touching, moved, potted = (int(seen[c]) for c in (FIRST, TOUCHING, MOVED, DOWN))
+        stroke = Stroke(first=first, touching=touching, moved=moved, potted=potted)
+        verdict, self.positions, self.on_table = settle_table(rest, self.on_table, before.situation, stroke, jaws=self.jaws)
+        stroke = replace(stroke, snookered=verdict.free_ball, behind_free_ball=bool(verdict.fouls & verdict.fouls.BEHIND_FREE_BALL))
+        self.frame, verdict = before.play(stroke, clear_path=clear[0], full_ball_path=clear[1], layout=layout)
+        if self.frame.phase == "lot":
+            self.frame = self.frame.draw(first_at_the_lot)
+        if self.frame.in_hand and self.frame.phase != "over":
+            self.on_table[CUE] = False
+            self.positions[CUE] = place_cue(self.positions, self.on_table, *SPOTS[CUE])
+            self.on_table[CUE] = True
+        return verdict
+
+    def check(self, tables):
+        """Are the kernels' frame and table these, in every bit?"""
+        k = self.k
+        assert tables.frame(k) == self.frame
+        assert np.array_equal(tables.positions[k], self.positions) and np.array_equal(tables.on_table[k], self.on_table)
+
+
+class Recording(Crew):
+    """Notes where each shot started and ended."""
+
+    def saw(self, which, buffers, own):
+        """Play no more than there is room for: no shot of these needs a longer log."""
+        assert buffers.enlarged is None and own
+        self.shots = {k: (j, buffers.r[j].copy(), buffers.seen[j].copy()) for j, k in enumerate(which.tolist())}
+
+
+@pytest.mark.parametrize("miss", ["off", "clear_path"])
+@pytest.mark.parametrize("layout", ["break_off", "random:1", "snookered", "colours"])
+def test_every_stroke_is_judged_as_by_the_specification(miss, layout):
+    options = Options(task="frame", layout=layout, miss=miss, aim="target", decision=True, placement=True, max_strokes=None)
+    tables, rng, met = Frames(options.rules, N), np.random.default_rng(2), Counter()
+    for k in range(N):
+        tables.seed(k, rng)
+    tables.deal(np.arange(N), drawn=True)
+    tables.game[::3, SCORE_0] = rng.integers(0, 140, len(tables.game[::3]))  # some scores, so that misses and needs of snookers differ
+    written = [Specification(tables, k) for k in range(N)]
+    crew = Recording(ShotBuffers(N, 2048))
+    for _ in range(60):
+        actions = rng.uniform(-1, 1, (N, 7))
+        actions[:, 1:4] *= 0.4
+        starts = {}
+
+        def prepare(which, buffers, actions=actions, starts=starts):
+            which = which[~tables.ended()[which]]
+            playing = tables.prepare(which, actions, buffers)
+            starts.update({k: tables.positions[k].copy() for k in playing.tolist()})
+            assert (buffers.shots[: len(playing), SPEED] > 0).all()
+            return playing
+
+        crew.shots = {}
+        over = tables.ended().copy()
+        out = tables.output()
+        played = tables.turn(prepare, out, crew)
+        for spec in written:
+            k = spec.k
+            if over[k]:
+                continue
+            assert spec.decide(actions[k]) == played[k]
+            if played[k]:
+                _, rest, seen = crew.shots[k]
+                verdict = spec.judge(starts[k], rest, seen, int(tables.game[k, STRIKER]))
+                assert (out.reals[k, 0], out.counts[k, 0], out.counts[k, 2]) == (verdict.points, verdict.penalty, int(verdict.fouls))
+                met[verdict.visit_end.name] += 1
+                met["free ball"] += spec.frame.free_ball
+                met["miss"] += spec.frame.miss_called
+                met["over"] += spec.frame.phase == "over"
+                met["respotted"] += spec.frame.respotted_black
+            met["replaced"] += not played[k] and spec.frame.saved is not None
+            spec.check(tables)
+    assert met["FOUL"] > 100 and met["MISS"] > 20 and met["CONTINUES"] > 20 and met["free ball"] > 5
+    assert (met["miss"] > 5 and met["replaced"] > 2) == (miss == "clear_path")
+    assert met["over"] > 0 or layout in ("break_off", "snookered")
