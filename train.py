@@ -45,9 +45,9 @@ with needs("train.py"):
     from commands.files import write_atomic
     from commands.physics_option import world
     from commands.provenance import commit
-    from snooker_env._check import refuse
-    from snooker_env.envs.vector import processors
-    from snooker_env.game.opened import HELD_OUT
+    from snooker_env.checks import refuse
+    from snooker_env.game import HELD_OUT
+    from snooker_env.planning import processors
 
 # settings ------------------------------------------------------------------------------------------------------------------------
 

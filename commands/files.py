@@ -33,7 +33,7 @@ def writable(name, file):
     """Make the folders of an output, and raise ValueError if it could not be written there. Asked by trying: access bits lie for root."""
     if file is None:
         return
-    from snooker_env._check import refuse  # here: a command names a library that is missing only after this module is loaded
+    from snooker_env.checks import refuse  # here: a command names a library that is missing only after this module is loaded
 
     try:
         file.parent.mkdir(parents=True, exist_ok=True)

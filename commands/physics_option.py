@@ -1,8 +1,8 @@
 """Which physics does a text on the command line mean? PRESET or PRESET,FIELD=VALUE,... as ``paper,mu_bb=marlow``."""
 
-from snooker_env._check import refuse
-from snooker_env.game.balls import BALL_RADIUS
-from snooker_env.physics.parameters import Physics
+from snooker_env import Physics
+from snooker_env.checks import refuse
+from snooker_env.game import BALL_RADIUS
 
 
 def world(text):

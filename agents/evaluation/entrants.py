@@ -8,9 +8,8 @@ from functools import cache
 from pathlib import Path
 
 from commands.physics_option import text_of
-from snooker_env._check import number, refuse
-from snooker_env.envs.snooker import LAYOUTS
-from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env import SnookerEnv, SnookerVectorEnv
+from snooker_env.checks import number, refuse
 
 from ..learning.hyperparameters import READ, value_of
 from ..learning.models import PRETRAINED, file_of, load_any, pretrained
@@ -79,7 +78,7 @@ class Agent:
             seconds = None if seconds is None else 3600.0 * seconds
         else:
             seconds, imitated = _told(results, "seconds"), model.imitated
-        usual = {"layout": LAYOUTS["visit"], "noise": "none", "fidelity": "standard"}
+        usual = {"layout": SnookerEnv().layout, "noise": "none", "fidelity": "standard"}
         return {
             "recipe": model.recipe, "shots": model.num_timesteps, "imitated": imitated, "seconds": seconds, "seed": model.seed,
             "gamma": model.gamma, **{key: model.env_options.get(key, value) for key, value in usual.items()},

@@ -20,7 +20,7 @@ with needs("agents.curves"):
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
     from commands.files import save_figure, writable
-    from snooker_env._check import choice, refuse
+    from snooker_env.checks import choice, refuse
 
     from .destinations import formats
     from .entrants import Agent

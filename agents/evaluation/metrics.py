@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snooker_env.game.balls import BallOn
-from snooker_env.game.layouts import POT_WINDOWS
+from snooker_env.game import POT_WINDOWS, BallOn
 
 from .entrants import Agent
 from .rollouts import CENTURY, MAXIMUM, Strokes

@@ -39,10 +39,9 @@ with needs("agents.evaluate"):
     from commands.physics_option import world
     from commands.provenance import commit, processor
     from snooker_env import __version__
-    from snooker_env._check import choice, integer, refuse
-    from snooker_env.game.layouts import plan_of
-    from snooker_env.physics.impact.contact import parse_fidelity
-    from snooker_env.tasks.noise import Noise
+    from snooker_env.checks import choice, integer, parse_fidelity, refuse
+    from snooker_env.game import plan_of
+    from snooker_env.tasks import Noise
 
     from ..learning.models import pretrained
     from ..players.built_in import NAMES

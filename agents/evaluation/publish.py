@@ -15,7 +15,7 @@ from commands.lifecycle import command, needs
 
 with needs("agents.publish"):
     from commands.files import write_atomic
-    from snooker_env._check import refuse
+    from snooker_env.checks import refuse
 
     from ..learning.model_files import packed
     from ..learning.models import PRETRAINED, load_trained

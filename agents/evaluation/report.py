@@ -16,9 +16,11 @@ from pathlib import Path
 from commands.lifecycle import command, needs
 
 with needs("agents.report"):
+    import numpy as np
+
     from commands.files import write_atomic
-    from snooker_env._check import refuse
-    from snooker_env.game.layouts import POT, plan_of
+    from snooker_env.checks import refuse
+    from snooker_env.game import VALUES, layout
 
     from .rollouts import CENTURY, MAXIMUM
     from .statistics import unseen
@@ -69,10 +71,11 @@ def _share(row, name, form="{:.1f}", scale=100.0):
     return _pm(figure, form, scale)
 
 
-def most_points(layout):
-    """The most points that a visit on this layout can bring."""
-    kind, reds = (int(x) for x in plan_of(layout).code[:2])
-    return reds if kind == POT else 8 * reds + 27
+def most_points(name):
+    """The most points that a visit on the layout of this name can bring."""
+    _, on_table = layout(name, np.random.default_rng(0))
+    reds, colours = int(on_table[1:16].sum()), int(VALUES[16:] @ on_table[16:])
+    return colours + reds * (8 if colours else 1)
 
 
 def _between(values, form="{:,.0f}"):

@@ -15,8 +15,8 @@ from commands.lifecycle import command, needs
 with needs("agents.noise_samples"):
     import numpy as np
 
-    from snooker_env._jit import entry
-    from snooker_env.tasks.noise import Noise, executed
+    from snooker_env.kernels import entry, executed
+    from snooker_env.tasks import Noise
 
 LOOKS = (354, 1840, 979, 2326, 3875)
 """Keys of the streams."""

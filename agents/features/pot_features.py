@@ -5,15 +5,13 @@ from math import hypot, log10
 import numpy as np
 from gymnasium import spaces
 
-from snooker_env._jit import entry
-from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, VALUES
-from snooker_env.game.pots import POCKETS, POT_COLUMNS, find_pots
-from snooker_env.tasks.discrete_actions import POTS
-from snooker_env.tasks.observations import SIZE, shaped, space
+from snooker_env.game import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, POCKETS, VALUES
+from snooker_env.kernels import POT_COLUMNS, entry, find_pots
+from snooker_env.tasks import OBSERVATION_SIZE, POTS, observation_space, shaped_observations
 
 POT_ENTRIES = 13
 """Numbers shown of each of the ``choices.POTS`` widest pots, see ``with_pots``."""
-SHOWN = SIZE + POTS * POT_ENTRIES
+SHOWN = OBSERVATION_SIZE + POTS * POT_ENTRIES
 
 # Entries that change sign when the table is seen in a mirror, left and right exchanged.
 BALL_X = 0
@@ -29,19 +27,19 @@ def tolerance_of(shown):
 
 @entry(what="the view of the pots", seconds=1)
 def _add_pots(observations, shown):
-    """Copy the observations (n, SIZE) into ``shown`` and write the pots behind them, read from the observations alone."""
+    """Copy the observations (n, OBSERVATION_SIZE) into ``shown`` and write the pots behind them, read from the observations alone."""
     found = np.empty((POTS, POT_COLUMNS))
     positions, on_table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
     for k in range(len(observations)):
         seen, row, on = observations[k], shown[k], 0
         for c in range(row.shape[0]):
-            row[c] = seen[c] if c < SIZE else 0.0
+            row[c] = seen[c] if c < OBSERVATION_SIZE else 0.0
         for i in range(N_BALLS):
             positions[i, 0], positions[i, 1] = seen[5 * i] * HALF_WIDTH, seen[5 * i + 1] * HALF_LENGTH
             on_table[i] = seen[5 * i + 2] > 0.0
             on |= (1 << i) if seen[5 * i + 4] > 0.0 else 0
         for p in range(find_pots(positions, on_table, on, BALL_RADIUS, found) if on_table[0] else 0):
-            ball, pocket, at = int(found[p, 0]), int(found[p, 1]), SIZE + POT_ENTRIES * p
+            ball, pocket, at = int(found[p, 0]), int(found[p, 1]), OBSERVATION_SIZE + POT_ENTRIES * p
             bx, by, gx, gy = positions[ball, 0], positions[ball, 1], found[p, 2], found[p, 3]
             px, py, rx, ry = gx - positions[0, 0], gy - positions[0, 1], bx - gx, by - gy
             away, run = hypot(px, py), hypot(rx, ry)
@@ -57,11 +55,11 @@ def _add_pots(observations, shown):
 
 
 def with_pots(observations):
-    """Flat observations (n, SIZE) with the four widest direct pots appended, ``POT_ENTRIES`` numbers each; all 0 where there are fewer.
+    """Flat observations (n, OBSERVATION_SIZE) with the four widest direct pots appended, ``POT_ENTRIES`` numbers each, 0 where none is.
 
     1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance, the ball's value and place (x, y),
-    the pocket's place. A small network cannot find these
-    lines itself in a few minutes: without them the same run makes a third of the pots.
+    the pocket's place. A small network cannot find these lines itself in a few minutes: without them the same run makes a third of the
+    pots.
     """
     shown = np.empty((len(observations), SHOWN), np.float32)
     _add_pots(np.ascontiguousarray(observations), shown)
@@ -91,11 +89,11 @@ class Plain:
 
     def __init__(self, kind):
         self._kind = kind
-        self.space = space(kind)
+        self.space = observation_space(kind)
 
     def __call__(self, tables, observations, rows=None):
         """What is seen of the tables ``rows``, whose flat observations are given."""
-        return shaped(self._kind, observations)
+        return shaped_observations(self._kind, observations)
 
     def masks(self, tables):
         """Which choices may be played."""

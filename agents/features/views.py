@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from snooker_env._check import choice
+from snooker_env.checks import choice
 
 from .lookahead_features import Foresight
 from .pot_features import SHOWN, Pots, with_pots

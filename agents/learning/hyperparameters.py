@@ -12,7 +12,7 @@ from pathlib import Path
 
 import yaml
 
-from snooker_env._check import choice, integer, number, refuse
+from snooker_env.checks import choice, integer, number, refuse
 
 FOLDER = Path(__file__).parents[1] / "hyperparams"
 ENV_ID = "Snooker-v0"

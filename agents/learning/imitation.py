@@ -3,7 +3,7 @@
 ``train.py`` does it for the recipes that say so (``imitation``), or with ``--imitate POSITIONS``.
 
 The teacher: in positions of real visits some of the choices are played on copies of the table under execution noise, once each. A choice
-is worth its points and, if the visit goes on, the value by hand of the position it leaves (``lookahead.prospects_of``), the search's own
+is worth its points and, if the visit goes on, the value by hand of the position it leaves (``prospects_of``), the search's own
 measure. The pupil: state value + TEMPERATURE * (log-probability - its mean) is fitted to these worths by least squares, all tries of a
 position at once. So the policy becomes the softmax of what its choices are worth, and the critic their mean under it. The visits are
 played by the pupil, so it is taught where it will be (DAgger, Ross et al. 2011), and half of the tries are its own best.
@@ -15,7 +15,9 @@ from collections import deque
 import numpy as np
 import torch
 
-from ..features.lookahead import Copies, Position, spread_of
+from snooker_env.planning import Planner
+
+from ..features.prospects import prospects_of, spread_of
 
 TRIES = 48
 """Choices tried in each position: half of them the pupil's best, half at random. Where there are no more than half of them, each is tried
@@ -33,20 +35,19 @@ class Teacher:
     """Says what choices are worth on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the position left."""
 
     def __init__(self, tables, threads, rng, ahead=True):
-        self._tables, self._rng, self._ahead, rules = tables, rng, ahead, tables.visits.rules
-        self._copies = Copies(rules, rules.shooter.noise, threads)
-        self._spread = spread_of(rules.shooter.noise, rules.shooter.physics)
+        self._tables, self._rng, self._ahead, self._planner = tables, rng, ahead, Planner(tables, threads=threads)
+        self._spread = spread_of(self._planner.noise, self._planner.physics)
 
     def worth(self, picks, there):
         """Points that the choices ``picks`` (n, k) that are ``there`` (n, k) brought, one try of each, with the value of what they left.
 
         float32 (n, k), 0 where there is none.
         """
-        v, (row, column) = self._tables.visits, np.nonzero(there)
+        row, column = np.nonzero(there)
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
-        points, goes_on, left, _ = self._copies.play(Position(v.positions, v.on_table, v.game), row, picks[row, column], keys)
+        points, goes_on, left, _ = self._planner.play(self._tables, row, picks[row, column], keys)
         worth = np.zeros(picks.shape, np.float32)
-        worth[row, column] = points + self._ahead * goes_on * self._copies.prospects(left, self._spread)[0]
+        worth[row, column] = points + self._ahead * goes_on * prospects_of(left, self._spread, threads=self._planner.threads)[0]
         return worth
 
 

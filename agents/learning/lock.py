@@ -5,7 +5,7 @@ import platform
 import sys
 import time
 
-from snooker_env._check import refuse
+from snooker_env.checks import refuse
 
 try:
     import fcntl

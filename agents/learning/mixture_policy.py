@@ -20,9 +20,8 @@ from stable_baselines3.common.distributions import Distribution
 from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import nn
 
-from snooker_env.game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS
-from snooker_env.tasks.discrete_actions import POTS
-from snooker_env.tasks.observations import SIZE
+from snooker_env.game import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS
+from snooker_env.tasks import OBSERVATION_SIZE, POTS
 
 from ..features import pot_features
 from ..features.pot_features import POT_ENTRIES, tolerance_of
@@ -50,7 +49,7 @@ def lines_of(seen):
     to_ball = places - places[:, :1]
     far = to_ball.square().sum(2).masked_fill((balls[:, :, 2] <= 0.0) | (balls[:, :, 4] <= 0.0), float("inf"))
     nearest = to_ball[torch.arange(len(seen), device=seen.device), far.argmin(1)]
-    pots = seen[:, SIZE:].reshape(-1, POTS, POT_ENTRIES)
+    pots = seen[:, OBSERVATION_SIZE:].reshape(-1, POTS, POT_ENTRIES)
     offered = pots[:, :, 0]
     first = torch.where(offered[:, :1] > 0.0, pots[:, 0, 1:3], nearest)
     direction = torch.cat([first[:, None], pots[:, 1:, 1:3]], 1)

@@ -11,8 +11,8 @@ import zipfile
 from dataclasses import dataclass
 from typing import Any
 
-from snooker_env._check import choice, integer, number, refuse
-from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env import SnookerVectorEnv
+from snooker_env.checks import choice, integer, number, refuse
 from snooker_env.tasks.saved_models import PLAIN, by_train, entries, part
 
 from ..features.views import VIEWS, view_of

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from snooker_env._check import integer, number, refuse
-from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.tasks.observations import OBSERVATIONS
+from snooker_env import SnookerVectorEnv
+from snooker_env.checks import integer, number, refuse
+from snooker_env.tasks import OBSERVATIONS
 from snooker_env.tasks.saved_models import Saved, outline
 
 from ..features.pot_features import Plain

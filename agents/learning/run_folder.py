@@ -10,7 +10,7 @@ import numpy as np
 import torch
 
 from commands.files import write_atomic
-from snooker_env._check import refuse
+from snooker_env.checks import refuse
 
 from .hyperparameters import algorithm
 from .lock import NAME as LOCK

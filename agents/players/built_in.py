@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from snooker_env._check import choice, refuse
-from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.tasks.discrete_actions import SIDES, SIZE, SPEEDS, TOPS, choice_of
+from snooker_env import SnookerVectorEnv
+from snooker_env.checks import choice, refuse
+from snooker_env.planning import Positions
+from snooker_env.tasks import CHOICES, SIDES, SPEEDS, TOPS, choice_of
 
-from ..features.lookahead import Position
 from ..features.lookahead_features import PICKS, Foresight, worth_by_hand
 from ..learning.hyperparameters import READ
 from ..learning.models import PRETRAINED, load_player, pretrained
@@ -39,7 +39,7 @@ class Random:
         """Random actions; of the choices only those that are there."""
         if self.options.get("action") != "discrete":
             return self._rng.uniform(-1.0, 1.0, tables.action_space.shape).astype(np.float32)
-        order = self._rng.random((len(going), SIZE))
+        order = self._rng.random((len(going), CHOICES))
         return np.argmax(np.where(tables.action_masks(), order, -1.0), axis=1)
 
 
@@ -66,9 +66,9 @@ class Lookahead:
 
     def act(self, tables, observations, going):
         """The stroke that promises most at each table going."""
-        v, picks = tables.visits, np.zeros(len(going), np.int64)
-        at, masks = Position(v.positions[going], v.on_table[going], v.game[going]), tables.action_masks()[going][:, PICKS]
-        picks[going] = PICKS[worth_by_hand(self._foresight.ahead(v.rules, at, masks)).argmax(1)]
+        at, picks = Positions.of(tables)[going], np.zeros(len(going), np.int64)
+        masks = tables.action_masks()[going][:, PICKS]
+        picks[going] = PICKS[worth_by_hand(self._foresight.ahead(tables, at, masks)).argmax(1)]
         return picks
 
 
@@ -79,16 +79,15 @@ class Geometric:
 
     def __init__(self, speed=2.3):
         self._speed = speed
-        self._rules: Any = None
+        self._tables: Any = None
         self._aimer: Any = None
 
     def act(self, tables, observations, going):
         """An aim and a speed for each table going."""
-        v = tables.visits
-        if self._rules is not v.rules:
-            self._rules, self._aimer = v.rules, Aimer(v.rules, self._speed)
+        if self._tables is not tables:
+            self._tables, self._aimer = tables, Aimer(tables, self._speed)
         actions = np.zeros((len(going), 4), np.float32)
-        actions[going] = self._aimer.actions(v.positions[going], v.on_table[going], v.game[going])
+        actions[going] = self._aimer.actions(Positions.of(tables)[going])
         return actions
 
 

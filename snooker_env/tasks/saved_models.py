@@ -14,6 +14,8 @@ from gymnasium import spaces
 
 from .._check import refuse
 
+__all__ = ["PLAIN", "Saved", "by_train", "entries", "outline", "part"]
+
 MOST = 2**26
 """Bytes of JSON that are read at most (SB3 keeps the last observations there): a small zip can unpack to more than a machine has, and JSON
 to objects 25 times as large."""

@@ -4,12 +4,13 @@ from math import hypot, log10
 
 import numpy as np
 import pytest
-from positions import position, tables
+from positions import tables
 
 from agents.features import pot_features
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BALL_RADIUS, BLACK, CUE, HALF_LENGTH, HALF_WIDTH, BallOn, mask_of
 from snooker_env.game.pots import POCKETS, pots
+from snooker_env.planning import Positions
 from snooker_env.tasks.box_actions import line
 from snooker_env.tasks.discrete_actions import POTS
 from snooker_env.tasks.observations import SIZE, observe
@@ -37,7 +38,7 @@ def test_every_pot_is_shown_entry_by_entry(ball_on):
     env = tables(30, layout="random:5", seed=1)
     states = [state | {"ball_on": int(ball_on)} for state in env.get_state()]
     observations, _ = env.reset(options={"states": states})
-    at, pockets = position(env), set()
+    at, pockets = Positions.of(env), set()
     assert (at.game[:, BALL_ON] == int(ball_on)).all()
     shown, balls = pot_features.with_pots(observations), range(1, 16) if ball_on == BallOn.RED else range(16, BLACK + 1)
     assert np.array_equal(shown[:, :SIZE], observations) and shown.shape == (30, pot_features.SHOWN)

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 import torch
 
-from agents.features.lookahead import Position, prospects_of, spread_of
+from agents.features.prospects import prospects_of, spread_of
 from agents.features.views import training_tables
 from agents.learning import imitation
 from agents.learning.hyperparameters import Recipe
 from agents.learning.imitation import Teacher, Teaching, to_try
+from snooker_env.planning import Positions
 from snooker_env.tasks.discrete_actions import SIZE, STROKES
 
 
@@ -28,13 +29,11 @@ def test_a_choice_is_worth_its_points_and_what_it_leaves():
     states = env.get_state()
     worth = Teacher(env, 2, np.random.default_rng(0)).worth(picks, there)
     points_only = Teacher(env, 1, np.random.default_rng(0), ahead=False).worth(picks, there)
-    shooter = env.visits.rules.shooter
+    rules = env.tables.rules
     for k in range(picks.shape[1]):
         env.reset(options={"states": states})
         _, rewards, ended, _, _ = env.unwrapped.step(picks[:, k])
-        v = env.visits
-        left = Position(v.positions, v.on_table, v.game)
-        after = prospects_of(left, spread_of(shooter.noise, shooter.physics))[0]
+        after = prospects_of(Positions.of(env), spread_of(rules.noise, rules.physics))[0]
         if ended.any():  # such a table was dealt anew in the same step
             after = np.where(ended, 0.0, after)
         assert np.allclose(worth[:, k], rewards + after, rtol=1e-6) and np.array_equal(points_only[:, k], rewards)

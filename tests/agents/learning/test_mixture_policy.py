@@ -182,7 +182,7 @@ def test_aims_follow_the_lines_of_the_environment(model):
             assert np.exp(1j * aims[: len(found)]) == pytest.approx((ghosts[:, 0] + 1j * ghosts[:, 1]) / np.hypot(*ghosts.T), abs=2e-6)
             dist.log_weights = torch.arange(POTS, 0, -1.0)[None]  # the widest pot
             action = dist.mode()[0].clamp(-1.0, 1.0).tolist()
-            actions = env.visits.rules.shooter.actions
+            actions = env.tables.rules.actions
             shot = actions.shot([*action[:1], 0.0, *action[2:]], env.positions, env.on_table, env.on)  # without squirt
             left = shot[3] - line(env.positions, env.on_table, env.on)
             assert abs(sin(left)) < 1e-6 and cos(left) > 0.0
