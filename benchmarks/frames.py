@@ -55,7 +55,7 @@ def check(true, what, *values):
         raise AssertionError(f"{what}: {values}")
 
 
-class Played(NamedTuple):
+class Turn(NamedTuple):
     """One stroke."""
 
     striker: int
@@ -68,7 +68,7 @@ class Played(NamedTuple):
     fouls: int
 
 
-class Table:
+class FrameTable:
     """One frame in progress, played turn by turn by the same player on both sides, the rules' own arrays behind it."""
 
     def __init__(self, miss):
@@ -92,7 +92,7 @@ class Table:
         return bool(self.tables.ended()[0])
 
     def turn(self, player):
-        """One turn: what was ``Played``, or None where the table was only handed over."""
+        """One turn: what was ``Turn``, or None where the table was only handed over."""
         striker, out = self.frame.striker, self.tables.output()
         crew = Crew(self.buffers)
 
@@ -102,7 +102,7 @@ class Table:
         if not self.tables.turn(prepare, out, crew)[0]:
             return None
         counts, potted = out.counts[0].tolist(), int((self.buffers.enlarged or self.buffers).seen[0, DOWN])
-        return Played(striker, counts[I_BALL_ON], potted, int(out.reals[0, I_POINTS]), counts[I_PENALTY], counts[I_FOULS])
+        return Turn(striker, counts[I_BALL_ON], potted, int(out.reals[0, I_POINTS]), counts[I_PENALTY], counts[I_FOULS])
 
     def as_json(self):
         """Everything that decides how the frame goes on."""
@@ -157,7 +157,7 @@ def check_table(table):
 
 def check_replay(text, wanted, player, miss):
     """The saved state, in a new table, leads to the same states."""
-    table = Table(miss)
+    table = FrameTable(miss)
     table.take(text)
     table.generator.bit_generator.state = json.loads(text)["rng"]
     for want in wanted:
@@ -176,7 +176,7 @@ def ending(before, played, frame):
 
 def play_frame(seed, kind, miss):
     """One frame from the break to its end, everything checked; returns its ``Tally``. Raises AssertionError."""
-    player, rng, tally, table = PLAYERS[kind], np.random.default_rng(seed), Tally(), Table(miss)
+    player, rng, tally, table = PLAYERS[kind], np.random.default_rng(seed), Tally(), FrameTable(miss)
     table.start(seed)
     save_at, saved, following, visit, given = int(rng.integers(5, 50)), None, [], 0, [0, 0]
     while not table.over:

@@ -1,6 +1,6 @@
-"""How does a command of this project begin and end? It can write to any terminal, and what stops it from outside is told in one line.
+"""How does a command of this project begin and end? It can write to any terminal, and what stops it from outside is said in one line.
 
-Only the standard library is imported here: what is missing must be told before it is needed.
+Only the standard library is imported here: what is missing must be said before it is needed.
 """
 
 import errno
