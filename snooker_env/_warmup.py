@@ -41,7 +41,7 @@ def warmup():
         is_snookered(env.positions, env.on_table, REDS_MASK)
         spot_colours(env.positions, env.on_table, 0)
         env.reset(seed=0)
-        at, planner = Positions.of(env), Planner(env)
+        at, planner = Positions.of(env), Planner({"action": "discrete"})
         planner.play(at, [0], [0])
         planner.as_actions(at, [0], [0])
         planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
