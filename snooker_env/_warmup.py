@@ -37,6 +37,7 @@ def warmup():
         env.reset(seed=0)
         env.step([0.0] * 4)
         pots(env.positions, env.on_table, REDS_MASK)
+        env.options.rules.actions.shot([0.0] * 4, env.positions, env.on_table, REDS_MASK)
         line(env.positions, env.on_table, REDS_MASK)
         is_snookered(env.positions, env.on_table, REDS_MASK)
         spot_colours(env.positions, env.on_table, 0)

@@ -8,8 +8,9 @@ from positions import tables
 
 from agents.features import pot_features
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import BALL_RADIUS, BLACK, CUE, HALF_LENGTH, HALF_WIDTH, BallOn, mask_of
-from snooker_env.game.pots import POCKETS, pots
+from snooker_env.game.balls import BLACK, CUE, BallOn, mask_of
+from snooker_env.game.pots import pots
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from snooker_env.planning import Positions
 from snooker_env.tasks.box_actions import line
 from snooker_env.tasks.discrete_actions import POTS
@@ -22,7 +23,7 @@ VALUES = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 def pot_entries(positions, pot):
     """What is to be seen of one pot."""
     ball, pocket, _, _, _, tolerance = pot
-    cue, at, into = positions[CUE], positions[int(ball)], POCKETS[int(pocket), :2]
+    cue, at, into = positions[CUE], positions[int(ball)], POCKET_AIMS[int(pocket), :2]
     run = (into - at) / hypot(*(into - at))
     way = at - 2 * BALL_RADIUS * run - cue
     path = hypot(*way)

@@ -17,7 +17,8 @@ from agents.learning import hyperparameters, mixture_policy
 from agents.learning.mixture_policy import LINE, OFFERED, THROW_UNIT, TOLERANCE, AbsolutePolicy, nearest_image
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import N_BALLS, mask_of
-from snooker_env.game.pots import POCKETS, pots
+from snooker_env.game.pots import pots
+from snooker_env.geometry import POCKET_AIMS
 from snooker_env.tasks.box_actions import line
 from snooker_env.tasks.discrete_actions import POTS
 from snooker_env.tasks.observations import SIZE, observe
@@ -208,7 +209,7 @@ def test_throw_turns_the_ghost_ball_round_the_object_ball(model):
     turns = throw(lines, torch.zeros(1, POTS, 3))[0].double().numpy() * pi
     cuts = set()
     for k, (_, pocket, gx, gy, *_) in enumerate(found):
-        to_pocket, path = POCKETS[int(pocket), :2] - red, np.array((gx, gy)) - cue
+        to_pocket, path = POCKET_AIMS[int(pocket), :2] - red, np.array((gx, gy)) - cue
         d, p = to_pocket / np.hypot(*to_pocket), path / np.hypot(*path)
         sine = p[0] * d[1] - p[1] * d[0]
         turn = THROW_UNIT * 2 * 0.2 * sine
