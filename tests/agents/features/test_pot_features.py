@@ -14,7 +14,7 @@ from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AI
 from snooker_env.planning import Positions
 from snooker_env.tasks.box_actions import line
 from snooker_env.tasks.discrete_actions import POTS
-from snooker_env.tasks.observations import SIZE, observe
+from snooker_env.tasks.observations import SIZE
 from snooker_env.tasks.visit import BALL_ON
 
 VALUES = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
@@ -62,7 +62,7 @@ def test_pot_view_shows_the_line_that_the_aim_is_read_against():
     for seed in range(20):
         observation = pot_features.with_pots(table.reset(seed=seed)[0][None])[0]
         rows = observation[SIZE:].reshape(-1, pot_features.POT_ENTRIES)
-        assert np.array_equal(observation[:SIZE], observe("flat", table.positions, table.on_table, table.ball_on, table.on, 0, 0))
+        assert np.array_equal(observation[:SIZE], Positions.of(table).observations()[0])
         direction = line(table.positions, table.on_table, table.on)
         assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=5e-6)
         shown = rows[rows[:, 0] == 1]
