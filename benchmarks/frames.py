@@ -20,8 +20,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from snooker_env.game.balls import BALL_RADIUS, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of, mask_of_present
+from snooker_env.game.balls import COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of, mask_of_present
 from snooker_env.game.frame import Frame
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.frame import Frames
 from snooker_env.tasks.opponents import GhostBallOpponent, UniformOpponent
 from snooker_env.tasks.options import Options

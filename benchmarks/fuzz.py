@@ -19,9 +19,10 @@ import numpy as np
 import snooker_env as sn
 from snooker_env import Table
 from snooker_env.game.balls import SPOTS
+from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.physics.engine import Status
 from snooker_env.physics.impact import contact
-from snooker_env.physics.table import HALF_LENGTH, HALF_WIDTH, MOUTH
+from snooker_env.physics.table import MOUTH
 
 from ._common import invariants as invariants
 from ._common.command import Command, at_least, run, save_json

@@ -5,9 +5,10 @@ python -m benchmarks.layouts_picture [--seed 4] [--json FILE] [--out FOLDER]
 
 import numpy as np
 
-from snooker_env.game.balls import BALL_RADIUS, NAMES, REDS_MASK
+from snooker_env.game.balls import NAMES, REDS_MASK
 from snooker_env.game.layouts import layout
-from snooker_env.game.pots import pots
+from snooker_env.game.pots import GHOST_X, GHOST_Y, pots
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import scene
 
@@ -35,7 +36,7 @@ def picture(name, says, seed):
     positions, on_table = layout(name, np.random.default_rng(seed))
     overlay = {}
     if name.startswith("pots:"):
-        ghost = pots(positions, on_table, REDS_MASK, most=1)[0, 2:4]
+        ghost = pots(positions, on_table, REDS_MASK, most=1)[0, [GHOST_X, GHOST_Y]]
         overlay = {"aim": np.array([positions[0], ghost]), "ghost": ghost}
     elif name == "snookered":
         overlay = {"paths": sight(positions, on_table)}

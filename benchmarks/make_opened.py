@@ -10,10 +10,11 @@ import numpy as np
 
 from snooker_env.game import layouts
 from snooker_env.game.apply_ruling import settle_table
-from snooker_env.game.balls import BALL_RADIUS, CUE, N_BALLS, N_REDS, REDS_MASK, BallOn, mask_of
+from snooker_env.game.balls import CUE, N_BALLS, N_REDS, REDS_MASK, BallOn, mask_of
 from snooker_env.game.opened import FILE
 from snooker_env.game.pots import pots
 from snooker_env.game.referee import Situation, Stroke
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.physics import cue
 from snooker_env.physics.impact.contact import parse_fidelity
 from snooker_env.physics.parameters import Physics

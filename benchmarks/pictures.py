@@ -7,7 +7,7 @@ import numpy as np
 
 import snooker_env as sn
 from snooker_env.game.layouts import opened
-from snooker_env.game.pots import pots
+from snooker_env.game.pots import GHOST_X, GHOST_Y, POT_BALL, pots
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import ball_paths, scene
 
@@ -21,13 +21,13 @@ def pot(seed):
     while True:
         positions, on_table = opened(np.random.default_rng(seed))
         for candidate in pots(positions, on_table, 0xFFFE, most=3):
-            ball, ghost = int(candidate[0]), candidate[2:4] - positions[0]
+            ball, ghost = int(candidate[POT_BALL]), candidate[[GHOST_X, GHOST_Y]] - positions[0]
             for error in np.radians(np.linspace(-2, 2, 41)):
                 v, w = sn.strike(2.8, np.arctan2(ghost[1], ghost[0]) + error, side=0.2, top=-0.45)
                 velocities, spins = np.zeros((22, 2)), np.zeros((22, 3))
                 velocities[0], spins[0] = v[:2], w
                 shot = sn.simulate(positions, velocities, spins)
-                back = (shot.positions[0] - candidate[2:4]) @ ghost / np.hypot(*ghost)
+                back = (shot.positions[0] - positions[0] - ghost) @ ghost / np.hypot(*ghost)
                 hits = shot.events["kind"] == sn.EventKind.BALL_BALL
                 if shot.potted[ball] >= 0 and shot.potted[0] < 0 and back < -0.5 and hits.sum() == 1 and 0.3 < np.hypot(*ghost) < 1.0:
                     return positions, ball, shot

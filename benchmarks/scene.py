@@ -29,8 +29,7 @@ import numpy as np
 
 import snooker_env as sn
 from commands import provenance
-from snooker_env import simulation
-from snooker_env.physics import table
+from snooker_env import geometry, simulation
 from snooker_env.physics.engine import PART, EventKind
 from snooker_env.physics.impact import contact
 
@@ -75,19 +74,19 @@ def sharp_jaws():
     match, noses = sn.Table.preset("match"), []
     corner, middle = throats()
     for axis, side, level, low, high in match.noses:
-        half = table.HALF_LENGTH if axis == 0 else table.HALF_WIDTH
+        half = geometry.HALF_LENGTH if axis == 0 else geometry.HALF_WIDTH
         ends = [np.sign(e) * (half - corner if abs(e) > half / 2 else middle) for e in (low, high)]
         noses.append((axis, side, level, *ends))
-    points = [(sx * (table.HALF_WIDTH - corner), sy * table.HALF_LENGTH) for sx in (-1, 1) for sy in (-1, 1)]
-    points += [(sx * table.HALF_WIDTH, sy * (table.HALF_LENGTH - corner)) for sx in (-1, 1) for sy in (-1, 1)]
-    points += [(sx * table.HALF_WIDTH, sy * middle) for sx in (-1, 1) for sy in (-1, 1)]
+    points = [(sx * (geometry.HALF_WIDTH - corner), sy * geometry.HALF_LENGTH) for sx in (-1, 1) for sy in (-1, 1)]
+    points += [(sx * geometry.HALF_WIDTH, sy * (geometry.HALF_LENGTH - corner)) for sx in (-1, 1) for sy in (-1, 1)]
+    points += [(sx * geometry.HALF_WIDTH, sy * middle) for sx in (-1, 1) for sy in (-1, 1)]
     return sn.Table("sharp", np.array(noses), np.array([(x, y, 0.0, 1.0, 0.0, -1.0) for x, y in points]), match.falls)
 
 
 def throats():
     """Distances [m] from the corner, and from a middle pocket's axis, of the points as far apart as the throats are wide."""
     jaws = sn.Table.preset("match").jaws
-    arcs = jaws[np.hypot(jaws[:, 0] - table.HALF_WIDTH, jaws[:, 1] - table.HALF_LENGTH).argsort()[:2], :3]
+    arcs = jaws[np.hypot(jaws[:, 0] - geometry.HALF_WIDTH, jaws[:, 1] - geometry.HALF_LENGTH).argsort()[:2], :3]
     corner = (np.hypot(*(arcs[0, :2] - arcs[1, :2])) - 2 * arcs[0, 2]) / np.sqrt(2)
     middle = jaws[np.abs(jaws[:, 1]).argmin()]
     return corner, abs(middle[1]) - middle[2]

@@ -2,7 +2,7 @@
 
 from snooker_env import Physics
 from snooker_env.checks import refuse
-from snooker_env.game import BALL_RADIUS
+from snooker_env.geometry import BALL_RADIUS
 
 
 def physics_option(text):

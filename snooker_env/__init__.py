@@ -3,6 +3,7 @@
 Public are the names in ``__all__`` of this package and of these modules of it; everything else may change in any version:
 
 * ``snooker_env.planning``: strokes tried on copies of positions, and the geometry that finds them
+* ``snooker_env.geometry``: where everything on a table is, and how large
 * ``snooker_env.game``: balls, values, what may be struck, layouts and the tables that they deal
 * ``snooker_env.tasks``: what actions, observations and errors of execution mean, in numbers
 * ``snooker_env.kernels``: for kernels of your own: how they are compiled, and the inner kernels that they may call
@@ -18,10 +19,11 @@ from gymnasium.envs import registration as _gymnasium
 
 from ._registration import register as _register
 from ._warmup import warmup
+from .geometry import POCKETS, Pocket
 from .match import match_env
 from .physics.engine import EventKind
 from .physics.parameters import Physics
-from .physics.table import POCKETS, Table
+from .physics.table import Table
 from .simulation import Shot, ShotBatch, SimulationError, collide_balls, collide_cushion, simulate, simulate_batch, strike
 
 if _typing.TYPE_CHECKING:
@@ -33,7 +35,7 @@ if _typing.TYPE_CHECKING:
 __version__ = "0.3.0.dev0"
 
 __all__ = [
-    "POCKETS", "EventKind", "Physics", "Planner", "Position", "Positions", "Shot", "ShotBatch", "SimulationError", "SnookerEnv",
+    "POCKETS", "EventKind", "Physics", "Planner", "Pocket", "Position", "Positions", "Shot", "ShotBatch", "SimulationError", "SnookerEnv",
     "SnookerVectorEnv", "Table", "collide_balls", "collide_cushion", "match_env", "planning", "simulate", "simulate_batch", "strike",
     "warmup",
 ]  # fmt: skip

@@ -7,10 +7,22 @@ kernels call. Both are strict IEEE and release the GIL. Arguments that are masks
 from ._jit import entry, kernel
 from .game.balls import balls_on_kernel as balls_on
 from .game.balls import bits
-from .game.pots import POT_COLUMNS, clear_segment, find_pots, window
+from .game.pots import (
+    COS_CUT,
+    GHOST_X,
+    GHOST_Y,
+    POT_BALL,
+    POT_COLUMNS,
+    POT_POCKET,
+    TOLERANCE,
+    clear_segment,
+    find_pots,
+    window,
+)
 from .tasks.box_actions import line_of
 from .tasks.noise import executed
 
 __all__ = [
-    "POT_COLUMNS", "balls_on", "bits", "clear_segment", "entry", "executed", "find_pots", "kernel", "line_of", "window",
+    "COS_CUT", "GHOST_X", "GHOST_Y", "POT_BALL", "POT_COLUMNS", "POT_POCKET", "TOLERANCE", "balls_on", "bits", "clear_segment", "entry",
+    "executed", "find_pots", "kernel", "line_of", "window",
 ]  # fmt: skip

@@ -177,9 +177,10 @@ def simulate(positions, velocities, spins, table="match", physics=None, fidelity
     """Play one shot until everything is at rest.
 
     positions (n, 2) [m], velocities (n, 2) [m/s] and spins (n, 3) [rad/s] of n balls in the world frame (origin at the table's centre, +y
-    to the black end), each number within 1,000 m/s and 100,000 rad/s; table: "match", "tight" (both for snooker's own balls: physics.R
-    0.02625), a ``Table``, or None for unbounded cloth; on_table (n,) bool: balls to leave out are False. Balls may touch each other and
-    the cushions (to within 1e-6 m). The same input gives the same bits.
+    to the black end), each number within 1,000 m/s and 100,000 rad/s; table: a preset's name ("match", "tight", "uk8", "pool9", "carom",
+    each for the balls of its game: physics.R must be ``Table.preset(name).ball_radius``), a ``Table``, or None for unbounded cloth;
+    on_table (n,) bool: balls to leave out are False. All balls are equal. Balls may touch each other and the cushions (to within 1e-6 m).
+    The same input gives the same bits.
 
     Returns a ``Shot``. Raises ValueError on bad input (field, value, what is allowed), SimulationError if the shot does not come to rest
     within ``max_events`` events.

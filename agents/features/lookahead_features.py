@@ -11,7 +11,8 @@ Two pots and a few strokes, with several noise samples of each: one outcome does
 import numpy as np
 from gymnasium import spaces
 
-from snooker_env.game import HALF_LENGTH, HALF_WIDTH, BallOn
+from snooker_env.game import BallOn
+from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning import Planner, Positions
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 

@@ -5,8 +5,10 @@ from math import hypot, log10
 import numpy as np
 from gymnasium import spaces
 
-from snooker_env.game import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS, POCKETS, VALUES
-from snooker_env.kernels import POT_COLUMNS, entry, find_pots
+from snooker_env.game import N_BALLS, VALUES
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from snooker_env.kernels import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, entry, find_pots
+from snooker_env.kernels import TOLERANCE as POT_TOLERANCE
 from snooker_env.tasks import OBSERVATION_SIZE, POTS, observation_space, shaped_observations
 
 POT_ENTRIES = 13
@@ -39,17 +41,17 @@ def _add_pots(observations, shown):
             on_table[i] = seen[5 * i + 2] > 0.0
             on |= (1 << i) if seen[5 * i + 4] > 0.0 else 0
         for p in range(find_pots(positions, on_table, on, BALL_RADIUS, found) if on_table[0] else 0):
-            ball, pocket, at = int(found[p, 0]), int(found[p, 1]), OBSERVATION_SIZE + POT_ENTRIES * p
-            bx, by, gx, gy = positions[ball, 0], positions[ball, 1], found[p, 2], found[p, 3]
+            ball, pocket, at = int(found[p, POT_BALL]), int(found[p, POT_POCKET]), OBSERVATION_SIZE + POT_ENTRIES * p
+            bx, by, gx, gy = positions[ball, 0], positions[ball, 1], found[p, GHOST_X], found[p, GHOST_Y]
             px, py, rx, ry = gx - positions[0, 0], gy - positions[0, 1], bx - gx, by - gy
             away, run = hypot(px, py), hypot(rx, ry)
             px, py, rx, ry = px / away, py / away, rx / run, ry / run
-            to_pocket = hypot(POCKETS[pocket, 0] - bx, POCKETS[pocket, 1] - by)
-            row[at], row[at + 1], row[at + 2], row[at + 3], row[at + 4] = 1.0, px, py, px * ry - py * rx, found[p, 4]
+            to_pocket = hypot(POCKET_AIMS[pocket, 0] - bx, POCKET_AIMS[pocket, 1] - by)
+            row[at], row[at + 1], row[at + 2], row[at + 3], row[at + 4] = 1.0, px, py, px * ry - py * rx, found[p, COS_CUT]
             row[at + 5], row[at + 6] = away / HALF_LENGTH - 1.0, to_pocket / HALF_LENGTH - 1.0
-            row[at + TOLERANCE], row[at + 8] = 1.0 + log10(found[p, 5]) / 2.0, VALUES[ball] / 7.0
+            row[at + TOLERANCE], row[at + 8] = 1.0 + log10(found[p, POT_TOLERANCE]) / 2.0, VALUES[ball] / 7.0
             row[at + 9], row[at + 10] = bx / HALF_WIDTH, by / HALF_LENGTH
-            row[at + 11], row[at + 12] = POCKETS[pocket, 0] / HALF_WIDTH, POCKETS[pocket, 1] / HALF_LENGTH
+            row[at + 11], row[at + 12] = POCKET_AIMS[pocket, 0] / HALF_WIDTH, POCKET_AIMS[pocket, 1] / HALF_LENGTH
             for c in range(at, at + POT_ENTRIES):
                 row[c] = min(1.0, max(-1.0, row[c]))
 

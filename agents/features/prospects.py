@@ -5,8 +5,9 @@ from math import erf, exp, radians, sqrt
 
 import numpy as np
 
-from snooker_env.game import BALL_RADIUS, N_BALLS, POCKETS, VALUES, BallOn
-from snooker_env.kernels import POT_COLUMNS, balls_on, bits, entry, find_pots
+from snooker_env.game import N_BALLS, VALUES, BallOn
+from snooker_env.geometry import BALL_RADIUS, POCKET_AIMS
+from snooker_env.kernels import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, balls_on, bits, entry, find_pots
 from snooker_env.tasks import POTS
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
@@ -44,10 +45,10 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
                 left += 8.0 if VALUES[i] == 1 else VALUES[i]
         a = b = c = 0.0
         for j in range(many):
-            ball, pocket, gx, gy = int(found[j, 0]), int(found[j, 1]), found[j, 2], found[j, 3]
+            ball, pocket, gx, gy = int(found[j, POT_BALL]), int(found[j, POT_POCKET]), found[j, GHOST_X], found[j, GHOST_Y]
             path = sqrt((gx - p[0, 0]) ** 2 + (gy - p[0, 1]) ** 2)
-            run = sqrt((POCKETS[pocket, 0] - p[ball, 0]) ** 2 + (POCKETS[pocket, 1] - p[ball, 1]) ** 2)
-            chance = erf(found[j, 5] / (spread * sqrt(2.0))) * exp(-far * (path + run))
+            run = sqrt((POCKET_AIMS[pocket, 0] - p[ball, 0]) ** 2 + (POCKET_AIMS[pocket, 1] - p[ball, 1]) ** 2)
+            chance = erf(found[j, TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
             if j < chances.shape[1]:
                 chances[k, j] = chance
             rest = max(0.0, left - VALUES[ball])

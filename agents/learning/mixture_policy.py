@@ -20,7 +20,8 @@ from stable_baselines3.common.distributions import Distribution
 from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import nn
 
-from snooker_env.game import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS
+from snooker_env.game import N_BALLS
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from snooker_env.tasks import OBSERVATION_SIZE, POTS
 
 from ..features import pot_features

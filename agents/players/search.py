@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from snooker_env.game import BALL_RADIUS
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.planning import Planner, Positions, action_masks, pots, processors
 from snooker_env.tasks import STROKES, TOPS, choice_of
 

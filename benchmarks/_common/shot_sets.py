@@ -11,7 +11,8 @@ import numpy as np
 
 import snooker_env as sn
 from snooker_env.game.layouts import layout as deal
-from snooker_env.game.pots import POCKETS, pots
+from snooker_env.game.pots import pots
+from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.table import UNBOUNDED
 from snooker_env.tasks.noise import Noise
@@ -51,7 +52,7 @@ class Shots:
 def _inside(place, margin=0.01):
     """Is there room for a ball, clear of cushions and pockets?"""
     room = np.abs(place) < np.array([HALF_WIDTH, HALF_LENGTH]) - R - margin
-    return room.all() and np.hypot(*(POCKETS[:, :2] - place).T).min() > 0.1
+    return room.all() and np.hypot(*(POCKET_AIMS[:, :2] - place).T).min() > 0.1
 
 
 def _turned(d, angle):
@@ -108,7 +109,7 @@ def two_ball(n, physics, seed=0, *, cut=(0.0, 65.0), speed=(1.0, 4.5), run=(0.2,
         while len(found) < n:
             layout, b = np.zeros((22, 2)), place(rng)
             k = rng.integers(6)
-            d = POCKETS[k, :2] - b
+            d = POCKET_AIMS[k, :2] - b
             far = np.hypot(*d)
             if not run[0] <= far <= run[1] or (place is _anywhere and not _inside(b)):
                 continue
@@ -120,7 +121,7 @@ def two_ball(n, physics, seed=0, *, cut=(0.0, 65.0), speed=(1.0, 4.5), run=(0.2,
             possible = pots(layout, on_table, 2)
             if (possible[possible[:, 1] == k, 5] >= TOLERANCE).any():
                 found.append(layout[:2])
-                targets.append(POCKETS[k, :2])
+                targets.append(POCKET_AIMS[k, :2])
         parts.append(_settled(np.array(found), _strokes(rng, n, speed, spin), np.ones(n, int), np.array(targets), physics))
     return _joined(parts, n)
 
@@ -138,7 +139,7 @@ def full_table(n, physics, seed=0, *, speed=(1.0, 4.5)):
                 row = rng.choice(possible)
                 found.append(layout)
                 balls.append(int(row[0]))
-                targets.append(POCKETS[int(row[1]), :2])
+                targets.append(POCKET_AIMS[int(row[1]), :2])
         parts.append(_settled(np.array(found), _strokes(rng, n, speed, 1.0), np.array(balls), np.array(targets), physics))
     return _joined(parts, n)
 

@@ -7,7 +7,7 @@ import numpy as np
 
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, SPOTS
-from snooker_env.game.pots import POCKETS
+from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.table import UNBOUNDED
 from snooker_env.tasks.noise import Noise
 
@@ -41,8 +41,8 @@ class Pot:
     @property
     def positions(self):
         """(2, 2) [m]: cue ball, object ball."""
-        way = _turned(POCKETS[self.pocket, 2:4], radians(self.off))
-        ball, turn = POCKETS[self.pocket, :2] - self.run * way, radians(self.cut)
+        way = _turned(POCKET_AIMS[self.pocket, 2:4], radians(self.off))
+        ball, turn = POCKET_AIMS[self.pocket, :2] - self.run * way, radians(self.cut)
         path = sqrt(self.far**2 - (2 * R * np.sin(turn)) ** 2) - 2 * R * np.cos(turn)
         return np.array([ball - 2 * R * way - path * _turned(way, turn), ball])
 
@@ -60,7 +60,7 @@ class Pot:
 
 def _spot(ball):
     """(run, off) of a ball on its spot, for the top right corner pocket."""
-    dx, dy = POCKETS[3, :2] - SPOTS[ball]
+    dx, dy = POCKET_AIMS[3, :2] - SPOTS[ball]
     return float(hypot(dx, dy)), degrees(np.arctan2(dy, dx)) - 45.0
 
 
@@ -137,7 +137,7 @@ def played(pot, stroke, n, physics, table, *, aims: float | np.ndarray = 0.0, le
 
 def aimed(pot, physics, table, speed=None, in_off=False):
     """The pot with its stroke: no spin, ``speed`` [m/s] or as played."""
-    start, aim_point = pot.positions, POCKETS[pot.pocket, :2]
+    start, aim_point = pot.positions, POCKET_AIMS[pot.pocket, :2]
     stroke = np.array([pot.speed if speed is None else speed, 0.0, 0.0, 0.0])
     settled = _settled(start[None], stroke[None].copy(), np.ones(1, int), aim_point[None], physics)
     if len(settled.ball) == 0:

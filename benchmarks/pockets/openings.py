@@ -5,9 +5,8 @@ from math import cos, sin, sqrt
 import numpy as np
 
 import snooker_env as sn
-from snooker_env.game.pots import POCKETS
+from snooker_env.geometry import HALF_WIDTH, POCKET_AIMS
 from snooker_env.physics.engine import EventKind
-from snooker_env.physics.table import HALF_WIDTH
 
 from .windows import Engine, drops, played, strokes
 
@@ -83,7 +82,7 @@ def all_clean_drop(pocket, speeds, physics, engine=None, distance=0.3, n=41):
 def moved(table, fall=0.0, throat=0.0):
     """A preset with its falls further out by ``fall`` [m] along the axes of the pockets, and its throats wider by ``throat`` [m]."""
     noses, jaws, falls = table.noses.copy(), table.jaws.copy(), table.falls.copy()
-    falls[:, :2] += fall * POCKETS[:, 2:4]
+    falls[:, :2] += fall * POCKET_AIMS[:, 2:4]
     corner, middle = throat / sqrt(2), throat / 2  # by how much the arcs move along their rails
     for nose in noses:
         nose[3] += middle if abs(nose[3]) < 0.5 else corner

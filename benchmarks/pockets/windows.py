@@ -13,7 +13,7 @@ import numpy as np
 
 import snooker_env as sn
 from snooker_env import simulation
-from snooker_env.game.pots import POCKETS
+from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.impact import contact
 
 STANDARD = contact.parse_fidelity("standard")[0]
@@ -50,7 +50,7 @@ class Pocket:
 def alone(table, pocket):
     """Pocket number ``pocket`` of a preset, or of a table like it: its fall, its jaws, and the noses that end at it."""
     x, y, _ = table.falls[pocket]
-    ax, ay, ux, uy, _ = POCKETS[pocket]
+    ax, ay, ux, uy, _ = POCKET_AIMS[pocket]
 
     def near(a, b):
         return np.hypot(a - x, b - y) < 0.25

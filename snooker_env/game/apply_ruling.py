@@ -8,7 +8,8 @@ import numpy as np
 
 from .._check import array, refuse
 from .._jit import entry, kernel
-from .balls import BALL_RADIUS, N_BALLS, balls_on_kernel, bits, check_table, mask_of
+from ..geometry import BALL_RADIUS
+from .balls import N_BALLS, balls_on_kernel, bits, check_table, mask_of
 from .referee import check, numbers_of, verdict_of
 from .ruling import AUTO, FLAG, OUTCOME, ruling
 from .snookered import NO_JAWS, snookered

@@ -1,6 +1,6 @@
-"""Which balls are there, what is each worth and where does it belong? Ids, values, spots and the lines of the table.
+"""Which balls are there, what is each worth and where does it belong? Ids, values and places; the table's own are in ``geometry``.
 
-World frame: origin at the table's centre, +x to the yellow side, +y to the black end; metres. The 22 balls have fixed ids: 0 the cue
+World frame as in ``geometry``. The 22 balls have fixed ids: 0 the cue
 ball, 1 to 15 the reds, 16 to 21 the colours in the order of their values. A set of balls is an integer whose bit i stands for ball i,
 or a bool array (22,); positions are float64 (22, 2).
 """
@@ -11,6 +11,7 @@ import numpy as np
 
 from .._check import array, integer, refuse
 from .._jit import kernel
+from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS
 
 N_BALLS = 22
 CUE, YELLOW, GREEN, BROWN, BLUE, PINK, BLACK = 0, 16, 17, 18, 19, 20, 21
@@ -46,37 +47,19 @@ class BallOn(IntEnum):
     BLACK = 7
 
 
-# The table. The playing area between the noses is 3569 mm by 1778 mm; the D and the spots as the rules place them.
-BALL_RADIUS = 0.02625
-HALF_WIDTH = 0.889
-HALF_LENGTH = 1.7845
-BAULK_Y = -1.0475
-D_RADIUS = 0.292
-
 PINK_GAP = 0.0005
 """Gap [m] between the pink on its spot and the red at the apex: as near as possible without touching."""
 
 TOUCH = 1e-6
 """Two balls touch when the gap between them is below this [m]: far under what an eye sees, far over rounding."""
 
-POCKETS = np.array(
-    [[x, y] for y in (-HALF_LENGTH, 0.0, HALF_LENGTH) for x in (-HALF_WIDTH, HALF_WIDTH)],
-    dtype=np.float64,
-)
-"""Where the nose lines meet (corners) or are cut (middles); nominal places, enough to keep a layout clear of the pockets."""
-
 
 def _spots():
     """A place for each ball: the cue ball's usual place for the break, the racked triangle, the six spots."""
     spots = np.empty((N_BALLS, 2))
     spots[CUE] = D_RADIUS / 2, BAULK_Y
-    pink_y = HALF_LENGTH / 2
-    spots[YELLOW] = D_RADIUS, BAULK_Y
-    spots[GREEN] = -D_RADIUS, BAULK_Y
-    spots[BROWN] = 0.0, BAULK_Y
-    spots[BLUE] = 0.0, 0.0
-    spots[PINK] = 0.0, pink_y
-    spots[BLACK] = 0.0, 1.4605
+    spots[YELLOW:] = COLOUR_SPOTS
+    pink_y = spots[PINK, 1]
     # Rows sqrt(3) R apart with a pitch of 2 R: each red touches its neighbours to rounding. Figures rounded to mm would overlap.
     ball = 1
     for row in range(5):
@@ -89,7 +72,7 @@ def _spots():
 SPOTS = _spots()
 """(22, 2): each colour's spot; for a red its place in the triangle, for the cue ball its usual place for the break."""
 
-for _constant in (VALUES, POCKETS, SPOTS):
+for _constant in (VALUES, SPOTS):
     _constant.setflags(write=False)
 
 

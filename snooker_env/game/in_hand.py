@@ -7,7 +7,8 @@ import numpy as np
 
 from .._check import number, refuse
 from .._jit import entry, kernel
-from .balls import BALL_RADIUS, BAULK_Y, D_RADIUS, N_BALLS, check_table
+from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
+from .balls import N_BALLS, check_table
 from .spotting import CLEARANCE, occupied
 
 ROUNDING = 1e-12

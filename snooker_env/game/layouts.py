@@ -11,10 +11,11 @@ import numpy as np
 
 from .._check import refuse
 from .._jit import entry, kernel
-from .balls import BALL_RADIUS, BAULK_Y, CUE, D_RADIUS, GREEN, HALF_LENGTH, HALF_WIDTH, N_BALLS, N_REDS, POCKETS, REDS_MASK, SPOTS, YELLOW
+from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
+from .balls import CUE, GREEN, N_BALLS, N_REDS, REDS_MASK, SPOTS, YELLOW
 from .opened import NO_BANK, bank_without, kept
 from .philox import normals, pair, stream_of
-from .pots import POT_COLUMNS, find_pots
+from .pots import POT_COLUMNS, TOLERANCE, find_pots
 from .snookered import NO_JAWS, snookered_from
 
 GAP = 0.001
@@ -34,8 +35,8 @@ def clear(positions, on_table, x, y):
     room = BALL_RADIUS + CUSHION_GAP
     if abs(x) > HALF_WIDTH - room or abs(y) > HALF_LENGTH - room:
         return False
-    for k in range(POCKETS.shape[0]):
-        if hypot(POCKETS[k, 0] - x, POCKETS[k, 1] - y) < POCKET_GAP:
+    for k in range(POCKET_PLACES.shape[0]):
+        if hypot(POCKET_PLACES[k, 0] - x, POCKET_PLACES[k, 1] - y) < POCKET_GAP:
             return False
     free = True
     for i in range(N_BALLS):
@@ -144,7 +145,7 @@ def _deal(code, tables, stream, positions, on_table, found):
             if _hide(positions, on_table, loose, stream):
                 return
         elif kind == POT:
-            if find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, found) and low <= found[0, 5] < high:
+            if find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, found) and low <= found[0, TOLERANCE] < high:
                 return
         else:
             return

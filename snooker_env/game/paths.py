@@ -9,7 +9,8 @@ import numpy as np
 
 from .._check import integer, refuse
 from .._jit import entry, kernel
-from .balls import ALL_MASK, BALL_RADIUS, CUE_BIT, N_BALLS, check_table
+from ..geometry import BALL_RADIUS
+from .balls import ALL_MASK, CUE_BIT, N_BALLS, check_table
 from .snookered import SLACK, segment_distance
 
 WINDOW = 1e-9

@@ -10,27 +10,20 @@ w(a) is the width of the lateral window that the pocket offers at the angle a of
 "match", jaws included, to a millimetre (tests/benchmarks/test_pocket_windows.py; a firm ball has less, a dying one more).
 """
 
-from math import acos, hypot, sqrt
+from math import acos, hypot
 
 import numpy as np
 
 from .._jit import entry, kernel
-from .balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, N_BALLS
-
-_H = sqrt(0.5)
-POCKETS = np.array([
-    (-HALF_WIDTH + 0.01524, -HALF_LENGTH + 0.01524, -_H, -_H, 0.0), (HALF_WIDTH - 0.01524, -HALF_LENGTH + 0.01524, _H, -_H, 0.0),
-    (HALF_WIDTH - 0.0016, 0.0, 1.0, 0.0, 1.0), (HALF_WIDTH - 0.01524, HALF_LENGTH - 0.01524, _H, _H, 0.0),
-    (-HALF_WIDTH + 0.01524, HALF_LENGTH - 0.01524, -_H, _H, 0.0), (-HALF_WIDTH + 0.0016, 0.0, -1.0, 0.0, 1.0),
-])  # fmt: skip
-"""(6, 5): aim point x, y (where the fall meets the pocket's axis), outward axis, 1 for a middle pocket. Index = pocket."""
-POCKETS.setflags(write=False)
+from ..geometry import AIM_X, AIM_Y, AXIS_X, AXIS_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, IS_MIDDLE, POCKET_AIMS
+from .balls import N_BALLS
 
 _CORNER_ANGLE, _CORNER_WINDOW = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0)  # degrees, metres
 _MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0), (0.073, 0.071, 0.063, 0.043, 0.018, 0.0)
 
+POT_BALL, POT_POCKET, GHOST_X, GHOST_Y, COS_CUT, TOLERANCE = range(6)
+"""Columns of a pot: object ball, pocket, place of the ghost ball [m], cosine of the cut angle, tolerance [rad]."""
 POT_COLUMNS = 6
-"""Columns of a pot: object ball, pocket, ghost x, ghost y, cosine of the cut angle, tolerance [rad]."""
 
 
 @kernel
@@ -77,12 +70,12 @@ def find_pots(positions, on_table, on, radius, pots):
             continue
         bx, by = positions[ball, 0], positions[ball, 1]
         for k in range(6):
-            dx, dy = POCKETS[k, 0] - bx, POCKETS[k, 1] - by
+            dx, dy = POCKET_AIMS[k, AIM_X] - bx, POCKET_AIMS[k, AIM_Y] - by
             run = hypot(dx, dy)
             if run < 1e-9:
                 continue
             dx, dy = dx / run, dy / run
-            width = window(dx * POCKETS[k, 2] + dy * POCKETS[k, 3], POCKETS[k, 4] > 0.0)
+            width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0)
             gx, gy = bx - d * dx, by - d * dy
             px, py = gx - cx, gy - cy
             path = hypot(px, py)
@@ -94,19 +87,20 @@ def find_pots(positions, on_table, on, radius, pots):
             if cos_cut < 0.05:  # thinner than 87 degrees
                 continue
             tolerance = width / (2.0 * run) * d * cos_cut / path
-            if count == pots.shape[0] and tolerance <= pots[count - 1, 5]:
+            if count == pots.shape[0] and tolerance <= pots[count - 1, TOLERANCE]:
                 continue
-            if not clear_segment(positions, on_table, bx, by, POCKETS[k, 0], POCKETS[k, 1], ball, 0, d):
+            if not clear_segment(positions, on_table, bx, by, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], ball, 0, d):
                 continue
             if not clear_segment(positions, on_table, cx, cy, gx, gy, ball, 0, d * (1.0 - 1e-9)):
                 continue
             at = min(count, pots.shape[0] - 1)
-            while at > 0 and pots[at - 1, 5] < tolerance:
+            while at > 0 and pots[at - 1, TOLERANCE] < tolerance:
                 for c in range(POT_COLUMNS):
                     pots[at, c] = pots[at - 1, c]
                 at -= 1
             row = pots[at]
-            row[0], row[1], row[2], row[3], row[4], row[5] = ball, k, gx, gy, cos_cut, tolerance
+            row[POT_BALL], row[POT_POCKET], row[GHOST_X], row[GHOST_Y] = ball, k, gx, gy
+            row[COS_CUT], row[TOLERANCE] = cos_cut, tolerance
             count = min(count + 1, pots.shape[0])
     return count
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from .._check import array, integer, refuse
 from .._jit import entry, kernel
-from .balls import ALL_MASK, BALL_RADIUS, BAULK_Y, CUE_BIT, D_RADIUS, N_BALLS, TOUCH, check_table
+from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
+from .balls import ALL_MASK, CUE_BIT, N_BALLS, TOUCH, check_table
 from .spotting import occupied
 
 D_STEP = 0.005

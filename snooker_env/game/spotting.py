@@ -10,7 +10,8 @@ import numpy as np
 
 from .._check import integer, refuse
 from .._jit import entry, kernel
-from .balls import ALL_MASK, BALL_RADIUS, BLACK, COLOURS_MASK, HALF_LENGTH, N_BALLS, SPOTS, TOUCH, YELLOW, check_table
+from ..geometry import BALL_RADIUS, HALF_LENGTH
+from .balls import ALL_MASK, BLACK, COLOURS_MASK, N_BALLS, SPOTS, TOUCH, YELLOW, check_table
 
 CLEARANCE = 2.0 * TOUCH
 """The gap [m] left to a ball or cushion that a spotted colour must not touch: the least that no test of touching can mistake."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._check import choice, number, refuse
+from ..geometry import BALL_RADIUS
 
 MARLOW = (9.951e-3, 0.108, 1.088)
 """Marlow's law of ball-ball friction, mu(s) = a + b exp(-c s), s the slip speed in m/s."""
@@ -39,8 +40,8 @@ class Physics:
 
     Fields:
 
-    * R: Ball radius [m], in [0.001, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3].
-    * M: Ball mass [kg], > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal.
+    * R: Ball radius [m], of all balls, in [0.001, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3].
+    * M: Ball mass [kg], of all balls, > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal.
     * g: Gravity [m/s^2], > 0.
     * mu_s: Sliding friction ball-cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
     * mu_r: Rolling resistance, deceleration over g, in [0, 1] (measured deceleration 0.124 to 0.126 m/s^2, that is 0.0127 g).
@@ -64,7 +65,7 @@ class Physics:
     * max_offset: Tip offset over R beyond which the tip slips (miscue), in (0, 1) [TP A.30].
     """
 
-    R: float = 0.02625
+    R: float = BALL_RADIUS
     M: float = 0.1406
     g: float = 9.81
     mu_s: float = 0.21
@@ -88,6 +89,10 @@ class Physics:
             "nap": (-np.inf, np.inf), "e_b": (0, 1), "e_c": (0, 1), "e_c_knee": (0, np.inf), "e_c_power": (0, _MOST_POWER), "mu_c": (0, 1),
             "sin_theta": (0, 0.95), "end_mass_ratio": (0, np.inf), "max_offset": (0, 0.999),
         }  # fmt: skip
+        for field in ("R", "M"):
+            value = getattr(self, field)
+            if isinstance(value, (list, tuple, np.ndarray)) and np.shape(value)[:1] > (1,):
+                raise refuse(f"physics.{field}", value, "must be one number: all balls of a shot are equal (docs/limits.md)")
         for field, (low, high) in low_high.items():
             open_low = field in ("M", "g", "max_offset")
             object.__setattr__(self, field, number(f"physics.{field}", getattr(self, field), low, high, open_low=open_low))

@@ -164,8 +164,9 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
         return LOST, -1, STEP, x + vx * STEP, y + vy * STEP, z, vx, vy, u  # nothing is in its way any more; the edge only helps
     first, last = jaws.shape[0], 0  # the jaws of this pocket
     for k in range(jaws.shape[0]):
-        dx, dy = jaws[k, 0] - falls[pocket, 0], jaws[k, 1] - falls[pocket, 1]
-        reach = jaws[k, 2] + 4.0 * R + falls[pocket, 2]
+        # from the middle of the arc, which is no further from its ends than their chord: a straight facing is an arc of a huge circle
+        dx, dy = jaws[k, 0] + jaws[k, 2] * jaws[k, 3] - falls[pocket, 0], jaws[k, 1] + jaws[k, 2] * jaws[k, 4] - falls[pocket, 1]
+        reach = jaws[k, 2] * sqrt(2.0 * (1.0 - jaws[k, 5])) + 4.0 * R + falls[pocket, 2]
         if dx * dx + dy * dy < reach * reach:
             first, last = min(first, k), k + 1
     T = 0.0

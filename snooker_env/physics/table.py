@@ -1,9 +1,7 @@
-"""What bounds the balls? Straight noses, jaw arcs and the falls of the six pockets, as arrays for the kernels.
+"""What bounds the balls? A ``Table``: straight noses, jaw arcs and the falls of the pockets, checked, as arrays for the kernels.
 
-World frame: origin at the table's centre, +x to the yellow side, +y to the black end; metres. The nose lines are x = +-0.889 and
-y = +-1.7845 (WPBSA playing area 3569 x 1778 mm). The official pocket templates are secret; this set agrees with the quoted
-openings (3.5 in corner, 4 in middle at the fall of the slate: ``python -m benchmarks.pockets`` prints ours). What is behind the arcs needs
-no shape: the throat goes on straight, and a ball that touches it there is lost (``pocket.py``).
+World frame as in ``geometry``, which says where everything lies. What is behind the arcs needs no shape: the throat goes on straight,
+and a ball that touches it there is lost (``pocket.py``).
 """
 
 from dataclasses import dataclass, field
@@ -11,31 +9,29 @@ from math import hypot, inf, sqrt
 
 import numpy as np
 
-from .._check import array, choice, refuse, refuse_what
+from .._check import array, choice, number, refuse, refuse_what
 from .._jit import entry
+from ..geometry import PRESETS, Bed, Pocket, parts
 
-HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
-BALL_RADIUS = 0.02625
-"""The ball [m] that the presets' cushions and pockets are made for."""
 MOUTH = 0.012
-"""How far past the line of the noses [m] a ball may lie still: just so far between the jaw and the fall of a middle pocket."""
-POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
-"""Pocket indices 0..5, anticlockwise from (-x, -y); bottom is the baulk end, right the yellow side."""
-
-_CORNER_JAW, _MIDDLE_JAW = 0.0889, 0.0669  # radii of the jaw arcs
-_CORNER_FALL, _MIDDLE_FALL = (0.047625, 0.0889), (0.05159, 0.05319)  # slate circle: offset outward from the pocket's origin, radius
-_MIDDLE_ARC = 0.109185  # middle pocket: distance of the arc centres from the pocket's axis
-_CORNER_ARC = {"match": 0.0976352, "tight": 0.0934916}  # corner: where the arc leaves the nose, from the corner; throats 86.0 and 80.14 mm
-
+"""How far past the line of the noses [m] a ball may lie still, unless a table's pockets let it lie deeper: just so far between the jaw and
+the fall of a middle pocket of snooker."""
 PLAY = 1e-3
 """Facing noses must be at least this much [m] further apart than a ball is wide."""
 OVERLAP_ALLOWED = 1e-6
 """Input positions may overlap a ball or cushion by this much [m]: layouts printed to a micrometre. They count as touching."""
+SAME_BALL = 1e-9
+"""A ball's radius may differ by this much [m] from the one that a table is made for."""
+
+NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL, NOSE_LOW, NOSE_HIGH = range(5)
+JAW_X, JAW_Y, JAW_RADIUS, JAW_UX, JAW_UY, JAW_COS = range(6)
+FALL_X, FALL_Y, FALL_RADIUS = range(3)
+"""Columns of ``Table.noses``, ``Table.jaws`` and ``Table.falls``."""
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A table's shape. ``Table.preset("match")`` or ``"tight"`` (narrower corner pockets), or one of your own from the arrays below.
+    """A table's shape: one with a name, ``Table.preset("match")``, a rectangular one, ``Table.rectangular``, or any from the arrays below.
 
     A preset is the one object of its name, also after pickling and copying; a table of your own stays what it is whatever it is called.
     """
@@ -47,10 +43,15 @@ class Table:
     jaws: np.ndarray
     """(k, 6) jaw arcs: centre x, y, radius [m], unit vector to the arc's middle, cosine of its half angle."""
     falls: np.ndarray
-    """(k, 3) falls: centre x, y, radius [m] of the slate's edge; a ball whose centre crosses it begins to drop. Index = pocket, see
-    ``POCKETS``."""
+    """(k, 3) falls: centre x, y, radius [m] of the slate's edge; a ball whose centre crosses it begins to drop. Index = pocket."""
+    ball_radius: float | None = field(default=None, kw_only=True)
+    """The ball [m] that it is made for, which ``physics.R`` must then be; None: any ball."""
+    pockets: tuple[str, ...] = field(default=(), kw_only=True)
+    """The names of its pockets, one a fall, or ()."""
+    bounds: np.ndarray = field(init=False, repr=False)
+    """(2, 2) [m] between which lines the balls lie: of x and of y the levels of the outermost noses, infinite where there is none."""
     _narrowest: tuple[float, int, int] = field(init=False, repr=False)
-    _bed: np.ndarray = field(init=False, repr=False)
+    _reach: np.ndarray = field(init=False, repr=False)
 
     def __post_init__(self):
         if not isinstance(self.name, str):
@@ -60,13 +61,74 @@ class Table:
             a.setflags(write=False)
             object.__setattr__(self, name, a)
         _check_shapes(self.noses, self.jaws, self.falls)
+        if self.ball_radius is not None:
+            object.__setattr__(self, "ball_radius", number("table.ball_radius", self.ball_radius, 1e-3, 1))
+        names = self.pockets
+        if not isinstance(names, tuple) or not all(isinstance(name, str) for name in names) or len(names) not in (0, len(self.falls)):
+            raise refuse("table.pockets", names, f"must be a tuple of {len(self.falls)} names, one a fall, or ()")
+        bounds = _bounds(self.noses)
+        bounds.setflags(write=False)
+        object.__setattr__(self, "bounds", bounds)
         object.__setattr__(self, "_narrowest", _narrowest(self.noses))
-        object.__setattr__(self, "_bed", _bed(self.noses))
+        past = max(MOUTH, _deepest(self.jaws, self.falls, bounds, self.ball_radius))
+        object.__setattr__(self, "_reach", bounds + np.array([-past, past]))
 
     @classmethod
     def preset(cls, name="match"):
-        """``"match"`` (throat of the corners 86.0 mm) or ``"tight"`` (80.14 mm)."""
-        return _PRESETS[choice("table", name, _CORNER_ARC)]
+        """A table by its name; each is made for the balls of its game, see ``ball``.
+
+        Snooker: ``"match"`` (throat of the corners 86.0 mm) and ``"tight"`` (80.14 mm), 3.569 x 1.778 m, balls of 52.5 mm. ``"uk8"``: UK
+        8-ball pool, 7 ft x 3 ft 6 in, balls of 2 in; its pockets are an estimate. ``"pool9"``: pool, 100 x 50 in, balls of 2 1/4 in.
+        ``"carom"``: 2.84 x 1.42 m, no pockets, balls of 61.5 mm. Sources: ``snooker_env.geometry``.
+        """
+        return _PRESETS[choice("table", name, PRESETS)]
+
+    @classmethod
+    def rectangular(cls, length, width, *, pockets=6, corner=None, middle=None, ball_radius=None, name="rectangular"):
+        """A rectangular table of your own with straight noses on its four sides.
+
+        Parameters
+        ----------
+        length, width : float
+            Between facing noses [m], in (0, 100]: ``length`` along y, ``width`` along x. The origin is in the middle.
+        pockets : {6, 4, 0}
+            Four corners and the middles of the sides along y, corners only, or none. They are numbered anticlockwise from (-x, -y);
+            ``Table.pockets`` has their names.
+        corner, middle : Pocket, optional
+            Their shapes: ``Pocket.corner(...)``, ``Pocket.middle(...)``. None: those of snooker's match table.
+        ball_radius : float, optional
+            The ball [m] that it is made for, in [0.001, 1]: shots with another ``physics.R`` are refused. None: any ball.
+        name : str
+            What it is called in messages.
+
+        Raises
+        ------
+        ValueError
+            Where sizes do not fit together: jaws that overlap along a rail, a pocket narrower than the ball.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> table = sn.Table.rectangular(2.0, 1.0, pockets=4, ball_radius=0.025)
+        >>> sn.simulate([(0.0, 0.0)], [(1.0, 0.5)], [(0.0, 0.0, 0.0)], table, {"R": 0.025}).potted
+        array([-1])
+        """
+        length = number("table.length", length, 0, 100, open_low=True)
+        width = number("table.width", width, 0, 100, open_low=True)
+        if not isinstance(pockets, (int, np.integer)) or pockets not in (6, 4, 0):
+            raise refuse("table.pockets", pockets, "must be 6, 4 or 0")
+        shapes = []
+        for field_name, shape, is_middle, there in (("corner", corner, False, pockets > 0), ("middle", middle, True, pockets == 6)):
+            if shape is not None and not there:
+                raise refuse(f"table.{field_name}", shape, f"must be None on a table with {pockets} pockets")
+            if shape is not None and (not isinstance(shape, Pocket) or shape.is_middle != is_middle):
+                raise refuse(f"table.{field_name}", shape, f"must be a Pocket made by Pocket.{field_name}, or None for snooker's")
+            shapes.append((shape or getattr(PRESETS["match"], field_name)) if there else None)
+        if ball_radius is not None:
+            ball_radius = number("table.ball_radius", ball_radius, 1e-3, 1)
+        bed = Bed(length=length, width=width, corner=shapes[0], middle=shapes[1], ball={})
+        _check_fit(bed, ball_radius)
+        return cls(name, *parts(bed), ball_radius=ball_radius, pockets=bed.pockets)
 
     @classmethod
     def of(cls, table):
@@ -77,23 +139,35 @@ class Table:
             return table
         if isinstance(table, str):
             return cls.preset(table)
-        raise refuse("table", table, 'must be "match", "tight", a Table, or None for unbounded cloth')
+        raise refuse("table", table, f"must be {', '.join(map(_quoted, PRESETS))}, a Table, or None for unbounded cloth")
 
     @property
     def is_preset(self):
         """Is this the preset of its name, and no table of somebody's own that is called so?"""
         return _PRESETS.get(self.name) is self
 
+    @property
+    def ball(self):
+        """Fields of ``Physics`` for the balls that it is made for, as in ``Physics.preset("match", **table.ball)``; {} for any ball.
+
+        A preset knows R, M and sin_theta (the height of its noses), a table of your own R.
+        """
+        if self.is_preset:
+            return dict(PRESETS[self.name].ball)
+        return {} if self.ball_radius is None else {"R": self.ball_radius}
+
     def __reduce__(self):
         if self.is_preset:
             return Table.preset, (self.name,)
-        return (Table.of, (None,)) if self is UNBOUNDED else (Table, (self.name, self.noses, self.jaws, self.falls))
+        if self is UNBOUNDED:
+            return Table.of, (None,)
+        return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
 
     def unfit(self, positions, R):
         """Which of the layouts (b, n, 2), all balls on the table, are not sound here: their indices, in order."""
         here, found, first = np.ones(positions.shape[:2], bool), [], 0
         while True:
-            k, _, fault, _ = _first_fault(positions[first:], here[first:], self._bed, self.noses, self.jaws, self.falls, float(R))
+            k, _, fault, _ = _first_fault(positions[first:], here[first:], self._reach, self.noses, self.jaws, self.falls, float(R))
             if fault == _SOUND:
                 return found
             first += k + 1
@@ -104,8 +178,12 @@ class Table:
 
         positions (n, 2) or, of many tables at once, (b, n, 2); on_table (n,) or (b, n) bool: balls that do not count are False.
         """
-        if self.is_preset and abs(R - BALL_RADIUS) > 1e-9:
-            raise refuse("physics.R", R, f'must be {BALL_RADIUS} on table "{self.name}", which is made for it; give a Table of your own')
+        own = self.ball_radius
+        if own is not None and abs(R - own) > SAME_BALL:
+            allowed = (
+                f'must be {own} on table "{self.name}", which is made for it: write physics={{"R": {own}}}, or give a Table of your own'
+            )
+            raise refuse("physics.R", R, allowed)
         positions = np.array(positions, np.float64, order="C")
         many = positions.ndim == 3
         places = positions if many else positions[None]
@@ -114,21 +192,21 @@ class Table:
         if width - 2 * R < PLAY:  # it would bounce between them without end in no time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
             raise refuse_what("table.noses", f"{pair[0]} and {pair[1]}", what)
-        k, i, fault, j = _first_fault(places, here, self._bed, self.noses, self.jaws, self.falls, float(R))
+        k, i, fault, j = _first_fault(places, here, self._reach, self.noses, self.jaws, self.falls, float(R))
         if fault == _SOUND:
             return
         field = f"{field}[{k}]" if many else field
         place = f"{field}[{i}]", (float(places[k, i, 0]), float(places[k, i, 1]))
         if fault == _OFF:
-            ranges = [_range(name, low + R, high - R) for name, (low, high) in zip("xy", self._bed.tolist(), strict=True)]
+            ranges = [_range(name, low + R, high - R) for name, (low, high) in zip("xy", self.bounds.tolist(), strict=True)]
             raise refuse(*place, f"must be on the table, {', '.join(filter(None, ranges))} away from pockets")
         if fault == _IN_NOSE:
-            axis, side, level = self.noses[j, :3]
+            axis, side, level = self.noses[j, [NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL]]
             raise refuse(*place, f"overlaps the cushion at {'xy'[int(axis)]} = {side * level:g}")
         if fault == _OVER_POCKET:
             raise refuse(*place, "is over a pocket")
         if fault == _IN_JAW:
-            raise refuse(*place, f"overlaps jaw {j} at ({self.jaws[j, 0]:.4f}, {self.jaws[j, 1]:.4f})")
+            raise refuse(*place, f"overlaps jaw {j} at ({self.jaws[j, JAW_X]:.4f}, {self.jaws[j, JAW_Y]:.4f})")
         depth = 2 * R - float(hypot(*(places[k, i] - places[k, j])))
         raise refuse_what(field, f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
 
@@ -142,19 +220,70 @@ def _check_shapes(noses, jaws, falls):
         if radius < 0 or abs(hypot(ux, uy) - 1.0) > 1e-6 or abs(cos_half) > 1:
             allowed = "must be x, y, radius >= 0, a unit vector (to 1e-6), and a cosine"
             raise refuse(f"table.jaws[{k}]", tuple(jaws[k].tolist()), allowed)
-    for k, radius in enumerate(falls[:, 2].tolist()):
+    for k, radius in enumerate(falls[:, FALL_RADIUS].tolist()):
         if radius <= 0:
             raise refuse(f"table.falls[{k}]", tuple(falls[k].tolist()), "must be x, y, and a radius > 0")
 
 
-def _bed(noses):
-    """Between which lines the balls lie: (2, 2), of x and y the levels of the outermost noses, infinite where there is none."""
-    bed = np.full((2, 2), inf)
+def _check_fit(bed, ball_radius):
+    """Raise ValueError unless a rectangular table's pockets fit its sides and let its ball through."""
+    end = bed.corner.start if bed.corner else 0.0
+    middle = bed.middle.start if bed.middle else 0.0
+    for name, half, taken in (("width", bed.width / 2, end), ("length", bed.length / 2, end + middle)):
+        if not half > taken:
+            raise refuse(f"table.{name}", 2 * half, f"must be more than {2 * taken:.6g}, which the jaws of the pockets take of that side")
+    if ball_radius is None:
+        return
+    for name, pocket in (("corner", bed.corner), ("middle", bed.middle)):
+        if pocket is not None and not pocket.throat > 2 * ball_radius:
+            allowed = f"must be less than {pocket.throat / 2:.6g}, half the throat of the {name} pockets"
+            raise refuse("table.ball_radius", ball_radius, allowed)
+
+
+def _again(name, noses, jaws, falls, ball_radius, pockets):
+    """A table of one's own as it was: what pickling and copying call."""
+    return Table(name, noses, jaws, falls, ball_radius=ball_radius, pockets=pockets)
+
+
+def _quoted(name):
+    return f'"{name}"'
+
+
+def _bounds(noses):
+    """``Table.bounds`` of its noses."""
+    bounds = np.full((2, 2), inf)
     for axis in (0, 1):
         for end, side in enumerate((-1, 1)):
-            levels = noses[(noses[:, 0] == axis) & (noses[:, 1] == side), 2]
-            bed[axis, end] = side * max(levels, default=inf)
-    return bed
+            levels = noses[(noses[:, NOSE_AXIS] == axis) & (noses[:, NOSE_SIDE] == side), NOSE_LEVEL]
+            bounds[axis, end] = side * max(levels, default=inf)
+    return bounds
+
+
+def _deepest(jaws, falls, bounds, R):
+    """How far past the line of the noses [m] a ball of radius R can lie between a jaw and the fall, and a little more; 0 if not known."""
+    deepest = 0.0
+    for x, y, edge in falls if R else ():
+        for jx, jy, radius, ux, uy, cos_half in jaws:
+            # where the ball's centre is on the fall's edge and the ball at the jaw: two circles cross
+            dx, dy, reach = jx - x, jy - y, radius + R
+            far = hypot(dx, dy)
+            if not abs(reach - edge) < far < reach + edge:
+                continue
+            along = (far * far + edge * edge - reach * reach) / (2.0 * far)
+            off = sqrt(edge * edge - along * along)
+            for side in (-1.0, 1.0):
+                px, py = x + (along * dx - side * off * dy) / far, y + (along * dy + side * off * dx) / far
+                on_arc = (px - jx) * ux + (py - jy) * uy >= cos_half * reach
+                if on_arc and not _in_a_jaw(px, py, jaws, R):
+                    past = max(bounds[0, 0] - px, px - bounds[0, 1], bounds[1, 0] - py, py - bounds[1, 1])
+                    deepest = max(deepest, past + 5e-4)
+    return deepest
+
+
+def _in_a_jaw(x, y, jaws, R):
+    dx, dy = x - jaws[:, JAW_X], y - jaws[:, JAW_Y]
+    far = np.hypot(dx, dy)
+    return bool(np.any((far < jaws[:, JAW_RADIUS] + R - 1e-6) & (dx * jaws[:, JAW_UX] + dy * jaws[:, JAW_UY] >= jaws[:, JAW_COS] * far)))
 
 
 def _range(name, low, high):
@@ -178,27 +307,30 @@ _SOUND, _OFF, _IN_NOSE, _OVER_POCKET, _IN_JAW, _IN_BALL = range(6)
 
 
 @entry
-def _first_fault(positions, on_table, bed, noses, jaws, falls, R):
+def _first_fault(positions, on_table, reach, noses, jaws, falls, R):
     """The first unsound place of positions (b, n, 2): table, ball, what is wrong, and with which nose, fall, jaw or ball."""
     for k in range(positions.shape[0]):
         for i in range(positions.shape[1]):
             if not on_table[k, i]:
                 continue
             x, y = positions[k, i, 0], positions[k, i, 1]
-            if not (bed[0, 0] - MOUTH < x < bed[0, 1] + MOUTH and bed[1, 0] - MOUTH < y < bed[1, 1] + MOUTH):
+            if not (reach[0, 0] < x < reach[0, 1] and reach[1, 0] < y < reach[1, 1]):
                 return k, i, _OFF, -1
             for j in range(noses.shape[0]):
-                along, across = (y, x) if noses[j, 0] == 0.0 else (x, y)
-                if noses[j, 3] <= along <= noses[j, 4] and noses[j, 2] - R - noses[j, 1] * across < -OVERLAP_ALLOWED:
+                along, across = (y, x) if noses[j, NOSE_AXIS] == 0.0 else (x, y)
+                if (
+                    noses[j, NOSE_LOW] <= along <= noses[j, NOSE_HIGH]
+                    and noses[j, NOSE_LEVEL] - R - noses[j, NOSE_SIDE] * across < -OVERLAP_ALLOWED
+                ):
                     return k, i, _IN_NOSE, j
             for j in range(falls.shape[0]):
-                dx, dy = x - falls[j, 0], y - falls[j, 1]
-                if dx * dx + dy * dy < falls[j, 2] * falls[j, 2]:
+                dx, dy = x - falls[j, FALL_X], y - falls[j, FALL_Y]
+                if dx * dx + dy * dy < falls[j, FALL_RADIUS] * falls[j, FALL_RADIUS]:
                     return k, i, _OVER_POCKET, j
             for j in range(jaws.shape[0]):
-                dx, dy = x - jaws[j, 0], y - jaws[j, 1]
-                d2, least = dx * dx + dy * dy, jaws[j, 2] + R - OVERLAP_ALLOWED
-                if d2 < least * least and dx * jaws[j, 3] + dy * jaws[j, 4] >= jaws[j, 5] * sqrt(d2):
+                dx, dy = x - jaws[j, JAW_X], y - jaws[j, JAW_Y]
+                d2, least = dx * dx + dy * dy, jaws[j, JAW_RADIUS] + R - OVERLAP_ALLOWED
+                if d2 < least * least and dx * jaws[j, JAW_UX] + dy * jaws[j, JAW_UY] >= jaws[j, JAW_COS] * sqrt(d2):
                     return k, i, _IN_JAW, j
         least = 2.0 * R - OVERLAP_ALLOWED
         for i in range(positions.shape[1]):
@@ -209,32 +341,10 @@ def _first_fault(positions, on_table, bed, noses, jaws, falls, R):
     return -1, -1, _SOUND, -1
 
 
-def _build(name):
-    arc = _CORNER_ARC[name]
-    X, Y = HALF_WIDTH, HALF_LENGTH
-    noses = np.array([
-        (0, -1, X, -Y + arc, -_MIDDLE_ARC), (0, -1, X, _MIDDLE_ARC, Y - arc),
-        (0, 1, X, -Y + arc, -_MIDDLE_ARC), (0, 1, X, _MIDDLE_ARC, Y - arc),
-        (1, -1, Y, -X + arc, X - arc), (1, 1, Y, -X + arc, X - arc),
-    ])  # fmt: skip
-    jaws, falls = [], np.zeros((6, 3))
-    h = sqrt(0.5)
-    away = np.cos(np.pi / 8)
-    toward = np.sin(np.pi / 8)
-    for pocket, (sx, sy) in enumerate([(-1, -1), (1, -1), (1, 0), (1, 1), (-1, 1), (-1, 0)]):
-        if sy:
-            # one arc on the short rail (its nose normal along y), one on the long rail; each turns 45 deg from the nose to the throat
-            jaws.append((sx * (X - arc), sy * (Y + _CORNER_JAW), _CORNER_JAW, sx * toward, -sy * away, np.cos(np.pi / 8)))
-            jaws.append((sx * (X + _CORNER_JAW), sy * (Y - arc), _CORNER_JAW, -sx * away, sy * toward, np.cos(np.pi / 8)))
-            offset, radius = _CORNER_FALL
-            falls[pocket] = sx * (X + offset), sy * (Y + offset), radius
-        else:
-            for end in (-1, 1):  # a quarter circle each, from the nose into the throat
-                jaws.append((sx * (X + _MIDDLE_JAW), end * _MIDDLE_ARC, _MIDDLE_JAW, -sx * h, -end * h, h))
-            offset, radius = _MIDDLE_FALL
-            falls[pocket] = sx * (X + offset), 0.0, radius
-    return Table(name, noses, np.array(jaws), falls)
+def _preset(name):
+    bed = PRESETS[name]
+    return Table(name, *parts(bed), ball_radius=bed.ball["R"], pockets=bed.pockets)
 
 
-_PRESETS = {name: _build(name) for name in _CORNER_ARC}
+_PRESETS = {name: _preset(name) for name in PRESETS}
 UNBOUNDED = Table("unbounded", np.zeros((0, 5)), np.zeros((0, 6)), np.zeros((0, 3)))

@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._check import array, integer
 from .._jit import entry, kernel
-from ..game.balls import BALL_RADIUS, N_BALLS, balls_on_kernel, bits
+from ..game.balls import N_BALLS, balls_on_kernel, bits
 from ..game.frame_columns import BALL_ON
 from ..game.paths import clear_path, full_ball_path
-from ..game.pots import POT_COLUMNS, find_pots
+from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..game.snookered import segment_distance
+from ..geometry import BALL_RADIUS
 from ..tasks.discrete_actions import POTS
 from .positions import Positions, rows_of
 
@@ -64,8 +65,9 @@ def _pots(positions, on_table, game, ball, pocket, ghost, cut, tolerance):
     for k in range(len(ball)):
         on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
         for j in range(find_pots(positions[k], on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0):
-            ball[k, j], pocket[k, j], ghost[k, j, 0], ghost[k, j, 1] = int(found[j, 0]), int(found[j, 1]), found[j, 2], found[j, 3]
-            cut[k, j], tolerance[k, j] = np.arccos(min(1.0, found[j, 4])), found[j, 5]
+            ball[k, j], pocket[k, j] = int(found[j, POT_BALL]), int(found[j, POT_POCKET])
+            ghost[k, j, 0], ghost[k, j, 1] = found[j, GHOST_X], found[j, GHOST_Y]
+            cut[k, j], tolerance[k, j] = np.arccos(min(1.0, found[j, COS_CUT])), found[j, TOLERANCE]
 
 
 def pots(positions: Any, most: int = POTS) -> Pots:

@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._check import array, integer, refuse, refuse_what, truth
 from ..game.balls import (
-    BALL_RADIUS,
     COLOUR_NAMES,
     CUE,
     N_BALLS,
@@ -23,6 +22,7 @@ from ..game.balls import (
 )
 from ..game.frame import MOST_BREAK
 from ..game.in_hand import place_cue, within_d
+from ..geometry import BALL_RADIUS
 from ..physics.table import Table
 
 ON = tuple(ball.name.lower() for ball in BallOn)

@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._check import array, integer, number, refuse, refuse_what
 from .._jit import entry
-from ..game.balls import BALL_RADIUS, N_BALLS, balls_on_kernel, bits
+from ..game.balls import N_BALLS, balls_on_kernel, bits
 from ..game.frame_columns import BALL_ON
 from ..game.pots import POT_COLUMNS
+from ..geometry import BALL_RADIUS
 from ..physics.cloth import COLUMNS
 from ..physics.cue import MAX_ELEVATION, squirt
 from ..physics.impact.contact import parse_fidelity
@@ -183,7 +184,7 @@ def pot_aim(
     balls : array_like, int (n,)
         The ball to send, by id, 1 to 21.
     targets : array_like, float (n, 2)
-        Where to send it [m]; the aim points of pockets are ``snooker_env.game.pots.POCKETS[:, :2]``.
+        Where to send it [m]; the aim points of pockets are ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
     speeds : array_like, float, scalar or (n,)
         Cue speeds [m/s], above 0.
     side, top, elevation : array_like, float, scalar or (n,)

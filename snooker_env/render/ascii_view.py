@@ -10,8 +10,7 @@ from textwrap import wrap
 import numpy as np
 
 from .._check import integer
-from ..game.balls import HALF_LENGTH, HALF_WIDTH
-from .scene import BAULK_LINE, D_ARC, LETTERS, PALE, SPOT_MARKS
+from .scene import BAULK_LINE, D_ARC, LETTERS, PALE, SPOT_MARKS, extent, is_marked
 
 WIDTH = 100
 """Characters a line unless told."""
@@ -23,19 +22,21 @@ _LINE, _ARC, _SPOT, _PATH, _AIM, _GHOST, _POCKET = "│", "·", "+", ".", "-", "
 class _Grid:
     """Characters on a table, ``columns`` by ``rows`` cells between the noses; a cell is about twice as high as wide."""
 
-    def __init__(self, columns):
+    def __init__(self, columns, table):
+        (self.left, self.right), (self.low, self.high) = extent(table).tolist()
         self.columns = columns
-        self.rows = max(9, round(columns * HALF_WIDTH / HALF_LENGTH / 2)) | 1  # odd: blue, brown, pink and black have their own row
+        rows = round(columns * (self.right - self.left) / (self.high - self.low) / 2)
+        self.rows = min(max(9, rows), 400) | 1  # odd: blue, brown, pink and black have their own row
         self.cells = np.full((self.rows, columns), " ")
         self.owner = np.full((self.rows, columns), -1)  # ball id, for colours
 
     def cell(self, point):
         """Row and column of a point [m], or None if it lies outside the noses."""
         x, y = point
-        if abs(x) > HALF_WIDTH or abs(y) > HALF_LENGTH:
+        if not (self.left <= x <= self.right and self.low <= y <= self.high):
             return None
-        row = int((x + HALF_WIDTH) / (2 * HALF_WIDTH) * self.rows)
-        column = int((y + HALF_LENGTH) / (2 * HALF_LENGTH) * self.columns)
+        row = int((x - self.left) / (self.right - self.left) * self.rows)
+        column = int((y - self.low) / (self.high - self.low) * self.columns)
         return min(row, self.rows - 1), min(column, self.columns - 1)
 
     def mark(self, point, character, owner=-1):
@@ -45,7 +46,7 @@ class _Grid:
 
     def line(self, points, character, owner=-1):
         """A polyline, by points closer than the cells."""
-        step = HALF_LENGTH / self.columns
+        step = (self.high - self.low) / self.columns / 2
         for a, b in pairwise(points):
             for part in np.linspace(0.0, 1.0, 2 + int(np.hypot(*(b - a)) / step)):
                 self.mark(a + part * (b - a), character, owner)
@@ -56,11 +57,12 @@ def ansi(scene, width=WIDTH, *, colour=False):
 
     colour: True adds terminal colour codes (24 bit) around balls and paths; without it there are none.
     """
-    grid = _Grid(integer("width", width, 60, 400) - 2)
-    grid.line(BAULK_LINE, _LINE)
-    grid.line(D_ARC, _ARC)
-    for spot in SPOT_MARKS:
-        grid.mark(spot, _SPOT)
+    grid = _Grid(integer("width", width, 60, 400) - 2, scene.table)
+    if is_marked(scene.table):
+        grid.line(BAULK_LINE, _LINE)
+        grid.line(D_ARC, _ARC)
+        for spot in SPOT_MARKS:
+            grid.mark(spot, _SPOT)
     for ball, points in scene.paths.items():
         grid.line(points, _PATH, ball)
     if scene.aim is not None:
@@ -81,7 +83,7 @@ def _balls(grid, scene):
     """Put the balls' letters on the grid; returns what could not be shown, e.g. "r under W"."""
     shared = {}
     for ball, point in zip(scene.ids.tolist(), scene.positions, strict=True):
-        at = grid.cell(np.clip(point, (-HALF_WIDTH, -HALF_LENGTH), (HALF_WIDTH, HALF_LENGTH)))
+        at = grid.cell(np.clip(point, (grid.left, grid.low), (grid.right, grid.high)))
         shared.setdefault(at, []).append(ball)
     hidden = []
     for at, balls in shared.items():
@@ -100,12 +102,16 @@ def _framed(grid, table, colour):
     """The grid's lines inside the rails, with the pockets in them."""
     side, wall = ("═", "║") if len(table.noses) else (" ", " ")
     rails = [[side] * grid.columns, [side] * grid.columns]
+    corners = [" "] * 4 if not len(table.noses) else list("╔╗╚╝")
+    middle = (grid.left + grid.right) / 2
     for x, y, _ in table.falls:
-        if abs(y) < HALF_LENGTH:
+        bottom = int(x > middle)
+        if grid.low + 1e-3 < y < grid.high - 1e-3:
             for end in (y - 1e-3, y + 1e-3):  # two cells where the middle falls between them
-                rails[int(x > 0)][grid.cell((0.0, end))[1]] = _POCKET
-    corner = _POCKET if len(table.noses) else " "
-    top, bottom = (corner + "".join(rail) + corner for rail in rails)
+                rails[bottom][grid.cell((middle, end))[1]] = _POCKET
+        else:
+            corners[2 * bottom + int(y >= grid.high)] = _POCKET
+    top, bottom = (corners[2 * k] + "".join(rails[k]) + corners[2 * k + 1] for k in (0, 1))
     paint = _paint if colour else lambda character, ball: character
     rows = zip(grid.cells.tolist(), grid.owner.tolist(), strict=True)
     return [top, *(wall + "".join(map(paint, characters, owners)) + wall for characters, owners in rows), bottom]

@@ -11,14 +11,15 @@ from typing import NamedTuple
 import numpy as np
 
 from .._check import integer
-from ..game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
-from .scene import BAULK_LINE, CUSHION, D_ARC, PALE, RAIL, SPOT_MARKS, outline
+from ..physics.table import Table
+from .scene import BAULK_LINE, CUSHION, D_ARC, PALE, RAIL, SPOT_MARKS, extent, is_marked, outline
 
 HEIGHT = 600
 """Height of a picture [pixels] unless told."""
 
 _MARGIN = 0.02  # floor to be seen around the rails [m]
 _STRIP = 0.055  # part of the height for the line of text
+_LONGEST = 8.0  # a picture is at most this many times as wide as high
 _FINE = 3  # the table is drawn this much larger and smoothed down
 
 _FLOOR, _HOLE, _CUT = (20, 21, 24), (7, 7, 8), (0, 0, 0, 0)
@@ -37,7 +38,7 @@ def _pygame():
 
 
 class _View(NamedTuple):
-    """Where metres lie on a picture: +y to the right, +x down."""
+    """Where metres lie on a picture of a table: +y to the right, +x down."""
 
     width: int
     height: int
@@ -45,39 +46,47 @@ class _View(NamedTuple):
     """Pixels a metre."""
     x: float
     y: float
-    """Pixel of the table's centre."""
+    """Pixel of the origin."""
 
     @classmethod
-    def of(cls, height):
+    def of(cls, height, table):
         height = integer("height", height, 100, 4320)
         strip = round(_STRIP * height)
-        scale = (height - strip) / (2 * (HALF_WIDTH + RAIL + _MARGIN))
-        width = 2 * round(scale * (HALF_LENGTH + RAIL + _MARGIN))  # even, as video encoders want it
-        return cls(width, height, scale, width / 2, (height - strip) / 2)
+        (half_width, half_length), (middle_x, middle_y) = _halves(table), extent(table).mean(axis=1)
+        scale = (height - strip) / (2 * (half_width + RAIL + _MARGIN))
+        scale = min(scale, _LONGEST * height / (2 * (half_length + RAIL + _MARGIN)))
+        width = 2 * round(scale * (half_length + RAIL + _MARGIN))  # even, as video encoders want it
+        return cls(width, height, scale, width / 2 - scale * middle_y, (height - strip) / 2 - scale * middle_x)
 
     def __call__(self, points):
         points = np.asarray(points, dtype=np.float64)
         return np.stack([self.x + self.scale * points[..., 1], self.y + self.scale * points[..., 0]], axis=-1)
 
 
-def to_pixels(points, height=HEIGHT):
-    """Column and row (float, origin at the picture's top left corner) of points (..., 2) [m] on a picture of that height."""
-    return _View.of(height)(points)
+def _halves(table):
+    """Half of what is shown between the rails [m], in x and in y."""
+    low, high = extent(table).T
+    return ((high - low) / 2).tolist()
+
+
+def to_pixels(points, height=HEIGHT, table="match"):
+    """Column and row (float, origin at the picture's top left corner) of points (..., 2) [m] on a table's picture of that height."""
+    return _View.of(height, Table.of(table))(points)
 
 
 def rgb_array(scene, height=HEIGHT):
-    """The picture as a fresh uint8 array (height, width, 3); its width follows from the height alone and is even."""
+    """The picture as a fresh uint8 array (height, width, 3); its width follows from the height and the table, and is even."""
     pygame = _pygame()
-    surface = _draw(pygame, scene, _View.of(height))
+    surface = _draw(pygame, scene, _View.of(height, scene.table))
     pixels = np.frombuffer(pygame.image.tobytes(surface, "RGB"), dtype=np.uint8)
     return pixels.reshape(surface.get_height(), surface.get_width(), 3).copy()
 
 
 class Window:
-    """A window on the screen. It opens at the first ``draw``; its close button shuts it until ``close`` is called."""
+    """A window on the screen. It opens at the first ``draw``, as wide as that table asks; its close button shuts it until ``close``."""
 
     def __init__(self, height=HEIGHT, title="snooker"):
-        self._view, self._title = _View.of(height), title
+        self._height, self._title = integer("height", height, 100, 4320), title
         self._screen = None
         self._shut = False
 
@@ -94,11 +103,13 @@ class Window:
             self._shut = True
         if self._shut:
             return False
+        view = _View.of(self._height, scene.table)
         if self._screen is None:
             pygame.display.init()
-            self._screen = pygame.display.set_mode(self._view[:2])
             pygame.display.set_caption(self._title)
-        self._screen.blit(_draw(pygame, scene, self._view), (0, 0))
+        if self._screen is None or self._screen.get_size() != (view.width, view.height):
+            self._screen = pygame.display.set_mode((view.width, view.height))
+        self._screen.blit(_draw(pygame, scene, view), (0, 0))
         pygame.display.flip()
         return True
 
@@ -127,9 +138,9 @@ def _draw(pygame, scene, view):
         _line(pygame, surface, view, scene.aim, _AIM)
     if scene.ghost is not None:
         turn = np.linspace(0.0, 2 * np.pi, 49)
-        ring = scene.ghost + BALL_RADIUS * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        ring = scene.ghost + scene.ball_radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
         _line(pygame, surface, view, ring, _GHOST)
-    radius = BALL_RADIUS * view.scale
+    radius = scene.ball_radius * view.scale
     where = view(scene.positions)
     _put(pygame, surface, where + 0.35 * radius, [("shadow", radius)] * len(where))
     _put(pygame, surface, where, [(tuple(colour.tolist()), radius) for colour in scene.colours])
@@ -176,7 +187,7 @@ def _text(pygame, surface, view, text):
         return
     if not pygame.font.get_init():
         pygame.font.init()
-    strip = view.height - 2 * view.y
+    strip = round(_STRIP * view.height)
     line = pygame.font.Font(None, max(10, round(0.80 * strip))).render(text, True, _TEXT)
     room = view.width - strip
     if line.get_width() > room:
@@ -194,9 +205,10 @@ def _table(pygame, table, view):
     def layer():
         return pygame.Surface(size, pygame.SRCALPHA, 32)
 
+    (low_x, high_x), (low_y, high_y) = extent(table)
+
     def box(extra):
-        corner = np.array([HALF_WIDTH + extra, HALF_LENGTH + extra])
-        (left, top), (right, bottom) = fine(-corner), fine(corner)
+        (left, top), (right, bottom) = fine((low_x - extra, low_y - extra)), fine((high_x + extra, high_y + extra))
         return pygame.Rect(round(left), round(top), round(right - left), round(bottom - top))
 
     picture = pygame.Surface(size, 0, 32)
@@ -205,10 +217,12 @@ def _table(pygame, table, view):
 
     cloth = layer()  # the slate with its cloth, cut out at the falls
     pygame.draw.rect(cloth, _CLOTH, box(CUSHION))
-    pygame.draw.lines(cloth, _CREAM, False, fine(BAULK_LINE).tolist(), px(0.0035))
-    pygame.draw.lines(cloth, _CREAM, False, fine(D_ARC).tolist(), px(0.0035))
-    for spot in fine(SPOT_MARKS):
-        pygame.draw.circle(cloth, _CREAM, spot.tolist(), px(0.006))
+    if is_marked(table):
+        pygame.draw.lines(cloth, _CREAM, False, fine(BAULK_LINE).tolist(), px(0.0035))
+        pygame.draw.lines(cloth, _CREAM, False, fine(D_ARC).tolist(), px(0.0035))
+        for spot in fine(SPOT_MARKS):
+            pygame.draw.circle(cloth, _CREAM, spot.tolist(), px(0.006))
+    cloth.set_clip(box(RAIL - 0.03))
     for x, y, radius in parts.falls:
         pygame.draw.circle(cloth, _EDGE, fine((x, y)).tolist(), px(radius + 0.006))  # the cloth bends over the edge
         pygame.draw.circle(cloth, _CUT, fine((x, y)).tolist(), px(radius))
@@ -241,7 +255,7 @@ def _table(pygame, table, view):
         picture.blit(rail, (0, 0))
 
     small = pygame.transform.smoothscale(picture, (view.width, view.height))
-    return _lit(pygame, small, view)
+    return _lit(pygame, small, view, table)
 
 
 def _grain(pygame, rail):
@@ -253,10 +267,13 @@ def _grain(pygame, rail):
     _multiply(pygame, rail, 0.94 + 0.03 * streaks)
 
 
-def _lit(pygame, picture, view):
+def _lit(pygame, picture, view, table):
     """The table's lamps: bright in the middle, dimmer to the ends, and a little unrest as of nap."""
-    length, width = view.scale * HALF_LENGTH, view.scale * HALF_WIDTH
-    x, y = np.meshgrid((np.arange(view.width) - view.x) / length, (np.arange(view.height) - view.y) / width)
+    half_width, half_length = _halves(table)
+    middle = view(extent(table).mean(axis=1))
+    x, y = np.meshgrid(
+        (np.arange(view.width) - middle[0]) / (view.scale * half_length), (np.arange(view.height) - middle[1]) / (view.scale * half_width)
+    )  # fmt: skip
     nap = np.random.default_rng(0).normal(0.0, 0.012, x.shape)
     _multiply(pygame, picture, 1.0 - 0.10 * x**2 - 0.08 * y**2 + nap)
     return picture

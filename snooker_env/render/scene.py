@@ -10,9 +10,10 @@ from functools import lru_cache
 import numpy as np
 
 from .._check import array, number, refuse
-from ..game.balls import BAULK_Y, CUE, D_RADIUS, N_BALLS, SPOTS, YELLOW
+from ..game.balls import CUE, N_BALLS
+from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import EventKind
-from ..physics.table import Table
+from ..physics.table import JAW_RADIUS, Table
 
 RAIL = 0.155
 """From the nose line to the outer edge of the table [m]: cushion and wood."""
@@ -29,10 +30,10 @@ PALE = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)
 LETTERS = "W" + "r" * 15 + "YGNBPK"
 """By ball id: W the white cue ball, r a red; N is brown and K black, because B is blue."""
 
-BAULK_LINE = np.array([(-0.889, BAULK_Y), (0.889, BAULK_Y)])
+BAULK_LINE = np.array([(-HALF_WIDTH, BAULK_Y), (HALF_WIDTH, BAULK_Y)])
 _TURN = np.linspace(np.pi, 2 * np.pi, 65)
 D_ARC = np.stack([D_RADIUS * np.cos(_TURN), BAULK_Y + D_RADIUS * np.sin(_TURN)], axis=1)
-SPOT_MARKS = SPOTS[YELLOW:]
+SPOT_MARKS = COLOUR_SPOTS
 
 for _constant in (COLOURS, PALE, BAULK_LINE, D_ARC):
     _constant.setflags(write=False)
@@ -43,9 +44,9 @@ class Outline:
     """The parts of a table that never move. All empty for unbounded cloth."""
 
     cushions: tuple
-    """Closed polygons (m, 2): nose, the jaw arcs at its two ends, and the cushion's back under the wood."""
+    """Closed polygons (m, 2): nose, the jaws at its two ends, and the cushion's back under the wood."""
     noses: tuple
-    """Polylines (m, 2): the part of each cushion that balls meet, arc - nose - arc."""
+    """Polylines (m, 2): the part of each cushion that balls meet, jaw - nose - jaw."""
     falls: np.ndarray
     """(k, 3) centre x, y and radius of the slate circles over which balls drop."""
     throats: np.ndarray
@@ -61,6 +62,8 @@ class Scene:
     """(k,) ball ids: 0 the cue ball, 1 to 15 reds, 16 to 21 yellow to black."""
     positions: np.ndarray
     """(k, 2) [m]."""
+    ball_radius: float
+    """[m]."""
     paths: dict
     """Ball id -> (m, 2) [m]: where that ball ran."""
     aim: np.ndarray | None
@@ -80,11 +83,12 @@ class Scene:
         return tuple(LETTERS[i] for i in self.ids)
 
 
-def scene(table, positions, on_table=None, *, paths=None, aim=None, ghost=None, text=""):
+def scene(table, positions, on_table=None, *, ball_radius=None, paths=None, aim=None, ghost=None, text=""):
     """What to draw: n <= 22 balls with the ids 0 .. n-1 at ``positions`` (n, 2) [m], and what to lay over them.
 
-    table: as in ``snooker_env.simulate``; on_table (n,) bool, None for all; paths: {ball id: (m, 2) points}, e.g. of ``ball_paths``;
-    aim: (m, 2) points of a line; ghost: (2,) a ball's outline; text: one line of status. Arrays are copied. Raises ValueError.
+    table: as in ``snooker_env.simulate``; on_table (n,) bool, None for all; ball_radius [m]: None for that of the table, or snooker's;
+    paths: {ball id: (m, 2) points}, e.g. of ``ball_paths``; aim: (m, 2) points of a line; ghost: (2,) a ball's outline; text: one line
+    of status. Arrays are copied. Raises ValueError.
     """
     r = array("positions", positions, (-1, 2))
     if len(r) > N_BALLS:
@@ -96,9 +100,10 @@ def scene(table, positions, on_table=None, *, paths=None, aim=None, ghost=None, 
     for ball in paths:
         if ball not in range(N_BALLS):
             raise refuse("paths", ball, f"must have ball ids 0 to {N_BALLS - 1} as keys")
-    ids = np.flatnonzero(here)
+    ids, table = np.flatnonzero(here), Table.of(table)
+    radius = (table.ball_radius or BALL_RADIUS) if ball_radius is None else number("ball_radius", ball_radius, 1e-3, 1)
     return Scene(
-        Table.of(table), ids, r[ids], {int(ball): array(f"paths[{ball}]", points, (-1, 2)) for ball, points in paths.items()},
+        table, ids, r[ids], radius, {int(ball): array(f"paths[{ball}]", points, (-1, 2)) for ball, points in paths.items()},
         None if aim is None else array("aim", aim, (-1, 2)), None if ghost is None else array("ghost", ghost, (2,)), str(text),
     )  # fmt: skip
 
@@ -132,47 +137,75 @@ def shot_scenes(table, shot, *, fps=30.0, speed=1.0, trail=(CUE,), **overlays):
     gone_at = np.where(shot.on_table, np.inf, -1.0)  # -1: not on the table when the shot began
     gone_at[drops["i"]] = drops["time"]
     for t in np.append(np.arange(0.0, shot.duration, step), shot.duration):
-        yield scene(table, shot.at(t)[0], gone_at > t, paths=ball_paths(shot, trail, until=t), **overlays)
+        paths = ball_paths(shot, trail, until=t)
+        yield scene(table, shot.at(t)[0], gone_at > t, **{"ball_radius": shot.physics.R, "paths": paths, **overlays})
+
+
+def extent(table):
+    """(2, 2) [m] what a picture of a ``Table`` shows between its rails: its bounds, and snooker's bed where it has none."""
+    snooker = np.array([(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)])
+    return np.where(np.isfinite(table.bounds), table.bounds, snooker)
+
+
+def is_marked(table):
+    """Are snooker's lines and spots drawn on a ``Table``? On its bed, and on unbounded cloth."""
+    ends = (HALF_WIDTH, HALF_LENGTH)
+    return all(np.allclose(bounds, (-end, end), rtol=0.0, atol=1e-9) for bounds, end in zip(extent(table), ends, strict=True))
 
 
 @lru_cache(maxsize=16)
 def outline(table):
     """The ``Outline`` of a ``Table``, put together from its noses, jaws and falls."""
     cushions, noses = [], []
+    ends = [(_point(axis, side * level, end), _point(axis, side, 0.0)) for axis, side, level, *low_high in table.noses for end in low_high]
     for axis, side, level, low, high in table.noses:
-        out = np.array([side, 0.0]) if axis == 0 else np.array([0.0, side])  # from the nose into the wood
-        left, right = (_jaw(table.jaws, _point(axis, side * level, end), out) for end in (low, high))
+        out = _point(axis, side, 0.0)  # from the nose into the wood
+        left, right = (_jaw(table.jaws, _point(axis, side * level, end)) for end in (low, high))
         nose = np.concatenate([left[::-1], right])
         depth = max(CUSHION + 0.017, *(nose @ out - level))  # some way under the wood
-        ends = [_onward(arc, out, level + depth) for arc in (left, right)]
+        backs = [_onward(jaw, out, level + depth, ends) for jaw in (left, right)]
         noses.append(nose)
-        cushions.append(np.concatenate([ends[:1], nose, ends[1:]]))
-    return Outline(tuple(cushions), tuple(noses), table.falls, np.array([_throat(fall, noses) for fall in table.falls]).reshape(-1, 5))
+        cushions.append(np.concatenate([backs[:1], nose, backs[1:]]))
+    throats = [_throat(fall, noses, [place for place, _ in ends]) for fall in table.falls] if noses else []
+    return Outline(tuple(cushions), tuple(noses), table.falls, np.array(throats).reshape(-1, 5))
 
 
 def _point(axis, across, along):
     return np.array([across, along] if axis == 0 else [along, across])
 
 
-def _jaw(jaws, start, out):
-    """(m, 2) the jaw arc that begins at ``start`` on a nose, from there to its end in the pocket; only ``start`` if there is none."""
-    for cx, cy, radius, ux, uy, cos_half in jaws:
-        centre = np.array([cx, cy])
-        if np.allclose(centre - radius * out, start, atol=1e-6):
-            first, middle = np.arctan2(-out[1], -out[0]), np.arctan2(uy, ux)
-            half = np.arccos(cos_half) * np.sign(np.sin(middle - first))
-            angles = middle + half * np.linspace(-1.0, 1.0, 25)
-            return centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    return start[None]
+def _jaw(jaws, start):
+    """(m, 2) the jaw that begins at ``start`` on a nose, arc after arc to its end in the pocket; only ``start`` if there is none."""
+    points, left = [start], list(jaws)
+    while (found := _arc_from(points[-1], left)) is not None:
+        k, arc = found
+        if left.pop(k)[JAW_RADIUS] > 0.0:  # else a point: the next arc begins there, too
+            points += list(arc[1:])
+    return np.array(points)
 
 
-def _onward(arc, out, level):
-    """Where a jaw, run on straight behind its arc, meets the line ``level`` behind the nose."""
-    onward = arc[-1] - arc[-2] if len(arc) > 1 else out
-    return arc[-1] + onward * ((level - arc[-1] @ out) / (onward @ out))
+def _arc_from(place, jaws):
+    """The index of an arc of which one end is at ``place``, and its points (25, 2) from there on; None if there is none."""
+    for k, (x, y, radius, ux, uy, cos_half) in enumerate(jaws):
+        angles = np.arctan2(uy, ux) + np.arccos(cos_half) * np.linspace(-1.0, 1.0, 25)
+        arc = np.array([x, y]) + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        for points in (arc, arc[::-1]):
+            if np.hypot(*(points[0] - place)) < 1e-6:
+                return k, points
+    return None
 
 
-def _throat(fall, noses):
-    """The hole in the wood: from the middle between the pocket's two jaw ends to the centre of its fall."""
-    ends = sorted((end for nose in noses for end in (nose[0], nose[-1])), key=lambda end: np.hypot(*(end - fall[:2])))[:2]
-    return [*(ends[0] + ends[1]) / 2, *fall[:2], np.hypot(*(ends[0] - ends[1])) / 2]
+def _onward(jaw, out, level, ends):
+    """Where a jaw, run on straight behind its last arc, meets the line ``level`` behind the nose; two noses that meet share a mitre."""
+    if len(jaw) > 1:
+        onward = jaw[-1] - jaw[-2]
+    else:
+        onward = out + sum((other for place, other in ends if abs(other @ out) < 0.5 and np.hypot(*(place - jaw[0])) < 1e-6), np.zeros(2))
+    return jaw[-1] + onward * ((level - jaw[-1] @ out) / (onward @ out))
+
+
+def _throat(fall, noses, mouths):
+    """The hole in the wood: from the middle of the pocket's mouth to the centre of its fall, as wide as its jaws' ends are apart."""
+    jaw_ends = [end for nose in noses for end in (nose[0], nose[-1])]
+    (a, b), (c, d) = (sorted(points, key=lambda point: np.hypot(*(point - fall[:2])))[:2] for points in (mouths, jaw_ends))
+    return [*(a + b) / 2, *fall[:2], np.hypot(*(c - d)) / 2]

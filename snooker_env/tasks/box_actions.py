@@ -7,8 +7,9 @@ from gymnasium import spaces
 
 from .._check import choice, refuse, refuse_what, truth
 from .._jit import entry, kernel
-from ..game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, N_BALLS
+from ..game.balls import N_BALLS
 from ..game.pots import POT_COLUMNS, find_pots
+from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from ..physics.cue import squirt
 
 AIMS = ("absolute", "target")
@@ -60,17 +61,6 @@ def shot_of(a, positions, on_table, on, options, found):
     elevation = 0.5 * (a[4] + 1.0) * MAX_ELEVATION if options[A_ELEVATION] else 0.0
     direction = line_of(positions, on_table, on, found) + TARGET_SPAN * a[3] if options[A_TARGET] else pi * a[3]
     return speed, side, top, direction - squirt(side, options[A_END_MASS]), elevation
-
-
-@entry
-def tip(side, top, max_offset):
-    """``tip_on_disc`` for Python, all three floats."""
-    return tip_on_disc(side, top, max_offset)
-
-
-@entry
-def _place(a, options):
-    return place_of(a, options)
 
 
 @entry
@@ -148,15 +138,6 @@ class Actions:
         """What the kernels must know: float64, places ``A_*`` of this module."""
         world = self.physics
         return np.array([self.aim == "target", self.elevation, self.placement, world.end_mass_ratio, world.max_offset, False], np.float64)
-
-    def place(self, a):
-        """Where in the D the two components of the placement put the cue ball: (x, y)."""
-        return _place(np.array(a, np.float64), self.pack())
-
-    def decide(self, a):
-        """What an action list says after a foul: "play", "play_again" or "replace"; always "play" without ``decision``."""
-        wish = a[-1] if self.decision else 0.0
-        return "play_again" if wish < -1.0 / 3.0 else "replace" if wish > 1.0 / 3.0 else "play"
 
     def shot(self, a, positions, on_table, on):
         """(speed, side, top, aim, elevation) of an action list, the aim being the cue's direction [rad]."""

@@ -9,9 +9,10 @@ from gymnasium import spaces
 
 from .._check import refuse, refuse_what
 from .._jit import entry, kernel
-from ..game.balls import BALL_RADIUS, bits
+from ..game.balls import bits
 from ..game.frame_columns import strikeable
-from ..game.pots import POCKETS, POT_COLUMNS, find_pots
+from ..game.pots import POT_COLUMNS, find_pots
+from ..geometry import BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from .box_actions import line_of
 from .pot_aim import solved_aim
@@ -46,7 +47,7 @@ def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_ste
         pot = min(pot, many - 1)
         ball, pocket, gx, gy = int(found[pot, 0]), int(found[pot, 1]), found[pot, 2], found[pot, 3]
         aim = solved_aim(
-            positions, ball, POCKETS[pocket, 0], POCKETS[pocket, 1], gx, gy, speed, side, top, 0.0, phys, end_mass_ratio, fidelity,
+            positions, ball, POCKET_AIMS[pocket, 0], POCKET_AIMS[pocket, 1], gx, gy, speed, side, top, 0.0, phys, end_mass_ratio, fidelity,
             n_steps, motion, state, work,
         )  # fmt: skip
     return speed, side, top, aim - squirt(side, end_mass_ratio), 0.0

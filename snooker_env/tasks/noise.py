@@ -35,25 +35,13 @@ from math import degrees, hypot, radians, sqrt
 import numpy as np
 
 from .._check import choice, number, refuse
-from .._jit import entry, kernel
+from .._jit import kernel
 from ..game.philox import normals
 from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics
 
 # Places in the packed deviations: 1 if there is no noise, then speed [m/s] and over the speed, tip offset over R, aim and elevation [rad].
 (N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION) = range(6)
-
-
-@kernel
-def _executed(speed, side, top, aim, elevation, z, noise):
-    """The shot as executed, from five standard normal numbers z."""
-    return (
-        max(0.0, speed + z[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
-        side + z[1] * noise[N_TIP],
-        top + z[2] * noise[N_TIP],
-        aim + z[3] * noise[N_AIM],
-        min(MAX_ELEVATION, max(0.0, elevation + z[4] * noise[N_ELEVATION])),
-    )
 
 
 @kernel
@@ -64,12 +52,13 @@ def executed(speed, side, top, aim, elevation, noise, stream):
     a, b = normals(stream)
     c, d = normals(stream)
     e, _ = normals(stream)
-    return _executed(speed, side, top, aim, elevation, (a, b, c, d, e), noise)
-
-
-@entry
-def _draw(speed, side, top, aim, elevation, z, noise):
-    return _executed(speed, side, top, aim, elevation, (z[0], z[1], z[2], z[3], z[4]), noise)
+    return (
+        max(0.0, speed + a * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
+        side + b * noise[N_TIP],
+        top + c * noise[N_TIP],
+        aim + d * noise[N_AIM],
+        min(MAX_ELEVATION, max(0.0, elevation + e * noise[N_ELEVATION])),
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,13 +112,6 @@ class Noise:
         world = Physics.of(physics)
         tip = self.offset_mm * 1e-3 / world.R
         return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + world.end_mass_ratio)))
-
-    def draw(self, rng, speed, side, top, aim, elevation, R):
-        """The shot as executed: (speed, side, top, aim, elevation). Five numbers are drawn from ``rng`` unless silent."""
-        if self.silent:
-            return speed, side, top, aim, elevation
-        z = rng.standard_normal(5)
-        return _draw(float(speed), float(side), float(top), float(aim), float(elevation), z, self.pack(R))
 
     def pack(self, R):
         """What the kernels must know: float64, places ``N_*`` of this module; R the ball's radius [m]."""

@@ -5,7 +5,8 @@ from gymnasium import spaces
 
 from .._check import choice
 from .._jit import kernel
-from ..game.balls import HALF_LENGTH, HALF_WIDTH, N_BALLS, REDS_MASK, VALUES, bits, count
+from ..game.balls import N_BALLS, REDS_MASK, VALUES, bits, count
+from ..geometry import HALF_LENGTH, HALF_WIDTH
 
 OBSERVATIONS = ("flat", "balls")
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")

@@ -11,10 +11,11 @@ import numpy as np
 
 from .._check import refuse, truth
 from .._jit import entry, kernel
-from ..game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, N_BALLS, bits
+from ..game.balls import N_BALLS, bits
 from ..game.frame_columns import CHOICE, IN_HAND, PHASE, PLAY, choose, strikeable
 from ..game.philox import pair
-from ..game.pots import POCKETS, POT_COLUMNS, find_pots
+from ..game.pots import POT_COLUMNS, find_pots
+from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from . import observations
 from .discrete_actions import SIZE as CHOICES
 from .discrete_actions import Choices
@@ -98,7 +99,7 @@ def _wanted(positions, on_table, on, found, stream):
     x, y = positions[0, 0], positions[0, 1]
     if find_pots(positions, on_table, on, BALL_RADIUS, found):
         ball, pocket, gx, gy, cos_cut = int(found[0, 0]), int(found[0, 1]), found[0, 2], found[0, 3], found[0, 4]
-        run = hypot(POCKETS[pocket, 0] - positions[ball, 0], POCKETS[pocket, 1] - positions[ball, 1])
+        run = hypot(POCKET_AIMS[pocket, 0] - positions[ball, 0], POCKET_AIMS[pocket, 1] - positions[ball, 1])
         needed = _SLIDE * sqrt(_ROLL * (run + 0.6)) / max(cos_cut, 0.2)  # of the cue ball at the impact
         return min(6.0, _SLIDE * sqrt(_ROLL * hypot(gx - x, gy - y) + needed * needed)), atan2(gy - y, gx - x)
     near, ball = inf, -1

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from .._check import choice, integer, refuse, truth
-from ..game.balls import BALL_RADIUS
 from ..game.frame import MISS_RULES
 from ..game.layouts import Plan
+from ..geometry import BALL_RADIUS
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics
 from ..physics.table import Table

@@ -8,10 +8,11 @@ draws from its own stream (``game.philox``), so that no table's result depends o
 import numpy as np
 
 from .._jit import entry, kernel
-from ..game.balls import BALL_RADIUS, CUE, N_BALLS, TOUCH, bits
+from ..game.balls import CUE, N_BALLS, TOUCH, bits
 from ..game.frame_columns import IN_HAND, strikeable
 from ..game.in_hand import nearest_place
 from ..game.pots import POT_COLUMNS
+from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.engine import EventKind, Status
 from ..physics.impact.polynomial import WORK

@@ -5,10 +5,10 @@ from functools import lru_cache
 import numpy as np
 
 from .._check import refuse
-from ..game.balls import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..game.layouts import Plan, plan_of
 from ..game.opened import bank
-from ..physics.table import UNBOUNDED, Table
+from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ..physics.table import SAME_BALL, UNBOUNDED, Table
 
 ROUNDING = 1e-9
 """Noses, jaws and falls may be off by this [m]."""
@@ -24,9 +24,11 @@ def table_of(table):
     cloth = Table.of(table)
     if cloth is UNBOUNDED:
         raise refuse("table", table, 'must be "match", "tight" or a Table')
-    if not cloth.is_preset:
-        _check_noses(cloth)
-        _check_pockets(cloth)
+    if cloth.ball_radius is not None and abs(cloth.ball_radius - BALL_RADIUS) > SAME_BALL:
+        made = f"this one is made for balls of radius {cloth.ball_radius:g} m, snooker's have {BALL_RADIUS:g}"
+        raise refuse("table", cloth.name, f'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0: {made}')
+    _check_noses(cloth)
+    _check_pockets(cloth)
     return cloth
 
 

@@ -8,10 +8,11 @@ import numpy as np
 
 from .._jit import entry
 from ..game.apply_ruling import settle_visit
-from ..game.balls import BALL_RADIUS, N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
+from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
 from ..game.layouts import deal_tables
 from ..game.ruling import VISIT
+from ..geometry import BALL_RADIUS
 from ..physics.engine import Status
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of

@@ -8,7 +8,7 @@ import pytest
 import snooker_env as sn
 from benchmarks.hand import in_play, pot_shots, published
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.game.pots import POCKETS
+from snooker_env.geometry import POCKET_AIMS
 from snooker_env.tasks.noise import LEVELS, Noise
 
 WORLD, TABLE = sn.Physics(), "match"
@@ -21,7 +21,7 @@ def shots_of(pots):
 def test_pots_lie_as_they_are_described():
     for pot in pot_shots.POTS:
         cue, ball = pot.positions
-        aim = POCKETS[pot.pocket, :2]
+        aim = POCKET_AIMS[pot.pocket, :2]
         assert math.dist(cue, ball) == pytest.approx(pot.far) and math.dist(ball, aim) == pytest.approx(pot.run)
         way = (aim - ball) / pot.run
         line = ball - 2 * pot_shots.R * way - cue

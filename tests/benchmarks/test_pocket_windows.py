@@ -5,7 +5,7 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.pockets import openings, pool_tables, rail_paths
-from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, alone, drops, windows
+from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, Pocket, alone, drops, windows
 from snooker_env.game import pots
 from tests.kernels import from_python
 
@@ -129,5 +129,21 @@ def test_slow_mirrors_are_alciatore_s_pool_pockets():
     world = sn.Physics(**pool_tables.MIRROR)
     for kind, angles in (("corner", (0, 10, 20)), ("side", (0, 15, 30, 45))):
         here = pool_tables.pocket(kind)
+        found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, world).width / pool_tables.INCH
+        assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)
+
+
+def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():
+    """The preset's own arrays: two of its pockets, each alone, aimed at through the middle of the mouth."""
+    table, world = sn.Table.preset("pool9"), sn.Physics(**pool_tables.MIRROR)
+    for kind, k, angles in (("corner", 3, (0, 10, 20)), ("side", 2, (0, 15, 30, 45))):
+        jaws, fall = table.jaws[4 * k : 4 * k + 4], table.falls[k]
+        mouth = jaws[jaws[:, 2] == 0.0, :2].mean(axis=0)
+        axis = np.arctan2(*(fall[:2] - mouth)[::-1])
+        level = table.noses[:, 1] * table.noses[:, 2]
+        ends = [np.where(table.noses[:, :1] == 0, np.stack([level, e], 1), np.stack([e, level], 1)) for e in table.noses[:, 3:].T]
+        near = np.any([np.hypot(*(end - mouth).T) < 0.1 for end in ends], axis=0)
+        assert near.sum() == 2
+        here = Pocket(sn.Table(kind, table.noses[near], jaws, fall[None]), tuple(mouth), float(axis))
         found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, world).width / pool_tables.INCH
         assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)

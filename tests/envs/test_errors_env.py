@@ -1,7 +1,6 @@
 """Are wrong arguments, actions, states and options of the environment refused, and does that change nothing?"""
 
 import copy
-import inspect
 import json
 
 import gymnasium
@@ -9,6 +8,7 @@ import numpy as np
 import pytest
 
 from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.tasks.options import NAMES
 from tests.refusals import FIDELITY, INF, NAN, WRONG_FIDELITIES, case, make, refused
 
 NOT_A_NAME = ("", 3, None, True, b"x")
@@ -87,7 +87,7 @@ def test_wrong_fidelities(call, field, value, allowed):
 
 def test_every_argument_of_the_environment_is_in_the_table_of_errors():
     named = {p.values[1].split(".")[0].split()[0] for p in [*ENV, *FIDELITIES]}
-    assert set(inspect.signature(SnookerEnv.__init__).parameters) - {"self"} <= named
+    assert {*NAMES, "render_mode"} <= named
     with pytest.raises(TypeError, match="foul_play"):
         SnookerEnv(foul_play=True)
     with pytest.raises(TypeError):

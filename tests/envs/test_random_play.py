@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import BALL_RADIUS as R
 from snooker_env.game.balls import CUE, BallOn
+from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.tasks.box_actions import AIMS
 from tests.tables import LAYOUTS
 

@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from snooker_env.game.balls import BALL_RADIUS, CUE, HALF_LENGTH, N_BALLS, NAMES, SPOTS, colour, mask_of
+from snooker_env.game.balls import CUE, N_BALLS, NAMES, SPOTS, colour, mask_of
 from snooker_env.game.snookered import is_snookered
 from snooker_env.game.spotting import spot_colours
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH
 
 ABOUT = ("id", "kind", "title", "rule", "confidence", "note", "expect")
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from snooker_env.game import balls
-from snooker_env.game.balls import BALL_RADIUS, SPOTS, BallOn
+from snooker_env.game.balls import SPOTS, BallOn
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH
 from tests.kernels import from_python
 
 bits, count = from_python(balls.bits), from_python(balls.count)
@@ -25,8 +26,8 @@ def test_spots_in_millimetres():
     spots = [(292, -1047.5), (-292, -1047.5), (0, -1047.5), (0, 0), (0, 892.25), (0, 1460.5)]
     for name, place in zip(balls.COLOUR_NAMES, spots, strict=True):
         assert SPOTS[balls.colour(name)] * 1000 == pytest.approx(place, abs=1e-9)
-    assert balls.HALF_LENGTH - SPOTS[balls.BLACK, 1] == pytest.approx(0.324)
-    assert SPOTS[balls.BROWN, 1] + balls.HALF_LENGTH == pytest.approx(0.737)
+    assert HALF_LENGTH - SPOTS[balls.BLACK, 1] == pytest.approx(0.324)
+    assert SPOTS[balls.BROWN, 1] + HALF_LENGTH == pytest.approx(0.737)
 
 
 def test_values_and_names():
@@ -37,7 +38,7 @@ def test_values_and_names():
         assert balls.VALUES[balls.colour(name)] == BallOn[name.upper()]
 
 
-@pytest.mark.parametrize("array", [balls.VALUES, balls.SPOTS, balls.POCKETS])
+@pytest.mark.parametrize("array", [balls.VALUES, balls.SPOTS])
 def test_constants_cannot_be_changed(array):
     with pytest.raises(ValueError):
         array[0] = 0

@@ -6,9 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game import in_hand
-from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, BROWN, D_RADIUS, GREEN, SPOTS, YELLOW
+from snooker_env.game.balls import BROWN, GREEN, SPOTS, YELLOW
 from snooker_env.game.in_hand import place_cue
 from snooker_env.game.spotting import CLEARANCE
+from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from tests.kernels import from_python
 
 in_d = from_python(in_hand.in_d)

@@ -6,9 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game import layouts
-from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKETS, SPOTS, YELLOW
+from snooker_env.game.balls import SPOTS, YELLOW
 from snooker_env.game.pots import pots
 from snooker_env.game.snookered import is_snookered
+from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from tests.kernels import from_python
 
 NAMES = ["break_off", "line_up", "colours", "random:0", "random:6", "random:15"]
@@ -37,7 +38,7 @@ def test_every_layout_is_playable(name, seed):
         assert distances.min() >= layouts.GAP - 1e-12
     sprinkled = positions[:16][on_table[:16]] if name.startswith("random") else positions[:1]
     assert np.all(np.abs(sprinkled) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - layouts.CUSHION_GAP)
-    assert all(np.hypot(*(POCKETS - place).T).min() >= layouts.POCKET_GAP for place in sprinkled)
+    assert all(np.hypot(*(POCKET_PLACES - place).T).min() >= layouts.POCKET_GAP for place in sprinkled)
 
 
 @pytest.mark.parametrize(

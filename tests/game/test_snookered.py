@@ -8,9 +8,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game import paths as paths_
-from snooker_env.game.balls import BALL_RADIUS, BAULK_Y, BLACK, D_RADIUS, PINK, SPOTS, YELLOW, mask_of
+from snooker_env.game.balls import BLACK, PINK, SPOTS, YELLOW, mask_of
 from snooker_env.game.paths import paths
 from snooker_env.game.snookered import is_snookered
+from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from tests.kernels import from_python
 
 meets = from_python(paths_.meets)

@@ -5,22 +5,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game.balls import (
-    BALL_RADIUS,
-    BLACK,
-    BLUE,
-    BROWN,
-    COLOURS_MASK,
-    GREEN,
-    HALF_LENGTH,
-    HALF_WIDTH,
-    NAMES,
-    PINK,
-    SPOTS,
-    YELLOW,
-    mask_of,
-)
+from snooker_env.game.balls import BLACK, BLUE, BROWN, COLOURS_MASK, GREEN, NAMES, PINK, SPOTS, YELLOW, mask_of
 from snooker_env.game.spotting import CLEARANCE, spot_colours
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from tests.game.geometry_cases import misplaced
 
 SIX = range(YELLOW, BLACK + 1)

@@ -9,7 +9,7 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.hand import pot_shots
-from snooker_env.game.pots import POCKETS
+from snooker_env.geometry import POCKET_AIMS
 from snooker_env.tasks.noise import LEVELS
 
 R, END_MASS_RATIO, MU_ROLL, G = 0.02625, 30.0, 0.0127, 9.81
@@ -60,7 +60,7 @@ def test_the_same_pots_by_strokes_typed_anew(name, level):
 
 def window(ball, speed):
     """Directions [rad] between which one ball, struck from there at that speed, falls into the top right corner pocket."""
-    middle = math.atan2(*(POCKETS[3, :2] - ball)[::-1])
+    middle = math.atan2(*(POCKET_AIMS[3, :2] - ball)[::-1])
     fan = middle + np.linspace(-0.06, 0.06, 2401)
     velocities = speed * np.column_stack([np.cos(fan), np.sin(fan)])
     end = sn.simulate_batch(np.tile(ball, (len(fan), 1, 1)), velocities[:, None], np.zeros((len(fan), 1, 3)))

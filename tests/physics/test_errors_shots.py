@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game import balls
+from snooker_env.geometry import BALL_RADIUS, HALF_WIDTH
 from tests.refusals import FIDELITY, INF, NAN, WRONG_FIDELITIES, Z, batch, case, cushion, impact, refused, shot, strike
 
 WIDTHS = {"positions": 2, "velocities": 2, "spins": 3}
@@ -241,7 +241,7 @@ def test_balls_off_the_table_may_lie_anywhere():
 def test_what_is_just_allowed_is_played():
     touching = [(0.0, 0.0), (0.0525 - 0.9e-6, 0.0)]
     assert sn.simulate(touching, np.zeros((2, 2)), np.zeros((2, 3))).duration == 0.0
-    wall = balls.HALF_WIDTH - balls.BALL_RADIUS
+    wall = HALF_WIDTH - BALL_RADIUS
     assert sn.simulate([(wall + 0.9e-6, 0.5)], np.zeros((1, 2)), np.zeros((1, 3))).duration == 0.0
     sn.strike(0.0, 1e6, side=0.3, top=-0.4, elevation=1.5)
     assert sn.collide_cushion((1, 0, 0), Z, (1 + 5e-7, 0, 0))[0][0] < 0

@@ -5,7 +5,7 @@ import pytest
 from positions import tables
 
 import snooker_env as sn
-from snooker_env.game import POCKETS
+from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import Planner, Position, Positions, action_masks, actions_of, as_actions, pot_aim, pots
 from snooker_env.tasks import choice_of
 
@@ -65,7 +65,7 @@ def test_a_solved_aim_pots_where_the_straight_line_misses():
     """Cuts with side, at which the ball is thrown: the aim solved for the pocket's aim point pots every time."""
     env = tables(60, layout="pots:hard", aim="absolute")
     at, found, n = Positions.of(env), pots(env, most=1), np.arange(60)
-    targets = POCKETS[found.pocket[:, 0], :2]
+    targets = POCKET_AIMS[found.pocket[:, 0], :2]
     planner, straight = Planner(env), np.arctan2(*(found.ghost[:, 0] - at.positions[:, 0])[:, ::-1].T)
     solved = planner.pot_aim(at, n, found.ball[:, 0], targets, 2.9, side=0.3)
     assert np.array_equal(solved, pot_aim(at, n, found.ball[:, 0], targets, 2.9, side=0.3, ghosts=found.ghost[:, 0]))

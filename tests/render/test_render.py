@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game.balls import BALL_RADIUS, BLACK, BROWN, CUE, GREEN, N_BALLS, PINK, SPOTS, YELLOW
+from snooker_env.game.balls import BLACK, BROWN, CUE, GREEN, N_BALLS, PINK, SPOTS, YELLOW
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.render.ascii_view import ansi
 from snooker_env.render.pygame_view import Window, rgb_array, to_pixels
 from snooker_env.render.scene import COLOURS, ball_paths, outline, scene, shot_scenes
@@ -286,3 +287,100 @@ def test_demo_break_off(tmp_path):
     for ball in np.flatnonzero(shot.on_table):
         assert looks(picture, shot.positions[ball], ball), ball
     assert at(picture, start).min() > 150  # where the path and the line of aim begin
+
+
+OTHERS = {
+    "uk8": sn.Table.preset("uk8"), "pool9": sn.Table.preset("pool9"), "carom": sn.Table.preset("carom"),
+    "mine": sn.Table.rectangular(1.2, 1.5, pockets=4, ball_radius=0.03),
+    "aside": sn.Table("aside", np.array([(0, -1, 0.3, -9, 9), (0, 1, 1.0, -9, 9), (1, -1, 0.5, -9, 9), (1, 1, 2.0, -9, 9)]),
+                      np.zeros((0, 6)), np.zeros((0, 3)), ball_radius=0.02),
+}  # fmt: skip
+"""Tables that are not snooker's; the last lies beside the origin."""
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_a_picture_shows_the_table_and_the_balls_of_another_game(name):
+    """Its cloth from nose to nose, its pockets black, no snooker lines, and a ball in its place and of its size."""
+    table, height = OTHERS[name], 601
+    place = table.bounds @ (0.6, 0.4)
+    empty = rgb_array(scene(table, [place], np.zeros(1, bool)), height)
+    (low_x, high_x), (low_y, high_y) = table.bounds
+    first, last = to_pixels([(low_x, low_y), (high_x, high_y)], height, table)
+    scale = (last - first)[0] / (high_y - low_y)
+    assert (last - first)[1] == pytest.approx(scale * (high_x - low_x))
+    assert empty.shape[1] == pytest.approx((last - first)[0] + 2 * scale * (0.155 + 0.02), abs=2)  # rails and margin
+    assert empty.shape[0] * 0.945 == pytest.approx((last - first)[1] + 2 * scale * (0.155 + 0.02), abs=2)
+    pixel = lambda point: empty[tuple(np.floor(to_pixels(point, height, table)).astype(int)[::-1])].astype(int)  # noqa: E731
+    for x, y, radius in table.falls:
+        inner = np.array([x, y]) - 0.8 * radius * np.array([np.sign(x), np.sign(y)]) / np.hypot(np.sign(x), np.sign(y))
+        assert pixel(inner).max() < 25
+    for x in np.linspace(low_x + 0.03, high_x - 0.03, 7):
+        for y in np.linspace(low_y + 0.2, high_y - 0.2, 19):
+            red, green, blue = pixel((x, y))  # cloth everywhere, also where snooker's lines and spots would be
+            assert green > red + 40 and green > blue + 20 and red < 60
+    drawn = rgb_array(scene(table, [place]), height).astype(int)
+    rows, columns = np.nonzero(drawn.min(axis=2) > 130)
+    near = np.abs(np.stack([columns, rows], axis=1) + 0.5 - to_pixels(place, height, table)).max(axis=1) < 2 * 0.03 * scale
+    assert [columns[near].mean() + 0.5, rows[near].mean() + 0.5] == pytest.approx(to_pixels(place, height, table), abs=0.5)
+    assert near.sum() == pytest.approx(np.pi * (table.ball_radius * scale) ** 2, rel=0.12)
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_a_text_shows_the_table_of_another_game(name):
+    """The ball in the cell of its place, the pockets where they are, and no line of snooker's."""
+    table = OTHERS[name]
+    (low_x, high_x), (low_y, high_y) = table.bounds
+    place = table.bounds @ (0.25, 0.75)
+    rows = ansi(scene(table, [place]), 80).split("\n")
+    grid = rows[1 : next(k for k in range(1, len(rows)) if rows[k][0] in "O╚")]
+    at = [(r, row.index("W")) for r, row in enumerate(grid) if "W" in row]
+    fraction = (place - (low_x, low_y)) / (high_x - low_x, high_y - low_y)
+    assert at == [(int(fraction[0] * len(grid)), 1 + int(fraction[1] * 78))]
+    assert {c for row in grid for c in row} == {"║", " ", "W"}
+    rails = rows[0] + rows[len(grid) + 1]
+    corners = rails[0] + rails[79] + rails[80] + rails[159]
+    has = {pocket.split()[0] for pocket in table.pockets}
+    assert corners == ("OOOO" if "top" in has else "╔╗╚╝") and ("O" in rails[1:79]) == ("middle" in has)
+
+
+@pytest.mark.parametrize("name", ["pool9", "mine", "carom"])
+def test_outlines_of_other_tables_are_what_the_balls_meet(name):
+    """Along each drawn nose and jaw: a ball that touches it from the table's side is free, one 0.1 mm nearer is refused."""
+    table, parts = OTHERS[name], outline(OTHERS[name])
+    R = table.ball_radius
+    assert len(parts.cushions) == len(table.noses) and len(parts.throats) == len(table.falls)
+    tried = 0
+    for nose in parts.noses:
+        steps = np.diff(nose, axis=0)
+        long = np.hypot(*steps.T) > 1e-3
+        middles, along = (nose[:-1] + nose[1:])[long] / 2, steps[long] / np.hypot(*steps[long].T)[:, None]
+        for middle, (dx, dy) in zip(middles, along, strict=True):
+            normal = np.array([-dy, dx]) if np.dot((-dy, dx), -middle) > 0 else np.array([dy, -dx])
+            place = middle + R * normal
+            over = np.hypot(*(table.falls[:, :2] - place).T) < table.falls[:, 2] + 1e-3
+            if not over.any() and (np.abs(place) < table.bounds[:, 1]).all():  # the rest is behind the falls
+                tried += 1
+                table.check([middle + normal * (R + 2e-5)], R)
+                with pytest.raises(ValueError, match=r"cushion|jaw"):
+                    table.check([middle + normal * (R - 1e-4)], R)
+    assert tried == {"pool9": 50, "mine": 164, "carom": 4}[name]
+
+
+def test_the_film_of_a_shot_shows_the_balls_of_the_shot():
+    pool = OTHERS["pool9"]
+    end = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], pool, {"R": pool.ball_radius})
+    assert {one.ball_radius for one in shot_scenes(pool, end, fps=5)} == {pool.ball_radius}
+    small = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], None, {"R": 0.02})
+    assert {one.ball_radius for one in shot_scenes(None, small, fps=5)} == {0.02}
+    assert scene("match", SPOTS).ball_radius == scene(None, SPOTS).ball_radius == BALL_RADIUS
+    with pytest.raises(ValueError, match="ball_radius"):
+        scene("match", SPOTS, ball_radius=-1)
+
+
+def test_a_window_takes_the_size_of_the_table_that_it_shows(dummy_screen):
+    window = Window(200)
+    for table in (sn.Table.preset("match"), OTHERS["carom"], OTHERS["mine"]):
+        assert window.draw(scene(table, [(0.0, 0.0)]))
+        shown = dummy_screen.display.get_surface().get_size()
+        assert shown == rgb_array(scene(table, [(0.0, 0.0)]), 200).shape[1::-1]
+    window.close()

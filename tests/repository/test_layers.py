@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import snooker_env
-from snooker_env import Physics, Table
-from snooker_env.game import balls, in_hand, layouts, pots, snookered
+from snooker_env import Physics, Table, geometry
+from snooker_env.game import balls, in_hand, layouts, snookered
 from snooker_env.physics import table
 from snooker_env.tasks import observations
 from snooker_env.tasks.box_actions import Actions
@@ -19,7 +19,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
-BASE = {"_jit", "_check"}
+BASE = {"_jit", "_check", "geometry"}
 ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
@@ -29,17 +29,18 @@ ALLOWED = {
     "_check": set(),
     "checks": {"_check", "physics"},
     "kernels": {"_jit", "game", "tasks"},
+    "geometry": {"_check"},
     "physics": BASE,
     "simulation": BASE | {"physics"},
     "game": BASE,
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
-    "render": {"_check", "physics.table", "physics.engine", "game.balls", "simulation"},
+    "render": {"_check", "geometry", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"envs"},
     "_warmup": {"_jit", "_notices", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {"physics", "simulation", "planning", "envs", "match", "_warmup", "_registration"},
+    "__init__": {"geometry", "physics", "simulation", "planning", "envs", "match", "_warmup", "_registration"},
 }
 OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
@@ -48,7 +49,7 @@ ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools", "hashlib",
     "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "threading", "time",
-    "typing", "warnings", "zipfile", "zlib",
+    "types", "typing", "warnings", "zipfile", "zlib",
 }  # fmt: skip
 
 
@@ -166,54 +167,18 @@ def test_no_file_is_too_long_to_read(name):
     assert not {"TODO", "FIXME", "XXX"} & set(text.split())
 
 
-# Constants that two layers hold, each its own: game knows no physics, so nothing but these tests keeps them equal.
-
-
-def test_the_table_of_the_game_is_the_table_of_the_physics():
-    assert (balls.HALF_WIDTH, balls.HALF_LENGTH) == (table.HALF_WIDTH, table.HALF_LENGTH)
-    noses = Table.preset("match").noses
-    assert {(axis, level) for axis, _, level, _, _ in noses.tolist()} == {(0.0, balls.HALF_WIDTH), (1.0, balls.HALF_LENGTH)}
-    size = [2 * balls.HALF_WIDTH, 2 * balls.HALF_LENGTH]
-    assert size == pytest.approx([1.778, 3.569], abs=1e-12)  # WPBSA
-
-
-def test_a_ball_is_as_large_in_the_game_as_in_the_physics():
-    assert Physics().R == Physics.preset("match").R == balls.BALL_RADIUS == 0.02625
-    assert Physics().pack()[0] == balls.BALL_RADIUS
-
-
-@pytest.mark.parametrize("name", ["match", "tight"])
-def test_pockets_are_numbered_alike_in_the_game_and_in_the_physics(name):
-    falls = Table.preset(name).falls
-    assert len(falls) == len(pots.POCKETS) == len(table.POCKETS) == 6
-    side = {"left": -1, "right": 1}
-    end = {"bottom": -1, "middle": 0, "top": 1}
-    for (x, y, radius), (ax, ay, ux, uy, middle), called in zip(falls, pots.POCKETS, table.POCKETS, strict=True):
-        where, which = called.split()
-        assert np.sign((x, y)).tolist() == np.sign((ax, ay)).tolist() == [side[which], end[where]]
-        assert np.hypot(ux, uy) == pytest.approx(1.0, abs=1e-12)
-        assert middle == (where == "middle")
-        # the aim point lies where the fall meets the pocket's axis, and the axis leads on to the fall's centre
-        assert np.hypot(x - ax, y - ay) == pytest.approx(radius, abs=2e-5)
-        assert np.hypot(ax + radius * ux - x, ay + radius * uy - y) < 2e-5
-
-
-def test_nominal_pockets_of_the_game_lie_by_the_falls_of_the_physics():
-    falls = Table.preset("match").falls
-    far = np.hypot(*(balls.POCKETS[:, None, :] - falls[None, :, :2]).transpose(2, 0, 1))
-    assert sorted(far.argmin(axis=1).tolist()) == list(range(6))
-    assert far.min(axis=1).max() < 0.07
+# What one layer takes for granted of another.
 
 
 @pytest.mark.parametrize("name", ["match", "tight"])
 def test_wherever_a_layout_may_put_a_ball_the_table_of_the_physics_has_room(name):
     x, y = np.meshgrid(np.linspace(-0.9, 0.9, 61), np.linspace(-1.8, 1.8, 121))
     places = np.column_stack([x.ravel(), y.ravel()])
-    room = np.array([balls.HALF_WIDTH, balls.HALF_LENGTH]) - balls.BALL_RADIUS - layouts.CUSHION_GAP
+    room = np.array([geometry.HALF_WIDTH, geometry.HALF_LENGTH]) - geometry.BALL_RADIUS - layouts.CUSHION_GAP
     clear = np.all(np.abs(places) <= room, axis=1)
-    clear &= np.all(np.hypot(*(places[:, None] - balls.POCKETS).transpose(2, 0, 1)) >= layouts.POCKET_GAP, axis=1)
+    clear &= np.all(np.hypot(*(places[:, None] - geometry.POCKET_PLACES).transpose(2, 0, 1)) >= layouts.POCKET_GAP, axis=1)
     assert clear.sum() > 5000
-    Table.preset(name).check(places[clear][:, None], balls.BALL_RADIUS)  # each by itself
+    Table.preset(name).check(places[clear][:, None], geometry.BALL_RADIUS)  # each by itself
 
 
 def test_touching_and_overlapping_are_measured_alike():

@@ -182,15 +182,15 @@ print(positions[balls.BLACK, 1], hits, _jit.CACHE_FOLDER)
 
 
 def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
-    """numba looks at the file of the entry kernel (spotting.py) only; the black's place is frozen in from balls.py."""
+    """numba looks at the file of the entry kernel (spotting.py) only; the black's place is frozen in from geometry.py."""
     at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
     runs = [python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() for _ in range(2)]
     assert [run[:2] for run in runs] == [["1.4605", "0"], ["1.4605", "1"]]  # compiled once, then loaded
     assert runs[0][2].startswith(cache)
-    replace(at / "snooker_env/game/balls.py", "spots[BLACK] = 0.0, 1.4605", "spots[BLACK] = 0.0, 1.4005")
+    replace(at / "snooker_env/geometry.py", "(0.0, 1.4605)", "(0.0, 1.4005)")
     run = python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()
     assert run[:2] == ["1.4005", "0"] and run[2] != runs[0][2]
-    replace(at / "snooker_env/game/balls.py", "spots[BLACK] = 0.0, 1.4005", "spots[BLACK] = 0.0, 1.4605")
+    replace(at / "snooker_env/geometry.py", "(0.0, 1.4005)", "(0.0, 1.4605)")
     assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() == runs[1]  # and the old code's cache is good again
 
 
@@ -199,7 +199,7 @@ def test_without_the_hash_a_change_would_be_missed(tmp_path):
     at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
     replace(at / "snooker_env/_cache.py", 'home / "snooker_env" / source_hash()', 'home / "snooker_env" / "one"')
     assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()[:2] == ["1.4605", "0"]
-    replace(at / "snooker_env/game/balls.py", "spots[BLACK] = 0.0, 1.4605", "spots[BLACK] = 0.0, 1.4005")
+    replace(at / "snooker_env/geometry.py", "(0.0, 1.4605)", "(0.0, 1.4005)")
     assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()[:2] == ["1.4605", "1"]
 
 

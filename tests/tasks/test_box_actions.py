@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import BALL_RADIUS as R
-from snooker_env.game.balls import BAULK_Y, BLACK, CUE, D_RADIUS, N_BALLS, SPOTS, BallOn
-from snooker_env.game.pots import POCKETS, pots
+from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, BallOn
+from snooker_env.game.pots import pots
+from snooker_env.geometry import BALL_RADIUS as R
+from snooker_env.geometry import BAULK_Y, D_RADIUS, POCKET_AIMS
 from snooker_env.tasks.box_actions import MAX_ELEVATION, TARGET_SPAN
 from tests.tables import after_strike, speed_of, table_state
 
@@ -27,12 +28,16 @@ def test_absolute_aim_is_the_direction_in_which_the_ball_leaves(side, aim):
     assert w[2] == pytest.approx(2.5 * speed_of(0.0) * 0.5 * side / R, rel=1e-12)
 
 
+def shot_of(env, *action_and_table):
+    return env.options.rules.actions.shot(*action_and_table)
+
+
 def test_squirt_is_what_is_compensated():
     """With the same action, but no end mass to speak of in the formula, the cue's own direction is another one."""
     heavy, light = (SnookerEnv(physics={"end_mass_ratio": ratio}) for ratio in (5.0, 1e9))
     cues = []
     for env in (heavy, light):
-        cues.append(env.actions.shot([0, 1, 0, 0.25], SPOTS, np.ones(N_BALLS, bool), 2)[3])
+        cues.append(shot_of(env, [0, 1, 0, 0.25], SPOTS, np.ones(N_BALLS, bool), 2)[3])
     assert cues[1] == pytest.approx(math.pi / 4, abs=1e-8)
     assert cues[0] - cues[1] == pytest.approx(-math.atan(2.5 * 0.5 * math.sqrt(0.75) / (1 + 5 + 2.5 * 0.75)), abs=1e-8)
 
@@ -55,7 +60,7 @@ def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
     table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
     _, w = after_strike(env, [0.0, side, top, 0.0])
     scale = 2.5 * speed_of(0.0) / R
-    cue = -env.actions.shot([0, side, top, 0], env.positions, env.on_table, 2)[3]  # how far the cue is turned against the squirt
+    cue = -shot_of(env, [0, side, top, 0], env.positions, env.on_table, 2)[3]
     assert cue == pytest.approx(math.atan(2.5 * b * math.sqrt(1 - b * b) / (1 + 30 + 2.5 * (1 - b * b))), abs=1e-4)
     assert w[2] / scale == pytest.approx(b, abs=1e-4)
     assert w[1] / scale == pytest.approx(t, abs=1e-4)  # rolling along +x is a positive turn about +y
@@ -133,7 +138,7 @@ def test_no_placement_overlaps_a_ball(a, b):
 def straight(rng):
     """A straight pot: object ball, cue ball, direction, all clear of the cushions."""
     while True:
-        pocket = POCKETS[rng.integers(6)]
+        pocket = POCKET_AIMS[rng.integers(6)]
         turn = rng.uniform(-0.35, 0.35)
         c, s = math.cos(turn), math.sin(turn)
         d = np.array([pocket[2] * c - pocket[3] * s, pocket[2] * s + pocket[3] * c])
@@ -172,5 +177,5 @@ def test_target_aim_without_a_pot_is_at_the_nearest_ball_on():
     env = SnookerEnv(aim="target")
     table_state(env, {CUE: (0.0, 1.0), 1: (0.0, 1.7), 2: (0.1, 1.74)}, BallOn.RED)  # towards the top cushion: no pot there
     assert len(pots(env.positions, env.on_table, env.on)) == 0
-    assert env.actions.shot([0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3] == pytest.approx(math.pi / 2, abs=1e-12)
-    assert env.actions.shot([0, 0, 0, -0.5], env.positions, env.on_table, env.on)[3] == pytest.approx(math.pi / 2 - TARGET_SPAN / 2)
+    assert shot_of(env, [0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3] == pytest.approx(math.pi / 2, abs=1e-12)
+    assert shot_of(env, [0, 0, 0, -0.5], env.positions, env.on_table, env.on)[3] == pytest.approx(math.pi / 2 - TARGET_SPAN / 2)

@@ -41,14 +41,14 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         env.reset(seed=0)
         env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, :3] = positions, on_table, (1, 0, 0)
         env.step(choice_of(0, speed, side, top))
-        v, w = env._work.v[0, 0], env._work.w[0, 0]
-        start = env._work.shots[0]
+        v, w = env._buffers.v[0, 0], env._buffers.w[0, 0]
+        start = env._buffers.shots[0]
         shot = sn.simulate([cue, ball], [start[:2], (0, 0)], [start[2:5], (0, 0, 0)], table=None, physics=world)
         hit = shot.events[shot.events["kind"] == sn.EventKind.BALL_BALL]
         rolls = shot.events[(shot.events["kind"] == sn.EventKind.ROLL) & (shot.events["i"] == 1)]
         assert len(hit) and v.shape == (2,) and w.shape == (3,)
         place, way, _ = (a[1] for a in shot.at(float(rolls["time"][0]) + 1e-9))
-        pocket = pots.POCKETS[int(found[0, 1]), :2]
+        pocket = pots.POCKET_AIMS[int(found[0, 1]), :2]
         if (place - ball) @ (pocket - ball) > 0.9 * (pocket - ball) @ (pocket - ball):
             continue
         to = pocket - place
@@ -138,8 +138,8 @@ def test_what_does_not_go_together_is_refused():
     for name in ("elevation", "placement"):
         with pytest.raises(ValueError, match=f"{name} = True: must be False"):
             SnookerEnv(action="discrete", **{name: True})
-    with pytest.raises(ValueError, match='must be "box" with task="frame"'):
-        SnookerEnv(action="discrete", task="frame")
+    with pytest.raises(ValueError, match="decision = True: must be False"):
+        SnookerEnv(action="discrete", task="frame", decision=True)
     with pytest.raises(ValueError, match="action = 'plain'"):
         SnookerEnv(action="plain")
     with pytest.raises(ValueError, match="a Box has no masks"):

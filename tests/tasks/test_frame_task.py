@@ -11,6 +11,7 @@ from gymnasium.utils.env_checker import check_env, data_equivalence
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import YELLOW, BallOn
 from snooker_env.tasks import observations
+from snooker_env.tasks.options import NAMES
 from tests.tables import frame_env
 
 
@@ -31,7 +32,7 @@ def test_the_spaces_grow_and_those_of_a_visit_do_not():
 
 
 def test_the_default_layout_is_that_of_the_task():
-    assert SnookerEnv().layout == "opened" and frame_env().layout == "break_off"
+    assert SnookerEnv().options.layout == "opened" and frame_env().options.layout == "break_off"
     env = frame_env(layout="colours")
     env.reset(seed=0)
     assert env.ball_on == BallOn.YELLOW and not env.in_hand
@@ -116,5 +117,6 @@ def test_pictures(mode):
 
 
 def test_every_argument_is_documented():
-    for name in inspect.signature(SnookerEnv.__init__).parameters:
-        assert name in SnookerEnv.__doc__ or name == "self"
+    for name in (*NAMES, "render_mode"):
+        assert f"{name}" in SnookerEnv.__doc__
+    assert set(inspect.signature(SnookerEnv).parameters) == {"options", "render_mode", "given"}

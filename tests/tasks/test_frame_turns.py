@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game.balls import BLACK, BLUE, CUE, D_RADIUS, PINK, SPOTS, BallOn
+from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import Foul
+from snooker_env.geometry import D_RADIUS
 from tests.tables import PLACES, frame_env, frame_state
 
 TO_BLUE = 0.0
@@ -50,10 +51,7 @@ def test_a_cue_ball_in_hand_stands_in_the_d_and_is_played_from_where_it_is_place
     places = {1: (0.6, 1.4), BLACK: SPOTS[BLACK], CUE: (D_RADIUS / 2, -1.0475)}
     env = frame_state(frame_env(opponent="ghost_ball"), places, {"in_hand": True})
     assert env.in_hand and env.on_table[CUE]
-    env.render_mode = "ansi"
-    env.step([-0.9, 0, 0, 0, -1.0, -1.0, 0])
-    twin = frame_state(frame_env(), places, {"in_hand": True})
-    twin.render_mode = "ansi"
+    twin = frame_state(frame_env(render_mode="ansi"), places, {"in_hand": True})
     twin.step([-0.9, 0, 0, 0, -1.0, -1.0, 0])
     assert np.allclose(twin.last_shot.at(0.0)[0][CUE], (-D_RADIUS, -1.0475))
 

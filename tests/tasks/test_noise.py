@@ -6,20 +6,28 @@ import numpy as np
 import pytest
 
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import BALL_RADIUS as R
 from snooker_env.game.balls import CUE, BallOn
+from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics.cue import strike
 from snooker_env.physics.parameters import Physics
-from snooker_env.tasks.noise import LEVELS, Noise
+from snooker_env.tasks.noise import LEVELS, Noise, executed
+from tests.kernels import from_python
 from tests.tables import after_strike, speed_of, table_state
+
+_executed = from_python(executed)
+
+
+def drawn(noise, n, speed, side, top, aim, elevation):
+    """So many shots as executed, from one stream: (n, 5)."""
+    stream, packed = np.array([7, 0], np.uint64), noise.pack(R)
+    return np.array([_executed(float(speed), float(side), float(top), float(aim), float(elevation), packed, stream) for _ in range(n)])
 
 
 def test_noise_has_the_deviations_that_it_says():
     """20 000 draws: a standard deviation is known to 0.5 %, a mean to 0.7 % of one."""
     noise = Noise(aim_deg=0.2, speed_rel=0.03, speed_abs=0.04, offset_mm=0.4, elevation_deg=0.5)
-    rng = np.random.default_rng(7)
     shot = (2.0, 0.1, -0.2, 0.7, 0.3)
-    draws = np.array([noise.draw(rng, *shot, R) for _ in range(20_000)])
+    draws = drawn(noise, 20_000, *shot)
     sigma = [math.hypot(0.03 * 2.0, 0.04), 0.4e-3 / R, 0.4e-3 / R, math.radians(0.2), math.radians(0.5)]
     assert draws.std(axis=0) == pytest.approx(sigma, rel=0.025)
     assert np.abs((draws.mean(axis=0) - shot) / sigma).max() < 0.035
@@ -32,8 +40,7 @@ def test_noise_has_the_deviations_that_it_says():
 @pytest.mark.parametrize("name", LEVELS)
 def test_each_level_is_as_wide_as_written(name):
     wide = {"none": 0, "professional": 0.025, "amateur": 0.034, "club": 0.08, "robot": 0.033, "olympiad": 0.125}[name]
-    rng = np.random.default_rng(1)
-    draws = np.array([LEVELS[name].draw(rng, 3.0, 0, 0, 1.0, 0.2, R) for _ in range(4000)])
+    draws = drawn(LEVELS[name], 4000, 3.0, 0, 0, 1.0, 0.2)
     assert np.degrees(draws[:, 3].std()) == pytest.approx(wide, rel=0.05, abs=1e-12)
     fast = {"none": 0, "professional": 0.0525, "amateur": 0.075, "club": 0.12, "robot": 0.24, "olympiad": 0.075}[name]
     assert draws[:, 0].std() == pytest.approx(fast, rel=0.05)
@@ -42,10 +49,9 @@ def test_each_level_is_as_wide_as_written(name):
 @pytest.mark.parametrize(("name", "physics"), [*((name, "paper") for name in LEVELS), ("club", {"end_mass_ratio": 15.0})])
 def test_the_total_direction_error_is_that_of_the_balls_struck(name, physics):
     """Aim and squirt together, as the balls leave; 4000 of them tell a standard deviation to 1.1 %."""
-    world, rng = Physics.of(physics), np.random.default_rng(2)
+    world = Physics.of(physics)
     ways = []
-    for _ in range(4000):
-        speed, side, top, aim, elevation = LEVELS[name].draw(rng, 2.0, 0.0, 0.0, 0.0, 0.0, R)
+    for speed, side, top, aim, elevation in drawn(LEVELS[name], 4000, 2.0, 0.0, 0.0, 0.0, 0.0).tolist():
         v, _ = strike(speed, aim, side, top, elevation, world)
         ways.append(math.degrees(math.atan2(v[1], v[0])))
     assert np.std(ways) == pytest.approx(LEVELS[name].direction_deg(physics), rel=0.045, abs=1e-12)
@@ -67,8 +73,7 @@ def test_the_total_direction_error_in_figures():
 
 
 def test_speed_and_elevation_are_never_negative():
-    rng = np.random.default_rng(1)
-    draws = np.array([Noise(speed_abs=1.0, elevation_deg=5.0).draw(rng, 0.2, 0, 0, 0, 0.0, R) for _ in range(500)])
+    draws = drawn(Noise(speed_abs=1.0, elevation_deg=5.0), 500, 0.2, 0, 0, 0, 0.0)
     assert draws[:, 0].min() == 0.0 < draws[:, 0].max() and draws[:, 4].min() == 0.0 < draws[:, 4].max()
 
 

@@ -27,6 +27,7 @@ def test_any_callable_may_play_and_sees_the_table_from_its_own_side():
         return np.array([-0.9, 0, 0, rng.uniform(-1, 1), 0, 0, 0])
 
     env = frame_state(frame_env(opponent=opponent), PLACES, {"scores": (31, 62)})
+    seen.clear()
     env.step([-0.9, 0, 0, 1.0, 0, 0, 0])
     assert seen and env.observation_space.contains(seen[0])
     own, other, lead = seen[0][121:124] * 155
@@ -65,8 +66,9 @@ def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
             raise error("no turn")
         return np.zeros(7)
 
-    env, miss, failing = frame_env(opponent=opponent), [-0.9, 0, 0, 1.0, 0, 0, 0], True
+    env, miss, failing = frame_env(opponent=opponent), [-0.9, 0, 0, 1.0, 0, 0, 0], False
     frame_state(env, PLACES, {})
+    failing = True
     with pytest.raises(error, match="no turn"):
         env.step(miss)
     with pytest.raises(gymnasium.error.ResetNeeded):

@@ -10,9 +10,9 @@ import snooker_env as sn
 from snooker_env import Table
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.game.balls import BALL_RADIUS
 from snooker_env.game.layouts import LAYOUTS, deal_tables
 from snooker_env.game.opened import bank, kept
+from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.table_fit import fitted
 from tests.refusals import case, refused
 
@@ -108,8 +108,8 @@ def test_the_tables_that_did_not_fit_can_be_dealt_in_frames_and_matches_too():
         env = SnookerEnv(task=task, layout="opened", table="tight")
         env.reset(seed=1)
         env.set_state(env.get_state())
-        assert env._plan.unfit
-    assert sn.match_env(table="tight", layout="opened").unwrapped._plan.unfit  # pyright: ignore[reportAttributeAccessIssue]
+        assert env.options.rules.plan.unfit
+    assert sn.match_env(table="tight", layout="opened").unwrapped.options.rules.plan.unfit  # pyright: ignore[reportAttributeAccessIssue]
 
 
 NOSES = "in Snooker-v0, whose layouts are made for that bed"

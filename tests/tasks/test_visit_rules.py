@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import BALL_RADIUS as R
 from snooker_env.game.balls import BLACK, BLUE, CUE, N_BALLS, PINK, SPOTS, YELLOW, BallOn
 from snooker_env.game.ruling import Foul
+from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.tasks.rewards import REWARDS
 from tests.tables import table_state
 

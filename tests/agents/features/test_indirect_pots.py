@@ -12,11 +12,12 @@ from agents.features.indirect_pots import AIM_X, AIM_Y, BALL, BANK, CANNON, GHOS
 from agents.players.aim_search import Aimer, widest_run
 from agents.players.by_name import player_of
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.game.balls import BALL_RADIUS, BLACK, BLUE, CUE, GREEN, N_BALLS, PINK, YELLOW, BallOn, mask_of
-from snooker_env.game.pots import POCKETS, pots
+from snooker_env.game.balls import BLACK, BLUE, CUE, GREEN, N_BALLS, PINK, YELLOW, BallOn, mask_of
+from snooker_env.game.pots import pots
+from snooker_env.geometry import BALL_RADIUS, HALF_WIDTH, POCKET_AIMS
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.parameters import Physics
-from snooker_env.physics.table import HALF_WIDTH, Table
+from snooker_env.physics.table import Table
 from snooker_env.planning import Positions
 from snooker_env.tasks.box_actions import line
 
@@ -86,7 +87,7 @@ OFF = {CUE: (-0.04, -1.24), 1: (0.08, -0.56), BLUE: (0.48, -0.09)}
 
 def test_a_bank_is_the_mirror_image_and_goes_in(aimer):
     shot = one(found(BANKED), KIND=BANK, POCKET=TOP_RIGHT, BALL=1)
-    red, at, pocket = np.array(BANKED[1]), shot[[AIM_X, AIM_Y]], POCKETS[TOP_RIGHT, :2]
+    red, at, pocket = np.array(BANKED[1]), shot[[AIM_X, AIM_Y]], POCKET_AIMS[TOP_RIGHT, :2]
     assert at[0] == pytest.approx(-(HALF_WIDTH - R), abs=1e-12)  # as near as a ball's centre comes to the cushion
     before, after = at - red, pocket - at
     assert before[1] / before[0] == pytest.approx(-after[1] / after[0], rel=1e-12)
@@ -112,11 +113,11 @@ def half_window_over_slope(passes, pocket):
 
     def aside(turn):
         start, d = passes(turn)
-        to = POCKETS[pocket, :2] - start
+        to = POCKET_AIMS[pocket, :2] - start
         return d[0] * to[1] - d[1] * to[0]
 
     assert pocket not in (2, 5)
-    angle = np.degrees(np.arccos(passes(0.0)[1] @ POCKETS[pocket, 2:4]))
+    angle = np.degrees(np.arccos(passes(0.0)[1] @ POCKET_AIMS[pocket, 2:4]))
     window = np.interp(angle, (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0))  # game.pots, of a corner
     assert aside(0.0) == pytest.approx(0.0, abs=1e-9)
     return 0.5 * window / abs((aside(1e-6) - aside(-1e-6)) / 2e-6)
@@ -174,7 +175,7 @@ def test_the_tolerance_of_a_cannon_is_what_the_straight_lines_allow():
 
 def test_a_plant_drives_the_second_red_in(aimer):
     shot = one(found(PLANTED), KIND=PLANT, BALL=1, OTHER=2, POCKET=TOP_RIGHT)
-    first, second, pocket = np.array(PLANTED[1]), np.array(PLANTED[2]), POCKETS[TOP_RIGHT, :2]
+    first, second, pocket = np.array(PLANTED[1]), np.array(PLANTED[2]), POCKET_AIMS[TOP_RIGHT, :2]
     d = (pocket - second) / np.hypot(*(pocket - second))
     meets = second - 2 * R * d
     assert shot[[AIM_X, AIM_Y]] == pytest.approx(meets, abs=1e-12)
@@ -189,7 +190,7 @@ def test_a_plant_drives_the_second_red_in(aimer):
 
 def test_a_set_plant_is_aimed_along_the_line_of_the_two_reds(aimer):
     """Two reds that touch and point at the pocket, but for a degree: no ghost ball, yet it goes in."""
-    pocket, second = POCKETS[TOP_RIGHT, :2], np.array((0.5, 1.3))
+    pocket, second = POCKET_AIMS[TOP_RIGHT, :2], np.array((0.5, 1.3))
     angle = atan2(*(pocket - second)[::-1]) + 0.01
     first = second - 2 * R * np.array((cos(angle), sin(angle)))
     places = {CUE: (0.3, 0.3), 1: tuple(first), 2: tuple(second)}
@@ -210,7 +211,7 @@ def test_a_cannon_goes_off_the_other_ball(aimer):
         before, centres = (at - OFF[1]) / np.hypot(*(at - OFF[1])), (OFF[BLUE] - at) / (2 * R)
         sliding = before - 0.5 * (1 + PAPER.e_b) * (before @ centres) * centres
         rolling = 5 / 7 * sliding + 2 / 7 * before  # what is left when the cloth has made both spins the ball's own
-        pocket = POCKETS[int(shot[POCKET]), :2] - at
+        pocket = POCKET_AIMS[int(shot[POCKET]), :2] - at
         assert rolling @ pocket / np.hypot(*rolling) == pytest.approx(np.hypot(*pocket), rel=1e-9)
     hits = [(shot, tried(aimer, OFF, shot)) for shot in shots if shot[KIND] == CANNON]
     hits = [(shot, hit[0]) for shot, hit in hits if hit is not None]
@@ -246,7 +247,7 @@ def test_a_ball_on_any_leg_blocks_it(places, wanted, leg, side):
     wanted = {**wanted, "POCKET": shot[POCKET]}
     where, ghost = shot[[AIM_X, AIM_Y]], shot[[GHOST_X, GHOST_Y]]
     last = places[2] if shot[KIND] == PLANT else where
-    a, b = [(places[CUE], ghost), (places[1], where), (last, POCKETS[int(shot[POCKET]), :2])][leg]
+    a, b = [(places[CUE], ghost), (places[1], where), (last, POCKET_AIMS[int(shot[POCKET]), :2])][leg]
     aims = lambda shots: [s for s in shots if np.allclose(s[[AIM_X, AIM_Y]], where)]  # noqa: E731
     assert len(aims(offered({PINK: between(a, b, 0.5, side * 1.98 * R)}))) == 0
     assert len(aims(offered({PINK: between(a, b, 0.5, side * 2.02 * R)}))) == 1

@@ -8,12 +8,13 @@ from positions import tables
 
 from agents.features import pot_features
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import BALL_RADIUS, BLACK, CUE, HALF_LENGTH, HALF_WIDTH, BallOn, mask_of
-from snooker_env.game.pots import POCKETS, pots
+from snooker_env.game.balls import BLACK, CUE, BallOn, mask_of
+from snooker_env.game.pots import pots
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from snooker_env.planning import Positions
 from snooker_env.tasks.box_actions import line
 from snooker_env.tasks.discrete_actions import POTS
-from snooker_env.tasks.observations import SIZE, observe
+from snooker_env.tasks.observations import SIZE
 from snooker_env.tasks.visit import BALL_ON
 
 VALUES = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
@@ -22,7 +23,7 @@ VALUES = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 def pot_entries(positions, pot):
     """What is to be seen of one pot."""
     ball, pocket, _, _, _, tolerance = pot
-    cue, at, into = positions[CUE], positions[int(ball)], POCKETS[int(pocket), :2]
+    cue, at, into = positions[CUE], positions[int(ball)], POCKET_AIMS[int(pocket), :2]
     run = (into - at) / hypot(*(into - at))
     way = at - 2 * BALL_RADIUS * run - cue
     path = hypot(*way)
@@ -61,7 +62,7 @@ def test_pot_view_shows_the_line_that_the_aim_is_read_against():
     for seed in range(20):
         observation = pot_features.with_pots(table.reset(seed=seed)[0][None])[0]
         rows = observation[SIZE:].reshape(-1, pot_features.POT_ENTRIES)
-        assert np.array_equal(observation[:SIZE], observe("flat", table.positions, table.on_table, table.ball_on, table.on, 0, 0))
+        assert np.array_equal(observation[:SIZE], Positions.of(table).observations()[0])
         direction = line(table.positions, table.on_table, table.on)
         assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=5e-6)
         shown = rows[rows[:, 0] == 1]

@@ -9,7 +9,8 @@ from scipy.stats import norm
 
 from agents.features import prospects
 from snooker_env.game.balls import BLACK, CUE, PINK, BallOn, mask_of
-from snooker_env.game.pots import POCKETS, pots
+from snooker_env.game.pots import pots
+from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.parameters import Physics
 from snooker_env.planning import Positions
 from snooker_env.tasks.noise import Noise
@@ -49,7 +50,7 @@ def by_hand(positions, on_table, ball_on, spread, follows, second, third, far):
     left = sum(8 if VALUE[ball] == 1 else VALUE[ball] for ball in there) + 7 * (ball_on == BallOn.ANY_COLOUR)
     chances, worths = [], [0.0, 0.0, 0.0]
     for ball, pocket, gx, gy, _, tolerance in pots(positions, on_table, mask_of(balls)):
-        (cx, cy), (bx, by), (px, py) = positions[CUE], positions[int(ball)], POCKETS[int(pocket), :2]
+        (cx, cy), (bx, by), (px, py) = positions[CUE], positions[int(ball)], POCKET_AIMS[int(pocket), :2]
         run = hypot(gx - cx, gy - cy) + hypot(px - bx, py - by)
         within = norm.cdf(tolerance, scale=spread) - norm.cdf(-tolerance, scale=spread)
         chances.append(within * exp(-far * run))

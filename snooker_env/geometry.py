@@ -1,0 +1,285 @@
+"""Where is everything on a table, and how large is it? Beds, pockets, spots and balls as data: the one source for every layer.
+
+World frame: origin at the table's centre, +x to the yellow side, +y to the black end; metres. A preset is a ``Bed``, and ``parts`` makes
+of it the arrays that the kernels read (``physics.table``). Pockets are numbered in one order everywhere: ``POCKETS``.
+
+Sources. Snooker: WPBSA, playing area 3569 x 1778 mm, spots and D as in the rules; the official pocket templates are secret, and this set
+agrees with the quoted openings (3.5 in corner, 4 in middle at the fall of the slate: ``python -m benchmarks.pockets`` prints ours).
+Pool: WPA equipment specifications; Alciatore, TP 3.5 and TP 3.6. UK 8-ball: WEPF specifications. Carom: UMB regulations.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import cos, radians, sin, sqrt
+from types import MappingProxyType
+
+import numpy as np
+
+from ._check import number, refuse
+
+__all__ = [
+    "BALL_RADIUS", "BAULK_Y", "COLOUR_SPOTS", "D_RADIUS", "HALF_LENGTH", "HALF_WIDTH", "POCKETS", "POCKET_AIMS", "POCKET_PLACES", "PRESETS",
+    "SIDES", "Bed", "Pocket",
+]  # fmt: skip
+
+POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
+"""Pocket indices 0..5, anticlockwise from (-x, -y); bottom is the baulk end, right the yellow side."""
+SIDES = ((-1, -1), (1, -1), (1, 0), (1, 1), (-1, 1), (-1, 0))
+"""On which side of the table each of them lies: the signs of its x and y."""
+
+# Snooker's table: what the rules, the layouts and the observations are about.
+BALL_RADIUS = 0.02625
+HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
+BAULK_Y = -1.0475
+D_RADIUS = 0.292
+COLOUR_SPOTS = np.array([
+    (D_RADIUS, BAULK_Y), (-D_RADIUS, BAULK_Y), (0.0, BAULK_Y), (0.0, 0.0), (0.0, HALF_LENGTH / 2), (0.0, 1.4605),
+])  # fmt: skip
+"""(6, 2) the spots of yellow, green, brown, blue, pink and black."""
+
+POCKET_PLACES = np.array([(sx * HALF_WIDTH, sy * HALF_LENGTH) for sx, sy in SIDES])
+"""(6, 2) where snooker's nose lines meet (corners) or are cut (middles): nominal places, enough to keep a layout clear of the pockets."""
+
+AIM_X, AIM_Y, AXIS_X, AXIS_Y, IS_MIDDLE = range(5)
+"""Columns of ``POCKET_AIMS``: the aim point [m], the pocket's axis as an outward unit vector, 1 for a middle pocket."""
+_CORNER_AIM, _MIDDLE_AIM = 0.01524, 0.0016  # where the fall meets the pocket's axis: before each nose line it is so far [m]
+
+
+def _aim(sx, sy):
+    if not sy:
+        return sx * (HALF_WIDTH - _MIDDLE_AIM), 0.0, sx, 0.0, 1.0
+    return sx * (HALF_WIDTH - _CORNER_AIM), sy * (HALF_LENGTH - _CORNER_AIM), sx * sqrt(0.5), sy * sqrt(0.5), 0.0
+
+
+POCKET_AIMS = np.array([_aim(sx, sy) for sx, sy in SIDES])
+"""(6, 5) where to send a ball that is to go into each of snooker's pockets; columns ``AIM_X`` to ``IS_MIDDLE``."""
+
+for _constant in (COLOUR_SPOTS, POCKET_PLACES, POCKET_AIMS):
+    _constant.setflags(write=False)
+
+FLAT = 100.0
+"""A straight facing is an arc of this radius [m]: over the 0.1 m of a facing it is 0.013 mm off a straight line."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pocket:
+    """The shape of one kind of pocket, alike at all corners or in both middles; ``corner`` and ``middle`` make one from published sizes.
+
+    A jaw leaves the straight nose at its ``start``, turns away from it on an arc, and goes on straight (its facing). Where the arc ends
+    over the fall no facing is made: a ball that has come so far is lost.
+
+    Fields, in metres unless said:
+
+    * is_middle: For the middles of the long sides, or for the corners?
+    * start: Where the jaws leave the nose: the distance along the rail from the corner (where the nose lines meet), or from the middle.
+    * jaw_radius: Radius of the arc; 0: a sharp point, as in pool.
+    * turn: How far a jaw turns from the nose [degrees]: 45 at a corner and 90 in the middle make the facings parallel.
+    * fall_depth: How far the centre of the slate's circle lies behind the nose line (behind both at a corner).
+    * fall_radius: Its radius; a ball begins to drop where its centre crosses the circle.
+    """
+
+    is_middle: bool
+    start: float
+    jaw_radius: float
+    turn: float
+    fall_depth: float
+    fall_radius: float
+
+    def __post_init__(self):
+        name = "pocket." + ("middle" if self.is_middle else "corner")
+        straight = 90.0 if self.is_middle else 45.0
+        limits = {"start": (0, 1), "jaw_radius": (0, 1), "turn": (0, straight), "fall_depth": (-1, 1), "fall_radius": (0, 1)}
+        for field, (low, high) in limits.items():
+            open_low = field in ("start", "turn", "fall_radius")
+            object.__setattr__(self, field, number(f"{name}.{field}", getattr(self, field), low, high, open_low=open_low))
+        if not self.throat > 0.0:
+            raise refuse(name, self, "must leave an opening between its jaws: a wider mouth, less turn or a smaller jaw_radius")
+        if self.shelf + self.mouth_depth + self.fall_radius <= self._arc_end[1] and not self._ends_over_the_fall:
+            raise refuse(name, self, "must have the middle of its fall behind the ends of its jaws' arcs, or these over the fall")
+        if self.fall_radius < self.throat / 2:
+            raise refuse(name, self, "must have a fall at least as wide as the throat, so that no ball passes beside it")
+
+    @classmethod
+    def corner(cls, *, mouth, shelf, fall_radius, cut=135.0, jaw_radius=0.0):
+        """A corner pocket by its published sizes [m, degrees].
+
+        mouth: from jaw to jaw where they leave the noses; shelf: from the middle of the mouth to the slate's edge; fall_radius: of the
+        slate's circle; cut: the angle between nose and facing, 135 for parallel facings, WPA 142; jaw_radius: 0 for sharp points.
+        """
+        mouth, shelf, fall_radius = _sizes("pocket.corner", mouth, shelf, fall_radius)
+        depth = (fall_radius + shelf) / sqrt(2.0) - mouth / (2.0 * sqrt(2.0))
+        turn = 180.0 - number("pocket.corner.cut", cut, 135, 180)
+        return cls(
+            is_middle=False, start=mouth / sqrt(2.0), jaw_radius=jaw_radius, turn=turn, fall_depth=depth, fall_radius=fall_radius,
+        )  # fmt: skip
+
+    @classmethod
+    def middle(cls, *, mouth, shelf, fall_radius, cut=90.0, jaw_radius=0.0):
+        """A middle (side) pocket by its published sizes, as in ``corner``; cut: 90 for parallel facings, WPA 104."""
+        mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
+        turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
+        return cls(
+            is_middle=True, start=mouth / 2.0, jaw_radius=jaw_radius, turn=turn, fall_depth=fall_radius + shelf, fall_radius=fall_radius,
+        )  # fmt: skip
+
+    # Seen from the pocket's origin (the corner, or the middle on the nose line): depth outwards along the axis, offset across it.
+
+    @property
+    def mouth(self):
+        """From jaw to jaw where they leave the noses [m]."""
+        return 2.0 * self.start if self.is_middle else sqrt(2.0) * self.start
+
+    @property
+    def mouth_depth(self):
+        """How deep the line of the mouth lies [m]: at a corner in front of where the nose lines meet."""
+        return 0.0 if self.is_middle else -self.start / sqrt(2.0)
+
+    @property
+    def shelf(self):
+        """From the middle of the mouth to the slate's edge [m]."""
+        depth = self.fall_depth if self.is_middle else sqrt(2.0) * self.fall_depth
+        return depth - self.fall_radius - self.mouth_depth
+
+    @property
+    def taper(self):
+        """The angle between a facing and the axis [rad]; 0: the facings are parallel."""
+        return radians((90.0 if self.is_middle else 45.0) - self.turn)
+
+    @property
+    def _arc_end(self):
+        """Offset and depth of the place where a jaw's arc ends."""
+        angle = radians(self.turn)
+        on, in_ = self.jaw_radius * sin(angle), self.jaw_radius * (1.0 - cos(angle))  # along the nose, and away from its line
+        if self.is_middle:
+            return self.start - on, in_
+        return (self.start - on + in_) / sqrt(2.0), (in_ - self.start + on) / sqrt(2.0)
+
+    @property
+    def _ends_over_the_fall(self):
+        offset, depth = self._arc_end
+        return offset**2 + (depth - self.mouth_depth - self.shelf - self.fall_radius) ** 2 < self.fall_radius**2
+
+    @property
+    def facing(self):
+        """Length of a facing [m], down to the depth of the fall's middle; 0 where the arc already ends over the fall."""
+        if self._ends_over_the_fall:
+            return 0.0
+        return (self.mouth_depth + self.shelf + self.fall_radius - self._arc_end[1]) / cos(self.taper)
+
+    @property
+    def throat(self):
+        """The least width between the two jaws [m]."""
+        return 2.0 * (self._arc_end[0] - self.facing * sin(self.taper))
+
+
+def _sizes(name, mouth, shelf, fall_radius):
+    return (
+        number(f"{name}.mouth", mouth, 0, 1, open_low=True), number(f"{name}.shelf", shelf, -1, 1),
+        number(f"{name}.fall_radius", fall_radius, 0, 1, open_low=True),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bed:
+    """A rectangular table as data: between its noses ``width`` [m] along x and ``length`` along y, its pockets and its balls."""
+
+    length: float
+    width: float
+    corner: Pocket | None
+    """None: no pockets in the corners."""
+    middle: Pocket | None
+    """None: no pockets in the middles of the sides along y."""
+    ball: Mapping[str, float]
+    """Fields of ``Physics`` that belong to the balls and noses of this game: R [m], M [kg], sin_theta. Empty: any ball."""
+
+    @property
+    def pockets(self):
+        """The names of its pockets, by index: those of ``POCKETS`` that it has, in that order."""
+        return tuple(name for name, (_, sy) in zip(POCKETS, SIDES, strict=True) if (self.corner if sy else self.middle))
+
+
+def parts(bed):
+    """Noses (k, 5), jaws (m, 6) and falls (p, 3) of a ``Bed``, columns as in ``physics.table.Table``. Index of a fall = pocket."""
+    X, Y = bed.width / 2, bed.length / 2
+    end = bed.corner.start if bed.corner else 0.0
+    noses = []
+    for side in (-1, 1):
+        if bed.middle:
+            noses += [(0, side, X, -Y + end, -bed.middle.start), (0, side, X, bed.middle.start, Y - end)]
+        else:
+            noses += [(0, side, X, -Y + end, Y - end)]
+    noses += [(1, side, Y, -X + end, X - end) for side in (-1, 1)]
+    jaws, falls = [], []
+    for sx, sy in SIDES:
+        pocket = bed.corner if sy else bed.middle
+        if pocket is None:
+            continue
+        a, depth = pocket.start, pocket.fall_depth
+        if sy:  # one jaw on the short rail, one on the long rail
+            jaws += _jaw(pocket, (sx * (X - a), sy * Y), (sx, 0), (0, sy)) + _jaw(pocket, (sx * X, sy * (Y - a)), (0, sy), (sx, 0))
+            falls.append((sx * (X + depth), sy * (Y + depth), pocket.fall_radius))
+        else:
+            for way in (-1, 1):
+                jaws += _jaw(pocket, (sx * X, way * a), (0, -way), (sx, 0))
+            falls.append((sx * (X + depth), 0.0, pocket.fall_radius))
+    return np.array(noses, np.float64), np.array(jaws, np.float64).reshape(-1, 6), np.array(falls, np.float64).reshape(-1, 3)
+
+
+def _jaw(pocket, start, onward, outward):
+    """The arcs of one jaw: from ``start`` on the nose, which runs ``onward`` to the pocket, with ``outward`` behind it (unit vectors)."""
+    (x, y), (tx, ty), (ox, oy), radius = start, onward, outward, pocket.jaw_radius
+    turn = radians(pocket.turn)
+    # half of 90 degrees: the two are equal, which rounding would spoil
+    away, toward = (sqrt(0.5), sqrt(0.5)) if pocket.turn == 90.0 else (cos(turn / 2), sin(turn / 2))
+    cx, cy = x + radius * ox, y + radius * oy
+    arcs = [(cx, cy, radius, -ox * away + tx * toward, -oy * away + ty * toward, away if radius else -1.0)]  # a point: a whole circle
+    if length := pocket.facing:
+        nx, ny = ox * cos(turn) - tx * sin(turn), oy * cos(turn) - ty * sin(turn)  # from the facing into the rubber
+        fx, fy = tx * cos(turn) + ox * sin(turn), ty * cos(turn) + oy * sin(turn)  # along it, into the pocket
+        rise = sqrt(FLAT**2 - length**2 / 4)
+        mx, my = cx - radius * nx + length / 2 * fx, cy - radius * ny + length / 2 * fy
+        arcs.append((mx + rise * nx, my + rise * ny, FLAT, -nx, -ny, rise / FLAT))
+    return arcs
+
+
+def _ball(**fields):
+    return MappingProxyType(fields)
+
+
+_INCH = 0.0254
+_CORNER = Pocket(is_middle=False, start=0.0976352, jaw_radius=0.0889, turn=45.0, fall_depth=0.047625, fall_radius=0.0889)
+_TIGHT = Pocket(is_middle=False, start=0.0934916, jaw_radius=0.0889, turn=45.0, fall_depth=0.047625, fall_radius=0.0889)
+_MIDDLE = Pocket(is_middle=True, start=0.109185, jaw_radius=0.0669, turn=90.0, fall_depth=0.05159, fall_radius=0.05319)
+_SNOOKER = _ball(R=BALL_RADIUS, M=0.1406, sin_theta=0.4)
+
+
+def scaled(pocket, factor):
+    """A pocket of the same shape, ``factor`` times as large."""
+    lengths = {name: factor * getattr(pocket, name) for name in ("start", "jaw_radius", "fall_depth", "fall_radius")}
+    return Pocket(is_middle=pocket.is_middle, turn=pocket.turn, **lengths)
+
+
+PRESETS = MappingProxyType({
+    # Throats of the corners 86.0 and 80.14 mm.
+    "match": Bed(length=2 * HALF_LENGTH, width=2 * HALF_WIDTH, corner=_CORNER, middle=_MIDDLE, ball=_SNOOKER),
+    "tight": Bed(length=2 * HALF_LENGTH, width=2 * HALF_WIDTH, corner=_TIGHT, middle=_MIDDLE, ball=_SNOOKER),
+    # WEPF: playing area 7 ft x 3 ft 6 in at most, balls of 2 in and 116 g (the cue ball's 1 7/8 in is left out: all balls are equal). Its
+    # pocket templates are not published. Makers say that pockets are to the balls as in snooker, so ours, an estimate, are snooker's,
+    # scaled by the balls; the nose height is snooker's, too.
+    "uk8": Bed(
+        length=84 * _INCH, width=42 * _INCH, corner=scaled(_CORNER, _INCH / BALL_RADIUS), middle=scaled(_MIDDLE, _INCH / BALL_RADIUS),
+        ball=_ball(R=_INCH, M=0.116, sin_theta=0.4),
+    ),
+    # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5 to 4.625 in cut at 142 degrees,
+    # side mouths 5 to 5.125 in at 104, shelves 1 to 2.25 and 0 to 0.375 in. In these ranges: the mouths and shelves of Alciatore's
+    # TP 3.6 and 3.5, and his radii of the falls, which the WPA leaves open.
+    "pool9": Bed(
+        length=100 * _INCH, width=50 * _INCH,
+        corner=Pocket.corner(mouth=4.5875 * _INCH, shelf=1.125 * _INCH, fall_radius=2.75 * _INCH, cut=142.0),
+        middle=Pocket.middle(mouth=5.0625 * _INCH, shelf=0.1875 * _INCH, fall_radius=3.0 * _INCH, cut=104.0),
+        ball=_ball(R=1.125 * _INCH, M=0.163, sin_theta=0.27),
+    ),
+    # UMB: 2.84 x 1.42 m, balls of 61 to 61.5 mm and 205 to 220 g, noses 37 mm high.
+    "carom": Bed(length=2.84, width=1.42, corner=None, middle=None, ball=_ball(R=0.03075, M=0.2125, sin_theta=37.0 / 30.75 - 1.0)),
+})  # fmt: skip
+"""The tables that have a name."""
