@@ -1,4 +1,19 @@
-"""snooker_env: whole snooker shots, frictional impacts, and the Gymnasium environment ``Snooker-v0`` built on them."""
+"""snooker_env: whole snooker shots, frictional impacts, and the Gymnasium environment ``Snooker-v0`` built on them.
+
+Public are the names in ``__all__`` of this package and of these modules of it; everything else may change in any version:
+
+* ``snooker_env.planning``: strokes tried on copies of positions, and the geometry that finds them
+* ``snooker_env.geometry``: where everything on a table is, and how large
+* ``snooker_env.game``: balls, values, what may be struck, layouts and the tables that they deal
+* ``snooker_env.tasks``: what actions, observations and errors of execution mean, in numbers
+* ``snooker_env.kernels``: for kernels of your own: how they are compiled, and the inner kernels that they may call
+* ``snooker_env.checks``: bad input reported as the package does
+* ``snooker_env.render``: the scene of a table, and its pictures
+* ``snooker_env.tasks.saved_models``: what a model's file says of itself, read as plain data
+* ``snooker_env.sb3``: many tables for Stable-Baselines3
+"""
+
+import typing as _typing
 
 from gymnasium.envs import registration as _gymnasium
 
@@ -11,11 +26,38 @@ from .physics.parameters import Physics
 from .physics.table import Table
 from .simulation import Shot, ShotBatch, SimulationError, collide_balls, collide_cushion, simulate, simulate_batch, strike
 
+if _typing.TYPE_CHECKING:
+    from . import planning
+    from .envs.snooker import SnookerEnv
+    from .envs.vector import SnookerVectorEnv
+    from .planning import Planner, Position, Positions
+
 __version__ = "0.3.0.dev0"
 
 __all__ = [
-    "POCKETS", "EventKind", "Physics", "Pocket", "Shot", "ShotBatch", "SimulationError", "Table", "collide_balls", "collide_cushion",
-    "match_env", "simulate", "simulate_batch", "strike", "warmup",
+    "POCKETS", "EventKind", "Physics", "Planner", "Pocket", "Position", "Positions", "Shot", "ShotBatch", "SimulationError", "SnookerEnv",
+    "SnookerVectorEnv", "Table", "collide_balls", "collide_cushion", "match_env", "planning", "simulate", "simulate_batch", "strike",
+    "warmup",
 ]  # fmt: skip
 
+_LATER = {
+    "SnookerEnv": "envs.snooker", "SnookerVectorEnv": "envs.vector", "Planner": "planning", "Position": "planning", "Positions": "planning",
+}  # fmt: skip
+"""Where the names are that are imported only when they are asked for: shots alone need no environment."""
+
 _register(_gymnasium)
+
+
+def __getattr__(name: str) -> _typing.Any:
+    from importlib import import_module
+
+    if name == "planning":
+        return import_module(".planning", __name__)
+    if name not in _LATER:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    thing = globals()[name] = getattr(import_module(f".{_LATER[name]}", __name__), name)
+    return thing
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

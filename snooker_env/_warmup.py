@@ -16,6 +16,8 @@ def warmup():
     from .game.pots import pots
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
+    from .planning import Planner, Positions, clear_paths, obstructions
+    from .planning import pots as direct_pots
     from .tasks.box_actions import line
 
     with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
@@ -39,3 +41,11 @@ def warmup():
         line(env.positions, env.on_table, REDS_MASK)
         is_snookered(env.positions, env.on_table, REDS_MASK)
         spot_colours(env.positions, env.on_table, 0)
+        env.reset(seed=0)
+        at, planner = Positions.of(env), Planner({"action": "discrete"})
+        planner.play(at, [0], [0])
+        planner.as_actions(at, [0], [0])
+        planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
+        obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
+        for ask in (direct_pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):
+            ask(at)

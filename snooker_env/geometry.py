@@ -17,6 +17,11 @@ import numpy as np
 
 from ._check import number, refuse
 
+__all__ = [
+    "BALL_RADIUS", "BAULK_Y", "COLOUR_SPOTS", "D_RADIUS", "HALF_LENGTH", "HALF_WIDTH", "POCKETS", "POCKET_AIMS", "POCKET_PLACES", "PRESETS",
+    "SIDES", "Bed", "Pocket",
+]  # fmt: skip
+
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
 """Pocket indices 0..5, anticlockwise from (-x, -y); bottom is the baulk end, right the yellow side."""
 SIDES = ((-1, -1), (1, -1), (1, 0), (1, 1), (-1, 1), (-1, 0))

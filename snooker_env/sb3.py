@@ -21,6 +21,8 @@ except ModuleNotFoundError as error:
 from ._check import choice, integer, refuse
 from .envs.vector import SnookerVectorEnv
 
+__all__ = ["SnookerVecEnv"]
+
 
 class SnookerVecEnv(VecEnv):
     """``num_envs`` tables as SB3 takes them; all other arguments are those of ``SnookerVectorEnv``.

@@ -1,15 +1,9 @@
-"""How does a test of an agent get tables, and the positions on them to try shots from?"""
+"""How does a test of an agent get tables?"""
 
-from agents.features.lookahead import Position
-from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env import SnookerVectorEnv
 
 
 def tables(n, seed=0, **options):
     env = SnookerVectorEnv(n, **options)
     env.reset(seed=seed)
     return env
-
-
-def position(env):
-    v = env.tables
-    return Position(v.positions.copy(), v.on_table.copy(), v.game.copy())

@@ -13,10 +13,10 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 from matplotlib.patheffects import withStroke
 
 from commands.files import save_figure
-from snooker_env.game.balls import BallOn
+from snooker_env import Table
+from snooker_env.game import BallOn
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
-from snooker_env.physics.table import Table
-from snooker_env.render.scene import BAULK_LINE, COLOURS, CUSHION, D_ARC, RAIL, SPOT_MARKS, outline
+from snooker_env.render import BAULK_LINE, COLOURS, CUSHION, D_ARC, RAIL, SPOT_MARKS, outline
 
 from .report import main_condition
 

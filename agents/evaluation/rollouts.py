@@ -5,13 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snooker_env._check import refuse
-from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.game.balls import BallOn
-from snooker_env.game.layouts import deal_tables, plan_of
-from snooker_env.game.philox import stream_of
-from snooker_env.tasks.observations import SIZE
-from snooker_env.tasks.visit import BALL_ON
+from snooker_env import Positions, SnookerVectorEnv
+from snooker_env.checks import refuse
+from snooker_env.game import BallOn, plan_of
+from snooker_env.game import layout as deal
+from snooker_env.tasks import OBSERVATION_SIZE
 
 from ..features.pot_features import TOLERANCE, tolerance_of, with_pots
 
@@ -93,9 +91,8 @@ def tables_of(layout, visits):
     """
     plan, seeds, known = plan_of(layout), [], set()
     for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + 20 * visits):
-        positions, on_table = np.zeros((1, 22, 2)), np.zeros((1, 22), bool)
-        deal_tables(np.zeros(1, np.int64), plan.code, plan.tables, stream_of(np.random.default_rng(seed))[None], positions, on_table)
-        table = np.sort(np.abs(positions[0, :, 0])).round(9).tobytes()
+        positions, _ = deal(plan, np.random.default_rng(seed))
+        table = np.sort(np.abs(positions[:, 0])).round(9).tobytes()
         if table not in known:
             known.add(table)
             seeds.append(seed)
@@ -115,16 +112,16 @@ def play(
     observations, _ = tables.reset(seed=first_seed)
     log, going, number, thinking = [], np.ones(visits, bool), 0, 0.0
     while going.any():
-        ball_on = tables.visits.game[going, BALL_ON]
+        ball_on = Positions.of(tables).ball_on[going]
         began = time.perf_counter()
         actions = player.act(tables, observations, going)
         thinking += time.perf_counter() - began
         observations, _, ended, _, info = tables.step(actions)
         here = np.flatnonzero(going)
-        positions, on_table = tables.visits.positions[here, 0], tables.visits.on_table[here]
-        cue = np.where(on_table[:, :1], positions, np.nan)
+        left = Positions.of(tables)[here]
+        cue = np.where(left.on_table[:, :1], left.positions[:, 0], np.nan)
         log.append(
-            (here, np.full(len(here), number), info["points"][here], info["foul"][here] != 0, ball_on, ~on_table[:, 1:].any(1), cue,
+            (here, np.full(len(here), number), info["points"][here], info["foul"][here] != 0, ball_on, ~left.on_table[:, 1:].any(1), cue,
              _tolerance(observations, here))
         )  # fmt: skip
         going &= ~ended
@@ -137,7 +134,7 @@ def play(
 
 def _tolerance(observations, here):
     """Of the widest pot on each table ``here`` [rad]."""
-    widest = with_pots(observations[here])[:, SIZE:]
+    widest = with_pots(observations[here])[:, OBSERVATION_SIZE:]
     return np.where(widest[:, 0] > 0, tolerance_of(widest[:, TOLERANCE]), 0.0)
 
 

@@ -17,12 +17,12 @@ from math import asin, atan2, cos, hypot, sin, sqrt
 
 import numpy as np
 
-from snooker_env._jit import entry, kernel
-from snooker_env.game.balls import N_BALLS, BallOn, balls_on_kernel, bits
-from snooker_env.game.pots import POT_COLUMNS, clear_segment, find_pots, window
+from snooker_env.game import N_BALLS, TOUCH, BallOn
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
-from snooker_env.physics.table import OVERLAP_ALLOWED
-from snooker_env.tasks.box_actions import line_of
+from snooker_env.kernels import GHOST_X as POT_X
+from snooker_env.kernels import GHOST_Y as POT_Y
+from snooker_env.kernels import POT_BALL, POT_COLUMNS, POT_POCKET, balls_on, bits, clear_segment, entry, find_pots, kernel, line_of, window
+from snooker_env.kernels import TOLERANCE as POT_TOLERANCE
 
 DIRECT, BANK, PLANT, CANNON = range(4)
 """Kinds of shots."""
@@ -56,7 +56,7 @@ def _first_leg(positions, present, ball, dx, dy):
     gx, gy = positions[ball, 0] - reach * dx, positions[ball, 1] - reach * dy
     px, py = gx - cx, gy - cy
     path = hypot(px, py)
-    room = OVERLAP_ALLOWED - BALL_RADIUS
+    room = TOUCH - BALL_RADIUS
     if path < 1e-9 or abs(gx) > HALF_WIDTH + room or abs(gy) > HALF_LENGTH + room:
         return gx, gy, 0.0
     cos_cut = (px * dx + py * dy) / path
@@ -248,7 +248,7 @@ def _cannons(positions, present, ball, other, e, shots, count):
 @kernel
 def _find(positions, on_table, ball_on, noses, e, present, shots):
     """Fill ``shots`` (m, COLUMNS) with the indirect ones, widest first; returns how many there are. ``present`` (22,): work space."""
-    count, on = 0, balls_on_kernel(ball_on, bits(on_table))
+    count, on = 0, balls_on(ball_on, bits(on_table))
     for i in range(N_BALLS):
         present[i] = on_table[i] and i > 0  # the cue ball leaves its place
     for ball in range(1, N_BALLS):
@@ -277,13 +277,18 @@ def direct_pots(positions, on_table, ball_on, shots, counts):
     """
     found = np.empty((shots.shape[1], POT_COLUMNS))
     for t in range(len(counts)):
-        p, on = positions[t], balls_on_kernel(ball_on[t], bits(on_table[t]))
+        p, on = positions[t], balls_on(ball_on[t], bits(on_table[t]))
         counts[t] = find_pots(p, on_table[t], on, BALL_RADIUS, found)
         for j in range(counts[t]):
-            pocket, row = int(found[j, 1]), shots[t, j]
-            row[KIND], row[BALL], row[OTHER], row[POCKET] = DIRECT, found[j, 0], -1, pocket
-            row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y] = POCKET_AIMS[pocket, 0], POCKET_AIMS[pocket, 1], found[j, 2], found[j, 3]
-            row[TOLERANCE] = row[REACH] = found[j, 5]
+            pocket, row = int(found[j, POT_POCKET]), shots[t, j]
+            row[KIND], row[BALL], row[OTHER], row[POCKET] = DIRECT, found[j, POT_BALL], -1, pocket
+            row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y] = (
+                POCKET_AIMS[pocket, 0],
+                POCKET_AIMS[pocket, 1],
+                found[j, POT_X],
+                found[j, POT_Y],
+            )
+            row[TOLERANCE] = row[REACH] = found[j, POT_TOLERANCE]
         if counts[t] == 0:
             row, angle = shots[t, 0], line_of(p, on_table[t], on, found)
             row[KIND], row[BALL], row[OTHER], row[POCKET], row[TOLERANCE], row[REACH] = DIRECT, -1, -1, -1, 0.0, 0.0

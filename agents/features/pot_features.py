@@ -5,16 +5,15 @@ from math import hypot, log10
 import numpy as np
 from gymnasium import spaces
 
-from snooker_env._jit import entry
-from snooker_env.game.balls import N_BALLS, VALUES
-from snooker_env.game.pots import POT_COLUMNS, find_pots
+from snooker_env.game import N_BALLS, VALUES
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
-from snooker_env.tasks.discrete_actions import POTS
-from snooker_env.tasks.observations import SIZE, shaped, space
+from snooker_env.kernels import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, entry, find_pots
+from snooker_env.kernels import TOLERANCE as POT_TOLERANCE
+from snooker_env.tasks import OBSERVATION_SIZE, POTS, observation_space, shaped_observations
 
 POT_ENTRIES = 13
 """Numbers shown of each of the ``choices.POTS`` widest pots, see ``with_pots``."""
-SHOWN = SIZE + POTS * POT_ENTRIES
+SHOWN = OBSERVATION_SIZE + POTS * POT_ENTRIES
 
 # Entries that change sign when the table is seen in a mirror, left and right exchanged.
 BALL_X = 0
@@ -30,27 +29,27 @@ def tolerance_of(shown):
 
 @entry(what="the view of the pots", seconds=1)
 def _add_pots(observations, shown):
-    """Copy the observations (n, SIZE) into ``shown`` and write the pots behind them, read from the observations alone."""
+    """Copy the observations (n, OBSERVATION_SIZE) into ``shown`` and write the pots behind them, read from the observations alone."""
     found = np.empty((POTS, POT_COLUMNS))
     positions, on_table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
     for k in range(len(observations)):
         seen, row, on = observations[k], shown[k], 0
         for c in range(row.shape[0]):
-            row[c] = seen[c] if c < SIZE else 0.0
+            row[c] = seen[c] if c < OBSERVATION_SIZE else 0.0
         for i in range(N_BALLS):
             positions[i, 0], positions[i, 1] = seen[5 * i] * HALF_WIDTH, seen[5 * i + 1] * HALF_LENGTH
             on_table[i] = seen[5 * i + 2] > 0.0
             on |= (1 << i) if seen[5 * i + 4] > 0.0 else 0
         for p in range(find_pots(positions, on_table, on, BALL_RADIUS, found) if on_table[0] else 0):
-            ball, pocket, at = int(found[p, 0]), int(found[p, 1]), SIZE + POT_ENTRIES * p
-            bx, by, gx, gy = positions[ball, 0], positions[ball, 1], found[p, 2], found[p, 3]
+            ball, pocket, at = int(found[p, POT_BALL]), int(found[p, POT_POCKET]), OBSERVATION_SIZE + POT_ENTRIES * p
+            bx, by, gx, gy = positions[ball, 0], positions[ball, 1], found[p, GHOST_X], found[p, GHOST_Y]
             px, py, rx, ry = gx - positions[0, 0], gy - positions[0, 1], bx - gx, by - gy
             away, run = hypot(px, py), hypot(rx, ry)
             px, py, rx, ry = px / away, py / away, rx / run, ry / run
             to_pocket = hypot(POCKET_AIMS[pocket, 0] - bx, POCKET_AIMS[pocket, 1] - by)
-            row[at], row[at + 1], row[at + 2], row[at + 3], row[at + 4] = 1.0, px, py, px * ry - py * rx, found[p, 4]
+            row[at], row[at + 1], row[at + 2], row[at + 3], row[at + 4] = 1.0, px, py, px * ry - py * rx, found[p, COS_CUT]
             row[at + 5], row[at + 6] = away / HALF_LENGTH - 1.0, to_pocket / HALF_LENGTH - 1.0
-            row[at + TOLERANCE], row[at + 8] = 1.0 + log10(found[p, 5]) / 2.0, VALUES[ball] / 7.0
+            row[at + TOLERANCE], row[at + 8] = 1.0 + log10(found[p, POT_TOLERANCE]) / 2.0, VALUES[ball] / 7.0
             row[at + 9], row[at + 10] = bx / HALF_WIDTH, by / HALF_LENGTH
             row[at + 11], row[at + 12] = POCKET_AIMS[pocket, 0] / HALF_WIDTH, POCKET_AIMS[pocket, 1] / HALF_LENGTH
             for c in range(at, at + POT_ENTRIES):
@@ -58,11 +57,11 @@ def _add_pots(observations, shown):
 
 
 def with_pots(observations):
-    """Flat observations (n, SIZE) with the four widest direct pots appended, ``POT_ENTRIES`` numbers each; all 0 where there are fewer.
+    """Flat observations (n, OBSERVATION_SIZE) with the four widest direct pots appended, ``POT_ENTRIES`` numbers each, 0 where none is.
 
     1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance, the ball's value and place (x, y),
-    the pocket's place. A small network cannot find these
-    lines itself in a few minutes: without them the same run makes a third of the pots.
+    the pocket's place. A small network cannot find these lines itself in a few minutes: without them the same run makes a third of the
+    pots.
     """
     shown = np.empty((len(observations), SHOWN), np.float32)
     _add_pots(np.ascontiguousarray(observations), shown)
@@ -73,7 +72,7 @@ VIEW_SPACE = spaces.Box(-1.0, 1.0, (SHOWN,), np.float32)
 """What the agent sees."""
 
 
-class Pots:
+class PotsView:
     """The view of an agent that sees the table and its pots: ``with_pots``."""
 
     space = VIEW_SPACE
@@ -87,16 +86,16 @@ class Pots:
         return tables.action_masks()
 
 
-class Plain:
+class PlainView:
     """The view of a model that was not made here: the observation of that ``kind`` as the environment shows it."""
 
     def __init__(self, kind):
         self._kind = kind
-        self.space = space(kind)
+        self.space = observation_space(kind)
 
     def __call__(self, tables, observations, rows=None):
         """What is seen of the tables ``rows``, whose flat observations are given."""
-        return shaped(self._kind, observations)
+        return shaped_observations(self._kind, observations)
 
     def masks(self, tables):
         """Which choices may be played."""

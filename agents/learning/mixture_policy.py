@@ -20,10 +20,9 @@ from stable_baselines3.common.distributions import Distribution
 from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import nn
 
-from snooker_env.game.balls import N_BALLS
+from snooker_env.game import N_BALLS
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
-from snooker_env.tasks.discrete_actions import POTS
-from snooker_env.tasks.observations import SIZE
+from snooker_env.tasks import OBSERVATION_SIZE, POTS
 
 from ..features import pot_features
 from ..features.pot_features import POT_ENTRIES, tolerance_of
@@ -51,7 +50,7 @@ def lines_of(seen):
     to_ball = places - places[:, :1]
     far = to_ball.square().sum(2).masked_fill((balls[:, :, 2] <= 0.0) | (balls[:, :, 4] <= 0.0), float("inf"))
     nearest = to_ball[torch.arange(len(seen), device=seen.device), far.argmin(1)]
-    pots = seen[:, SIZE:].reshape(-1, POTS, POT_ENTRIES)
+    pots = seen[:, OBSERVATION_SIZE:].reshape(-1, POTS, POT_ENTRIES)
     offered = pots[:, :, 0]
     first = torch.where(offered[:, :1] > 0.0, pots[:, 0, 1:3], nearest)
     direction = torch.cat([first[:, None], pots[:, 1:, 1:3]], 1)
@@ -112,7 +111,7 @@ class Throw(nn.Module):
         return turn * lines[:, :, OFFERED]
 
 
-class StrokeHead(nn.Module):
+class MixtureHead(nn.Module):
     """What ``LineReader`` gives -> the parameters of a ``StrokeMixture``, but for the deviations."""
 
     def __init__(self):
@@ -146,10 +145,10 @@ class StrokeMixture(Distribution):
 
     def proba_distribution_net(self, log_std_init=0.0):
         """The head and the deviations."""
-        return StrokeHead(), nn.Parameter(torch.full((4,), float(log_std_init)))
+        return MixtureHead(), nn.Parameter(torch.full((4,), float(log_std_init)))
 
     def proba_distribution(self, log_weights, means, lines, aims_of, log_std):
-        """Set the parameters: what ``StrokeHead`` gives, and the deviations."""
+        """Set the parameters: what ``MixtureHead`` gives, and the deviations."""
         self.log_weights, self.means, self.aims_of = log_weights, means, aims_of
         self.stds, self.aim_stds = log_std[:3].exp(), lines[:, :, TOLERANCE] / pi * log_std[3].exp()
         return self

@@ -4,7 +4,7 @@ The order of balls or pots must not matter: each ball's row goes through one net
 Zaheer et al. 2017). Masked sums of the balls' codes, of the pots' codes and the game's state make the context. The score of a
 stroke at a pot comes from that pot's code and the context, by the same weights for every pot. A table is nearly the same in a mirror: it
 is read with the cue ball on the right, and the choice of side spin is turned back.
-(Yellow and green have sides: it is told which half it was.)
+(Yellow and green have sides: a flag says which half it was.)
 """
 
 from itertools import pairwise
@@ -14,9 +14,8 @@ from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import nn
 
-from snooker_env.game.balls import N_BALLS
-from snooker_env.tasks.discrete_actions import POTS, SIDES, SPEEDS, STROKES, TOPS
-from snooker_env.tasks.observations import SIZE
+from snooker_env.game import N_BALLS
+from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, SPEEDS, STROKES, TOPS
 
 from ..features.lookahead_features import CUE_X, ENTRIES, PICKS, POTS_SEEN, STROKES_SEEN
 from ..features.pot_features import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
@@ -24,7 +23,7 @@ from ..features.pot_features import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
 BALL, CONTEXT, POT = 64, 128, 128
 """Widths of the codes."""
 OUTCOME = 32
-_STATE = SIZE - 5 * N_BALLS
+_STATE = OBSERVATION_SIZE - 5 * N_BALLS
 _N_REDS = 15
 
 
@@ -45,7 +44,7 @@ class TableReader(BaseFeaturesExtractor):
         flips = torch.zeros(SHOWN, dtype=torch.bool)
         flips[torch.arange(N_BALLS) * 5 + BALL_X] = True
         for entry in (*POT_X, CUT):
-            flips[SIZE + torch.arange(POTS) * POT_ENTRIES + entry] = True
+            flips[OBSERVATION_SIZE + torch.arange(POTS) * POT_ENTRIES + entry] = True
         self.flips: torch.Tensor
         self.register_buffer("flips", flips, persistent=False)
 
@@ -55,8 +54,8 @@ class TableReader(BaseFeaturesExtractor):
         side = torch.where(seen[:, BALL_X : BALL_X + 1] < 0.0, -1.0, 1.0)
         seen = torch.where(self.flips, seen * side, seen)
         balls = seen[:, : 5 * N_BALLS].reshape(n, N_BALLS, 5)
-        state = seen[:, 5 * N_BALLS : SIZE]
-        pots = seen[:, SIZE:].reshape(n, POTS, POT_ENTRIES)
+        state = seen[:, 5 * N_BALLS : OBSERVATION_SIZE]
+        pots = seen[:, OBSERVATION_SIZE:].reshape(n, POTS, POT_ENTRIES)
         cue = balls[:, 0, :2]
         here = (balls[:, 1:, 2:3] > 0.0).float()
         on = (balls[:, 1:, 4:5] > 0.0).float() * here
@@ -159,6 +158,6 @@ class TablePolicy(_Policy):
 
 
 class ForesightPolicy(_Policy):
-    """Sees what ``foresight`` shows, scores the strokes that it looked at."""
+    """Sees what ``foresight`` shows, scores the strokes that were simulated."""
 
     reader, head = ForesightReader, OutcomeHead

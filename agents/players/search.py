@@ -1,6 +1,6 @@
 """What is the best of the choices, found by trying them out? Monte Carlo by simulation under execution noise, two shots deep.
 
-From the true state of a table many copies are played, each with errors of its own (``tasks.noise``). A shot is worth its points and, if the
+From the true state of a table many copies are played, each with errors of its own. A shot is worth its points and, if the
 visit goes on, the value of the position it leaves. Sequential halving [Karnin, Koren & Somekh 2013] spends the budget: all candidates are
 tried a little, the better part a little more, and so on. The last few are judged by the second shot: from positions that they left, the
 best next shot is sought without errors, worth the chance to make it times what it brings.
@@ -13,17 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from snooker_env.envs.vector import processors
-from snooker_env.game.balls import balls_on, ids_of
-from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.tasks.discrete_actions import STROKES, TOPS, choice_of
-from snooker_env.tasks.noise import Noise
-from snooker_env.tasks.stroke import mask
-from snooker_env.tasks.visit import BALL_ON
+from snooker_env.planning import Planner, Positions, action_masks, pots, processors
+from snooker_env.tasks import STROKES, TOPS, choice_of
 
-from ..features.lookahead import BY_HAND, SURE, Copies, Position, as_actions, choices_at, prospects_of, spread_of
 from ..features.pot_features import with_pots
+from ..features.prospects import BY_HAND, SURE, prospects_of, spread_of
 
 KEEP = 3
 """Of a round's candidates one in so many goes on to the next."""
@@ -35,9 +30,9 @@ NEXT_SHOTS = 16
 
 
 class Search:
-    """Looks for the best shot with ``budget`` simulated shots a decision, at least two.
+    """Searches the best shot with ``budget`` simulated shots a decision, at least two.
 
-    ``value``: worth [points] of flat observations with pots (``view.with_pots``), (m, n) -> (m,), in place of the value by hand;
+    ``value``: worth [points] of flat observations with pots (``pot_features.with_pots``), (m, n) -> (m,), in place of the value by hand;
     ``threads``: tables thought about at once, with the same shots found for any number.
     """
 
@@ -46,7 +41,7 @@ class Search:
     def __init__(self, budget=2000, seed=0, value=None, threads=None):
         self.budget, self.value = budget, value
         self._seed, self._decisions, self._threads = seed, 0, threads or processors()
-        self._rules: Any = None
+        self._tables: Any = None
         self._minds: list[_Mind] = []
 
     @property
@@ -56,16 +51,13 @@ class Search:
 
     def act(self, tables, observations, going):
         """The shot found for each table that is going."""
-        v = tables.visits
-        if self._rules is not v.rules:
-            self._rules, self._minds = v.rules, [_Mind(self, v.rules) for _ in range(self._threads)]
-        actions = np.zeros((tables.num_envs, 4), np.float32)
+        if self._tables is not tables:
+            self._tables, self._minds = tables, [_Mind(self, tables) for _ in range(self._threads)]
+        actions, positions = np.zeros((tables.num_envs, 4), np.float32), Positions.of(tables)
 
         def think(mind, own):
             for k in own:
-                here = slice(k, k + 1)
-                at = Position(v.positions[here].copy(), v.on_table[here].copy(), v.game[here].copy())
-                actions[k] = mind.best(at, np.random.default_rng((self._seed, self._decisions, k)))
+                actions[k] = mind.best(positions[k : k + 1], np.random.default_rng((self._seed, self._decisions, k)))
 
         wanted = np.flatnonzero(going).tolist()
         with ThreadPoolExecutor(self._threads) as pool:
@@ -77,11 +69,11 @@ class Search:
 class _Mind:
     """The thinking of one thread."""
 
-    def __init__(self, search, rules):
-        noise = rules.shooter.noise
-        self.budget, self._value, self.shooter = search.budget, search.value, rules.shooter
-        self.noisy, self.exact = Copies(rules, noise), Copies(rules, Noise())
-        self._sure, self._spread = noise.silent, spread_of(noise, rules.shooter.physics)
+    def __init__(self, search, tables):
+        self.budget, self._value = search.budget, search.value
+        self.noisy, self.exact = Planner(tables, threads=1), Planner(tables, noise="none", threads=1)
+        noise = self.noisy.noise
+        self._sure, self._spread = noise.silent, spread_of(noise, self.noisy.physics)
 
     def _values(self, left, observations):
         """What the positions left are worth [points], and the chances of their widest pots."""
@@ -119,10 +111,10 @@ class _Mind:
         return candidates[np.argmax(scores)]
 
     def _exactly(self, at, rng):
-        """The same without errors: every try tells all, so each candidate is played once and many go into the second shot."""
+        """The same without errors: one try says everything, so each candidate is played once and many go into the second shot."""
         candidates = self._candidates(at, max(1, self.budget // 2), self.budget, rng)
         n = len(candidates)
-        points, goes_on, left, seen = self.exact.play(at, np.zeros(n, np.int64), candidates, np.zeros(n, np.uint64))
+        points, goes_on, left, seen = self.exact.play(at, np.zeros(n, np.int64), candidates)
         values, chances = self._values(left, seen)
         scores = points + goes_on * values
         keep = np.argsort(-scores, kind="stable")[: (self.budget - n) // NEXT_SHOTS]
@@ -134,14 +126,13 @@ class _Mind:
 
     def _candidates(self, at, most, wild, rng):
         """At most so many strokes at the direct pots, evenly from all pots; where there is none, so many wild shots at the balls on."""
-        on = balls_on(int(at.game[0, BALL_ON]), mask(at.on_table[0]))
-        if not len(pots(at.positions[0], at.on_table[0], on, most=1)):
-            return _at_balls(at.positions[0], ids_of(on), wild, rng)
-        picks = np.flatnonzero(choices_at(at)[0])
+        if pots(at, most=1).ball[0, 0] < 0:
+            return _at_balls(at.positions[0], np.flatnonzero(at.balls_on[0]), wild, rng)
+        picks = np.flatnonzero(action_masks(at)[0])
         if len(picks) > most:
             picks = rng.permutation(picks)
             picks = np.sort(picks[np.argsort(_rank(picks // STROKES), kind="stable")[:most]])
-        return as_actions(at, np.zeros(len(picks), np.int64), picks, self.shooter)
+        return self.exact.as_actions(at, np.zeros(len(picks), np.int64), picks)
 
     def _second(self, scores, records, budget, rng):
         """Scores of the finalists two shots deep."""
@@ -153,8 +144,8 @@ class _Mind:
             return scores
         who, came, from_there = np.repeat(np.arange(len(rows)), NEXT_SHOTS), chances[rows], left[rows]
         picks = self._next_shots(came, rng).reshape(-1)
-        actions = as_actions(from_there, who, picks, self.shooter)
-        made, further, then, seen = self.exact.play(from_there, who, actions, np.zeros(len(picks), np.uint64))
+        actions = self.exact.as_actions(from_there, who, picks)
+        made, further, then, seen = self.exact.play(from_there, who, actions)
         values, _ = self._values(then, seen)
         chance = came[who, picks // STROKES]
         best = (chance * (made + further * values)).reshape(len(rows), NEXT_SHOTS).max(axis=1)

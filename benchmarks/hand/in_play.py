@@ -3,9 +3,9 @@
 import numpy as np
 
 from agents.evaluation.rollouts import play
-from agents.features.lookahead import Copies, Position
 from agents.players.built_in import GhostBall
-from snooker_env.tasks.discrete_actions import POTS, SIDES, SPEEDS, TOPS, choice_of
+from snooker_env.planning import Planner, Positions
+from snooker_env.tasks import POTS, SIDES, SPEEDS, TOPS, choice_of
 
 PICKS = np.array([
     choice_of(pot, speed, SIDES.index(0.0), TOPS.index(0.0)) for pot in range(POTS) for speed in range(len(SPEEDS)) if 1 < SPEEDS[speed] < 4
@@ -21,16 +21,15 @@ class Likeliest:
     options = {"action": "discrete"}  # noqa: RUF012 - a player's options are read, never changed
 
     def __init__(self, seed=0, threads=2):
-        self._rng, self._threads, self._rules, self._copies = np.random.default_rng(seed), threads, None, None
+        self._rng, self._threads, self._tables, self._planner = np.random.default_rng(seed), threads, None, None
         self.chances: list[np.ndarray] = []
         """What it expected of each stroke, an array for each time that it was asked."""
 
     def act(self, tables, observations, going):
         """The likeliest pot of each table going."""
-        v = tables.tables
-        if self._rules is not v.rules:
-            self._rules, self._copies = v.rules, Copies(v.rules, v.rules.shooter.noise, self._threads)
-        at = Position(v.positions[going], v.on_table[going], v.game[going])
+        if self._tables is not tables:
+            self._tables, self._planner = tables, Planner(tables, threads=self._threads)
+        at = Positions.of(tables)[going]
         there = tables.action_masks()[going][:, PICKS]
         chances = np.where(there, 0.0, -1.0)
         rows, columns = np.nonzero(there)
@@ -46,20 +45,20 @@ class Likeliest:
 
     def _share(self, at, rows, columns, n):
         """How often each of these choices scores in n tries, all with the same errors."""
-        assert self._copies is not None
+        assert self._planner is not None
         keys = self._rng.integers(0, 2**64 - 1, n, dtype=np.uint64)
-        points = self._copies.play(at, np.repeat(rows, n), np.repeat(PICKS[columns], n), np.tile(keys, len(rows)))[0]
+        points = self._planner.play(at, np.repeat(rows, n), np.repeat(PICKS[columns], n), np.tile(keys, len(rows)))[0]
         return (points > 0).reshape(-1, n).mean(axis=1)
 
 
-def in_play(hand, visits, seed, **options):
+def in_play(level, visits, seed, **options):
     """(made (m,), expected (m,)): of every stroke of so many visits from held-out tables whether it scored, and the chance it was given."""
     player = Likeliest(seed)
-    strokes = play(player, visits, noise=hand, **options)
+    strokes = play(player, visits, noise=level, **options)
     return strokes.made, np.concatenate(player.chances)
 
 
-def first_pots(hand, layout, visits, **options):
+def first_pots(level, layout, visits, **options):
     """Whether the first stroke of each of so many visits scored: at the widest pot, aim solved, 2.3 m/s."""
-    strokes = play(GhostBall(), visits, noise=hand, layout=layout, **options)
+    strokes = play(GhostBall(), visits, noise=level, layout=layout, **options)
     return strokes.made[strokes.number == 0]

@@ -188,14 +188,14 @@ def profile(p, v, w, fidelity="standard", passes=3):
     The untouched kernel plays the same shots between these passes; ``kernel_us`` is its quickest.
     """
     engine, simulation = load()
-    world, (inside, outside) = snooker_env.Physics.preset("paper"), _reading_cost()
+    physics, (inside, outside) = snooker_env.Physics.preset("paper"), _reading_cost()
     untouched, tallies = [], []
     for _ in range(passes + 1):
         tally = np.zeros(2 * _N * _N + 2, np.int64)
-        arguments = kernel_arguments(p, v, w, world, fidelity, engine, simulation._run)
+        arguments = kernel_arguments(p, v, w, physics, fidelity, engine, simulation._run)
         engine.run_batch(tally.ctypes.data, *arguments, 0, len(p))
         tallies.append(tally[:_NOW].reshape(2, _N, _N).astype(float))
-        untouched.append(time_shots(p, v, w, fidelity, 1, world).mean())
+        untouched.append(time_shots(p, v, w, fidelity, 1, physics).mean())
     time, calls = min(tallies[1:], key=lambda tally: tally[0].sum())  # the first compiles
     own = time - calls * inside  # own[piece, caller]
     share = calls / np.maximum(calls.sum(1, keepdims=True), 1)  # a piece's calls of others are laid on its own callers by their share

@@ -4,8 +4,6 @@ gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry
 """
 
 import copy
-import os
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import gymnasium
@@ -18,15 +16,9 @@ from .._check import choice, integer, refuse, refuse_what
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.options import NEVER, Options, options_of
-from ..tasks.stroke import ShotBuffers
-from ..tasks.tables import Crew
+from ..tasks.threads import Threads, processors
 from .pictures import Pictures
 from .snooker import TABLES, SnookerEnv
-
-CHUNK = 128
-"""Most tables played in one go: few enough for a work space that stays in the cache, enough to make the calls from Python cheap."""
-LEAST = 8
-"""Fewest tables that are worth a thread or a chunk of their own."""
 
 PICTURES = ("rgb_array", "ansi")
 NOT_OF_A_TABLE = {
@@ -49,57 +41,6 @@ def _check_out(name, a, shape, dtype):
         found = f"array of {a.dtype} and shape {a.shape}" if isinstance(a, np.ndarray) else type(a).__name__
         raise refuse_what(f'out["{name}"]', found, f"must be a C-contiguous, writeable array of {np.dtype(dtype)} and shape {shape}")
     return a
-
-
-def processors():
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-class Threads(Crew):
-    """The crew of a vector environment: chunks of tables, shared out among threads."""
-
-    def __init__(self, threads):
-        super().__init__()
-        self.threads = threads
-        self._pool, self._pool_process, self._desks = None, 0, []
-
-    def __call__(self, which, task):
-        """Share the tables out, a chunk at a time."""
-        n = len(which)
-        threads = max(1, min(self.threads, n // LEAST))
-        even = n if threads == 1 else max(LEAST, -(-n // (4 * threads)))  # shots differ in length
-        size = min(CHUNK, even)
-        while len(self._desks) < threads or len(self._desks[0]) < size:
-            self._desks.insert(0, ShotBuffers(size))
-        starts = iter(range(0, n, max(1, size)))
-
-        def play(buffers):
-            for start in starts:  # a range's iterator gives each start once, whichever thread asks
-                task(which[start : start + size], buffers)
-
-        if threads == 1:
-            play(self._desks[0])
-            return
-        if self._pool is None or self._pool_process != os.getpid():  # a forked process has none of its parent's threads
-            self._pool, self._pool_process = ThreadPoolExecutor(self.threads - 1, "snooker"), os.getpid()
-        others = [self._pool.submit(play, desk) for desk in self._desks[1:threads]]
-        try:
-            play(self._desks[0])
-        finally:
-            for other in others:
-                other.exception()  # wait for all of them, whatever happened
-        for other in others:
-            other.result()
-
-    def shutdown(self):
-        """End the threads."""
-        if self._pool is not None and self._pool_process == os.getpid():
-            self._pool.shutdown()
-        self._pool = None
-
-    def __getstate__(self):
-        return self.__dict__ | {"_pool": None, "_desks": [], "generators": ()}  # threads belong to one process
 
 
 class SnookerVectorEnv(VectorEnv):

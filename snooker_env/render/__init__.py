@@ -1,1 +1,8 @@
-"""How does a table look? ``scene`` says what to draw, in metres; ``pygame_view`` draws it as a picture, ``ascii_view`` as text."""
+"""How a table looks. ``scene`` says what to draw, in metres; ``pygame_view`` draws it as a picture, ``ascii_view`` as text.
+
+``__all__`` is public: what somebody needs who draws tables with a library of his own.
+"""
+
+from .scene import BAULK_LINE, COLOURS, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, outline
+
+__all__ = ["BAULK_LINE", "COLOURS", "CUSHION", "D_ARC", "RAIL", "SPOT_MARKS", "Outline", "outline"]

@@ -1,1 +1,15 @@
-"""What is played? Strokes of visits and frames on one table or many: actions, errors of execution, rules, observations and rewards."""
+"""What is played: strokes of visits and frames on one table or many. ``__all__`` is public: what actions, errors and observations mean."""
+
+from .box_actions import MAX_SPEED, MIN_SPEED
+from .discrete_actions import POTS, SIDES, SPEEDS, STROKES, TOPS, choice_of
+from .discrete_actions import SIZE as CHOICES
+from .noise import LEVELS, Noise
+from .observations import OBSERVATIONS, STATE_ENTRIES
+from .observations import SIZE as OBSERVATION_SIZE
+from .observations import shaped as shaped_observations
+from .observations import space as observation_space
+
+__all__ = [
+    "CHOICES", "LEVELS", "MAX_SPEED", "MIN_SPEED", "OBSERVATIONS", "OBSERVATION_SIZE", "POTS", "SIDES", "SPEEDS", "STATE_ENTRIES",
+    "STROKES", "TOPS", "Noise", "choice_of", "observation_space", "shaped_observations",
+]  # fmt: skip

@@ -13,7 +13,6 @@ from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode
 
 import snooker_env as sn
-from snooker_env.envs import vector
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.tasks import stroke
@@ -102,7 +101,7 @@ def test_numbers_of_tables_and_threads_do_not_matter(monkeypatch):
     """Table k of few is table k of many, whatever the chunks."""
     runs = []
     for n, threads, chunk in [(9, 1, 128), (9, 1, 2), (300, 1, 128), (300, 3, 7), (300, 8, 64)]:
-        monkeypatch.setattr(vector, "CHUNK", chunk)
+        monkeypatch.setattr("snooker_env.tasks.threads.CHUNK", chunk)
         env = native(n, threads=threads, noise="club", aim="target", autoreset_mode=AutoresetMode.SAME_STEP)
         out = [env.reset(seed=5)[0][:9]]
         for step in range(10):

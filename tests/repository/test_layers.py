@@ -27,18 +27,20 @@ ALLOWED = {
     "_registration": set(),
     "_autoregister": set(),
     "_check": set(),
+    "checks": {"_check", "physics"},
+    "kernels": {"_jit", "game", "tasks"},
     "geometry": {"_check"},
     "physics": BASE,
     "simulation": BASE | {"physics"},
     "game": BASE,
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
-    "envs": BASE | {"physics", "simulation", "game", "tasks", "render"},
+    "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
     "render": {"_check", "geometry", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"envs"},
-    "_warmup": {"_jit", "_notices", "simulation", "game", "tasks", "envs"},
-    "__init__": {"geometry", "physics", "simulation", "envs", "match", "_warmup", "_registration"},
+    "_warmup": {"_jit", "_notices", "simulation", "game", "tasks", "planning", "envs"},
+    "__init__": {"geometry", "physics", "simulation", "planning", "envs", "match", "_warmup", "_registration"},
 }
 OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
@@ -46,8 +48,8 @@ OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools", "hashlib",
-    "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "time", "types",
-    "typing", "warnings", "zipfile", "zlib",
+    "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap", "threading", "time",
+    "types", "typing", "warnings", "zipfile", "zlib",
 }  # fmt: skip
 
 
@@ -111,10 +113,13 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
             assert not top, f"{name} imports {library} when it is imported, not when it is wanted"
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if part_of(n) in ("envs", "_warmup")])
-def test_pictures_and_environments_are_loaded_only_when_asked(name):
-    late = ".render" if part_of(name) == "envs" else ".envs"
-    assert not [t for t, top in imports(name) if top and t.startswith(late)]
+LATE = {"envs": (".render", ".planning"), "_warmup": (".planning", ".envs")}
+"""What these parts import only when it is asked for."""
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if part_of(n) in LATE])
+def test_pictures_planning_and_environments_are_loaded_only_when_asked(name):
+    assert not [t for t, top in imports(name) if top and t.startswith(LATE[part_of(name)])]
 
 
 def test_no_two_files_of_the_package_import_each_other():

@@ -20,7 +20,7 @@ class Watched:
 
     def act(self, tables, observations, going):
         if self.start is None:
-            self.start = tables.visits.positions.copy(), tables.visits.on_table.copy()
+            self.start = tables.tables.positions.copy(), tables.tables.on_table.copy()
         return self.player.act(tables, observations, going)
 
 
@@ -83,7 +83,7 @@ def test_the_cue_balls_place_is_kept_unless_it_was_potted(monkeypatch):
     class Kept(SnookerVectorEnv):
         def step(self, actions):
             found = super().step(actions)
-            after.append((self.visits.positions[:, 0].copy(), self.visits.on_table[:, 0].copy()))
+            after.append((self.tables.positions[:, 0].copy(), self.tables.on_table[:, 0].copy()))
             return found
 
     monkeypatch.setattr(rollouts, "SnookerVectorEnv", Kept)
@@ -103,7 +103,7 @@ def test_an_agent_is_played_under_its_condition(change):
     """Stroke by stroke as ``rollouts.play`` plays it there; and what is changed changes the play."""
     condition, seeds = USUAL | change, list(range(change.get("seeds", 3), 33))[:20]
     condition.pop("seeds", None)
-    found = protocol.play_agent(protocol.Agent("a", ("ghost_ball",)), condition, seeds, 100, 100)
+    found = protocol.play_agent(protocol.Entrant("a", ("ghost_ball",)), condition, seeds, 100, 100)
     wanted = rollouts.play(GhostBall(), 20, first_seed=seeds, **condition)
     usual = rollouts.play(GhostBall(), 20, first_seed=list(range(3, 23)), **USUAL)
     (strokes,) = found.strokes
@@ -136,7 +136,7 @@ def test_no_table_comes_twice_or_mirrored():
     assert seeds == sorted(set(seeds)) and seeds[0] == rollouts.HELD_OUT_SEED
     tables = SnookerVectorEnv(300, layout="held_out")
     tables.reset(seed=seeds)
-    reds = np.sort(np.abs(tables.visits.positions[:, 1:16, 0]), axis=1)
+    reds = np.sort(np.abs(tables.tables.positions[:, 1:16, 0]), axis=1)
     apart = np.abs(reds[:, None] - reds[None]).max(axis=2) + np.eye(300)
     assert apart.min() > 1e-6
     with pytest.raises(ValueError, match=f"visits = {HELD_OUT + 1}: must be at most {HELD_OUT} "):

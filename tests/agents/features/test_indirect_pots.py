@@ -10,7 +10,7 @@ from agents.evaluation.rollouts import play
 from agents.features import indirect_pots as ind
 from agents.features.indirect_pots import AIM_X, AIM_Y, BALL, BANK, CANNON, GHOST_X, GHOST_Y, KIND, OTHER, PLANT, POCKET, TOLERANCE
 from agents.players.aim_search import Aimer, widest_run
-from agents.players.built_in import player_of
+from agents.players.by_name import player_of
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, GREEN, N_BALLS, PINK, YELLOW, BallOn, mask_of
 from snooker_env.game.pots import pots
@@ -18,6 +18,7 @@ from snooker_env.geometry import BALL_RADIUS, HALF_WIDTH, POCKET_AIMS
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.parameters import Physics
 from snooker_env.physics.table import Table
+from snooker_env.planning import Positions
 from snooker_env.tasks.box_actions import line
 
 R = BALL_RADIUS
@@ -49,17 +50,18 @@ def one(shots, **wanted):
 
 @pytest.fixture(scope="module")
 def aimer():
-    return Aimer(SnookerVectorEnv(1, aim="absolute").visits.rules, 2.3)
+    return Aimer(SnookerVectorEnv(1, aim="absolute"), 2.3)
 
 
-def game_of(ball_on):
-    """The game's state of a table that is being played."""
-    return np.array([int(ball_on), 0, 0, 0, 0])
+def batch(*several, ball_on=BallOn.RED):
+    """Positions that are being played, of balls {id: (x, y)} each."""
+    positions, on_table = zip(*map(table, several), strict=True)
+    return Positions(np.stack(positions), np.stack(on_table), np.array([[int(ball_on), 0, 0, 0, 0]] * len(several)))
 
 
 def tried(aimer, places, shot, ball_on=BallOn.RED):
     """``Aimer.widest`` of this shot alone."""
-    return aimer.widest(*table(places), game_of(ball_on), shot[None])
+    return aimer.widest(batch(places, ball_on=ball_on), shot[None])
 
 
 def simulated(places, action, turn=0.0):
@@ -269,7 +271,7 @@ def no_direct(n, wanted=lambda shots: True):
     tables = []
     env = SnookerVectorEnv(4000, layout="random:4", aim="absolute")
     env.reset(seed=7000)
-    for p, on in zip(env.visits.positions, env.visits.on_table, strict=True):
+    for p, on in zip(env.tables.positions, env.tables.on_table, strict=True):
         if len(tables) < n and not len(pots(p, on, mask_of(range(1, 5)), most=1)):
             places = {int(i): tuple(p[i]) for i in np.flatnonzero(on)}
             if wanted(found(places)):
@@ -298,11 +300,7 @@ def test_mirrored_tables_offer_the_mirrored_shots():
 
 def test_mirrored_tables_are_played_with_mirrored_aims(aimer):
     tables = [*no_direct(6, len), BANKED, PLANTED]
-    games = np.stack([game_of(BallOn.RED)] * len(tables))
-    here, there = (
-        aimer.actions(np.stack([table(t)[0] for t in side]), np.stack([table(t)[1] for t in side]), games)
-        for side in (tables, [mirrored(t) for t in tables])
-    )
+    here, there = (aimer.actions(batch(*side)) for side in (tables, [mirrored(t) for t in tables]))
     assert here[:, :3] == pytest.approx(there[:, :3], abs=1e-6)
     aside = 1.0 - here[:, 3] - there[:, 3]
     assert aside - 2.0 * np.round(aside / 2.0) == pytest.approx(np.zeros(len(tables)), abs=2e-4)
@@ -316,7 +314,7 @@ def test_where_the_plain_line_pots_it_is_played():
         observations, _ = env.reset(seed=3)
         going = np.ones(60, bool)
         *_, info = env.step(player_of(name).act(env, observations, going))
-        after.append((info["points"], env.visits.positions))
+        after.append((info["points"], env.tables.positions))
     (points, places), (own_points, own_places) = after
     made = points > 0
     assert 30 < made.sum() < 60
@@ -328,9 +326,8 @@ def test_where_the_plain_line_pots_it_is_played():
 
 def test_the_nearest_ball_on_is_struck_where_nothing_goes_in(aimer):
     tables = no_direct(8, lambda shots: len(shots) == 0)
-    positions, on_table = (np.stack([table(t)[k] for t in tables]) for k in (0, 1))
-    actions = aimer.actions(positions, on_table, np.stack([game_of(BallOn.RED)] * len(tables)))
-    for p, on, action in zip(positions, on_table, actions, strict=True):
+    at = batch(*tables)
+    for p, on, action in zip(at.positions, at.on_table, aimer.actions(at), strict=True):
         off = pi * float(action[3]) - line(p, on, mask_of(range(1, 5)))
         assert abs(sin(off)) < 1e-6 and cos(off) > 0.0
 
@@ -354,7 +351,7 @@ def test_the_widest_of_several_is_taken(aimer):
     places = {**PLANTED, **{3: (-0.5, 0.9), GREEN: (-0.3, -1.0), YELLOW: (0.3, -1.0)}}
     shots = found(places, most=3)
     each = [tried(aimer, places, shot) for shot in shots]
-    action, half, which, _ = aimer.widest(*table(places), game_of(BallOn.RED), shots)
+    action, half, which, _ = aimer.widest(batch(places), shots)
     widths = [hit[1] if hit else 0.0 for hit in each]
     assert half == max(widths) and which == int(np.argmax(widths)) and (action == each[which][0]).all()
 

@@ -4,16 +4,17 @@ from math import hypot, log10
 
 import numpy as np
 import pytest
-from positions import position, tables
+from positions import tables
 
 from agents.features import pot_features
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, BallOn, mask_of
 from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from snooker_env.planning import Positions
 from snooker_env.tasks.box_actions import line
 from snooker_env.tasks.discrete_actions import POTS
-from snooker_env.tasks.observations import SIZE, observe
+from snooker_env.tasks.observations import SIZE
 from snooker_env.tasks.visit import BALL_ON
 
 VALUES = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
@@ -38,7 +39,7 @@ def test_every_pot_is_shown_entry_by_entry(ball_on):
     env = tables(30, layout="random:5", seed=1)
     states = [state | {"ball_on": int(ball_on)} for state in env.get_state()]
     observations, _ = env.reset(options={"states": states})
-    at, pockets = position(env), set()
+    at, pockets = Positions.of(env), set()
     assert (at.game[:, BALL_ON] == int(ball_on)).all()
     shown, balls = pot_features.with_pots(observations), range(1, 16) if ball_on == BallOn.RED else range(16, BLACK + 1)
     assert np.array_equal(shown[:, :SIZE], observations) and shown.shape == (30, pot_features.SHOWN)
@@ -61,7 +62,7 @@ def test_pot_view_shows_the_line_that_the_aim_is_read_against():
     for seed in range(20):
         observation = pot_features.with_pots(table.reset(seed=seed)[0][None])[0]
         rows = observation[SIZE:].reshape(-1, pot_features.POT_ENTRIES)
-        assert np.array_equal(observation[:SIZE], observe("flat", table.positions, table.on_table, table.ball_on, table.on, 0, 0))
+        assert np.array_equal(observation[:SIZE], Positions.of(table).observations()[0])
         direction = line(table.positions, table.on_table, table.on)
         assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=5e-6)
         shown = rows[rows[:, 0] == 1]

@@ -19,9 +19,10 @@ from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import N_BALLS, mask_of
 from snooker_env.game.pots import pots
 from snooker_env.geometry import POCKET_AIMS
+from snooker_env.planning import Positions
 from snooker_env.tasks.box_actions import line
 from snooker_env.tasks.discrete_actions import POTS
-from snooker_env.tasks.observations import SIZE, observe
+from snooker_env.tasks.observations import SIZE
 
 R = 0.02625
 
@@ -36,16 +37,20 @@ def tables(layout, n):
 
 def seen(envs):
     """What a policy sees of them, a tensor."""
-    rows: Any = [observe("flat", env.positions, env.on_table, env.ball_on, env.on, 0, 0) for env in envs]
-    return torch.as_tensor(pot_features.with_pots(np.stack(rows)))
+    return torch.as_tensor(pot_features.with_pots(np.concatenate([Positions.of(env).observations() for env in envs])))
 
 
 def one_red(cue, red):
     """What a policy sees of a table that holds just these."""
     positions, on_table = np.zeros((N_BALLS, 2)), np.arange(N_BALLS) < 2
     positions[0], positions[1] = cue, red
-    row: Any = observe("flat", positions, on_table, 1, mask_of([1]), 0, 0)
-    return torch.as_tensor(pot_features.with_pots(row[None]))
+    return shown(positions, on_table)
+
+
+def shown(positions, on_table):
+    """What a policy sees of a table with a red on."""
+    at = Positions(positions[None], on_table[None], [[1, 0, 0, 0, 0]])
+    return torch.as_tensor(pot_features.with_pots(at.observations()))
 
 
 @pytest.fixture(scope="module")
@@ -183,7 +188,7 @@ def test_aims_follow_the_lines_of_the_environment(model):
             assert np.exp(1j * aims[: len(found)]) == pytest.approx((ghosts[:, 0] + 1j * ghosts[:, 1]) / np.hypot(*ghosts.T), abs=2e-6)
             dist.log_weights = torch.arange(POTS, 0, -1.0)[None]  # the widest pot
             action = dist.mode()[0].clamp(-1.0, 1.0).tolist()
-            actions = env.visits.rules.shooter.actions
+            actions = env.tables.rules.actions
             shot = actions.shot([*action[:1], 0.0, *action[2:]], env.positions, env.on_table, env.on)  # without squirt
             left = shot[3] - line(env.positions, env.on_table, env.on)
             assert abs(sin(left)) < 1e-6 and cos(left) > 0.0
@@ -285,8 +290,7 @@ def test_the_nearest_ball_that_is_on_is_meant(model):
         far = np.hypot(*(positions - positions[0]).T)
         if not far[19] < far[2] < far[1] or len(pots(positions, on_table, mask_of([1, 2]))):
             continue
-        row: Any = observe("flat", positions, on_table, 1, mask_of([1, 2]), 0, 0)
-        aim = density(model, torch.as_tensor(pot_features.with_pots(row[None]))).mode()[0, 3].item()
+        aim = density(model, shown(positions, on_table)).mode()[0, 3].item()
         off = pi * aim - line(positions, on_table, mask_of([1, 2]))
         assert abs(sin(off)) < 1e-5 and cos(off) > 0.0
         seen_ones += 1

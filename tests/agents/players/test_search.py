@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
-from positions import position, tables
+from positions import tables
 
 from agents.evaluation.rollouts import play, summary
-from agents.features import lookahead, pot_features
-from agents.players.built_in import DISCRETE, GhostBall, Random, player_of
+from agents.features import pot_features, prospects
+from agents.players.built_in import DISCRETE, GhostBall, Random
+from agents.players.by_name import player_of
 from agents.players.search import Search, _Mind
+from snooker_env.planning import Positions, action_masks
 from snooker_env.tasks.discrete_actions import STROKES
 from snooker_env.tasks.noise import Noise
 
@@ -66,7 +68,7 @@ def test_random_plays_only_what_is_there():
 def thought():
     """A table, and a mind that thinks about it with 2,000 shots."""
     env = tables(1, seed=5, noise="professional", aim="absolute")
-    return position(env), _Mind(Search(2000), env.visits.rules)
+    return Positions.of(env), _Mind(Search(2000), env)
 
 
 def test_the_second_shot_decides(thought, monkeypatch):
@@ -88,11 +90,11 @@ def test_the_second_shot_decides(thought, monkeypatch):
 def test_the_second_shot_one_by_one(thought):
     """Points, plus the share that goes on times the best of the next shots: its chance times points and value, each played by itself."""
     at, mind = thought
-    picks = np.flatnonzero(lookahead.choices_at(at)[0])[[17, 55, 102]]
-    played = np.repeat(lookahead.as_actions(at, np.zeros(3, np.int64), picks, mind.shooter), 5, 0)
+    picks = np.flatnonzero(action_masks(at)[0])[[17, 55, 102]]
+    played = np.repeat(mind.exact.as_actions(at, np.zeros(3, np.int64), picks), 5, 0)
     keys = np.tile(np.arange(5, dtype=np.uint64), 3)
     points, goes_on, left, _ = mind.noisy.play(at, np.zeros(15, np.int64), played, keys)
-    _, chances = lookahead.prospects_of(left, mind._spread)
+    _, chances = prospects.prospects_of(left, mind._spread)
     shares = goes_on.reshape(3, 5).mean(axis=1)
     assert ((shares > 0) & (shares < 1)).any()
     found = mind._second(np.zeros(3), (points.reshape(3, 5), goes_on.reshape(3, 5), left, chances), 10_000, np.random.default_rng(2))
@@ -101,9 +103,9 @@ def test_the_second_shot_one_by_one(thought):
     for row, strokes in zip(rows, mind._next_shots(chances[rows], np.random.default_rng(2)), strict=True):
         here = left[row : row + 1]
         for pick in strokes:
-            action = lookahead.as_actions(here, [0], [pick], mind.shooter)
+            action = mind.exact.as_actions(here, [0], [pick])
             made, further, then, _ = mind.exact.play(here, np.zeros(1, np.int64), action, np.zeros(1, np.uint64))
-            worth = made[0] + further[0] * lookahead.prospects_of(then, mind._spread)[0][0]
+            worth = made[0] + further[0] * prospects.prospects_of(then, mind._spread)[0][0]
             brought[row] = max(brought[row], chances[row, pick // STROKES] * worth)
     for k in range(3):
         on = goes_on.reshape(3, 5)[k]

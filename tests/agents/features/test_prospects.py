@@ -1,20 +1,18 @@
-"""Do copies of tables play what the tables play, and is a position worth what the docstrings say, recomputed in plain Python?"""
+"""Is a position worth what the docstrings say, recomputed in plain Python?"""
 
 from math import atan, exp, hypot, radians, sqrt
 
 import numpy as np
 import pytest
-from positions import position, tables
+from positions import tables
 from scipy.stats import norm
 
-from agents.features import lookahead
-from agents.features.lookahead import Copies
-from agents.players.built_in import DISCRETE
+from agents.features import prospects
 from snooker_env.game.balls import BLACK, CUE, PINK, BallOn, mask_of
 from snooker_env.game.pots import pots
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.parameters import Physics
-from snooker_env.tasks.discrete_actions import choice_of
+from snooker_env.planning import Positions
 from snooker_env.tasks.noise import Noise
 from snooker_env.tasks.visit import BALL_ON
 
@@ -22,43 +20,16 @@ VALUE = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 """Points of each ball."""
 
 
-def test_copies_play_what_the_tables_play():
-    env = tables(6, noise="club", **DISCRETE)
-    at, copies = position(env), Copies(env.visits.rules, env.visits.rules.shooter.noise)
-    picks = np.array([int(np.flatnonzero(m)[7]) for m in env.action_masks()])
-    assert (env.visits.streams[:, 1] != 0).any()  # the dealing drew from the streams: give the copies streams of their own and play those
-    env.visits.streams[:, 1] = 0
-    points, goes_on, left, seen = copies.play(at, np.arange(6), picks, env.visits.streams[:, 0])
-    observations, rewards, ended, _, _ = env.step(picks)
-    assert np.array_equal(rewards, points) and np.array_equal(~ended, goes_on) and np.array_equal(observations, seen)
-    assert np.array_equal(left.positions, env.visits.positions) and copies.shots == 6
-    assert not np.array_equal(at.positions, left.positions)  # the originals are as they were
-
-
-def test_choices_as_angles_are_the_same_shots():
-    """Said as a float32 angle, a choice's aim is rounded by 2e-7 rad: mostly the balls still stop within a millimetre."""
-    choices, angles = tables(40, layout="random:1", **DISCRETE), tables(40, layout="random:1", aim="absolute")
-    masks = choices.action_masks()
-    picks = np.where(masks[:, choice_of(0, 3, 2, 3)], choice_of(0, 3, 2, 3), 0)
-    actions = lookahead.as_actions(position(angles), np.arange(40), picks, angles.visits.rules.shooter)
-    assert np.abs(actions).max() <= 1.0
-    _, first, _, _, _ = choices.step(picks)
-    _, second, _, _, _ = angles.step(actions)
-    assert np.mean(first == second) > 0.95 and first.sum() > 10
-    apart = np.abs(choices.visits.positions[:, 0] - angles.visits.positions[:, 0]).max(axis=1)
-    assert np.median(apart) < 1e-3
-
-
 def test_prospects_prefer_easy_pots_and_more_to_come():
     env = tables(1, layout="random:2")
-    at = position(env)
+    at = Positions.of(env)
     at.on_table[0, 1:] = False
     at.on_table[0, [1, 2]] = True
     at.game[0, 0] = 1
     at.positions[0, :3] = (0.0, 0.0), (0.5, 0.8), (-0.7, -1.5)
 
     def value(p, spread):
-        values, chances = lookahead.prospects_of(p, spread)
+        values, chances = prospects.prospects_of(p, spread)
         return values[0], chances[0]
 
     easy, chances = value(at, 1e-3)
@@ -90,13 +61,13 @@ def by_hand(positions, on_table, ball_on, spread, follows, second, third, far):
 
 
 @pytest.mark.parametrize("ball_on", [BallOn.RED, BallOn.ANY_COLOUR])
-@pytest.mark.parametrize("constants", [lookahead.BY_HAND, lookahead.SURE, (8.0, 0.4, 0.3, 0.5)])
+@pytest.mark.parametrize("constants", [prospects.BY_HAND, prospects.SURE, (8.0, 0.4, 0.3, 0.5)])
 def test_prospects_recomputed(ball_on, constants):
     env = tables(30, layout="random:3", seed=2)
-    at = position(env)
+    at = Positions.of(env)
     at.game[:, BALL_ON] = int(ball_on)
     for spread in (5e-4, 6e-3):
-        values, chances = lookahead.prospects_of(at, spread, constants, most=6)
+        values, chances = prospects.prospects_of(at, spread, constants, most=6)
         for k in range(30):
             value, all_of = by_hand(at.positions[k], at.on_table[k], ball_on, spread, *constants)
             assert values[k] == pytest.approx(value, rel=1e-9)
@@ -106,17 +77,17 @@ def test_prospects_recomputed(ball_on, constants):
 
 def test_what_is_left_of_a_last_black():
     """Nothing follows: the pots are worth their chance times 7."""
-    at = position(tables(1))
+    at = Positions.of(tables(1))
     at.on_table[0, 1:] = False
     at.on_table[0, BLACK] = True
     at.positions[0, CUE], at.positions[0, BLACK] = (0.0, 0.8), (0.4, 1.3)
     at.game[0, BALL_ON] = int(BallOn.BLACK)
-    (value,), (chances,) = lookahead.prospects_of(at, 2e-3)
+    (value,), (chances,) = prospects.prospects_of(at, 2e-3)
     best = 7.0 * np.sort(chances)[::-1]
     assert value == pytest.approx(best[0] + 0.15 * best[1] + 0.05 * best[2]) and value > 1.0
     at.on_table[0, PINK] = True  # but is not on: it follows
     at.positions[0, PINK] = (-0.6, -1.0)
-    assert lookahead.prospects_of(at, 2e-3)[0][0] == pytest.approx(value * (7 + 25 * (1 - exp(-6 / 25))) / 7)
+    assert prospects.prospects_of(at, 2e-3)[0][0] == pytest.approx(value * (7 + 25 * (1 - exp(-6 / 25))) / 7)
 
 
 @pytest.mark.parametrize("level", ["professional", "club", "olympiad"])
@@ -125,5 +96,11 @@ def test_spread_is_that_of_the_aim_and_of_the_squirt(level):
     noise, physics = Noise.of(level), Physics.of("paper")
     b = 1e-3 * noise.offset_mm / physics.R
     squirt = atan(2.5 * b * sqrt(1 - b * b) / (1 + physics.end_mass_ratio + 2.5 * (1 - b * b)))
-    assert lookahead.spread_of(noise, physics) == pytest.approx(hypot(radians(noise.aim_deg), squirt), rel=1e-3)
-    assert lookahead.spread_of(Noise(), physics) == 1e-5
+    assert prospects.spread_of(noise, physics) == pytest.approx(hypot(radians(noise.aim_deg), squirt), rel=1e-3)
+    assert prospects.spread_of(Noise(), physics) == 1e-5
+
+
+def test_any_number_of_threads_values_alike():
+    at = Positions.of(tables(300, layout="random:5"))
+    one, three = (prospects.prospects_of(at, 2e-3, most=6, threads=threads) for threads in (1, 3))
+    assert np.array_equal(one[0], three[0]) and np.array_equal(one[1], three[1]) and one[0].std() > 1.0

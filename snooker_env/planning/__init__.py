@@ -1,0 +1,27 @@
+"""Planning: many strokes played on copies of positions, by the rules, under given noise samples, and the geometry that finds strokes.
+
+A planner asks three questions. Which strokes are there (``pots``, ``action_masks``, ``obstructions``, ``clear_paths``)? What is each one
+as an action (``as_actions``, ``actions_of``, ``pot_aim``)? What does it lead to (``Planner.play``)? What is left is valued by the caller.
+
+>>> import snooker_env as sn
+>>> from snooker_env.planning import Planner, Position, pots
+>>> position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.8)], black=(0.0, 1.4605), on="red")
+>>> int(pots(position).ball[0, 0])
+1
+>>> planner = Planner({"action": "discrete", "noise": "club"})
+>>> points, goes_on, afterstates, observations = planner.play(position, rows=[0, 0], actions=[67, 67], keys=[1, 2])
+>>> len(afterstates), observations.shape
+(2, (2, 121))
+"""
+
+from ..tasks.threads import processors
+from .geometry import Paths, Pots, clear_paths, obstructions, pots
+from .planner import Outcomes, Planner
+from .position import Position
+from .positions import Positions
+from .strokes import action_masks, actions_of, as_actions, pot_aim
+
+__all__ = [
+    "Outcomes", "Paths", "Planner", "Position", "Positions", "Pots", "action_masks", "actions_of", "as_actions", "clear_paths",
+    "obstructions", "pot_aim", "pots", "processors",
+]  # fmt: skip

@@ -1,0 +1,208 @@
+"""How does one write down a position? ``Position``: the balls by name and what is on, checked; and the arrays that it stands for."""
+
+from dataclasses import InitVar, asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._check import array, integer, refuse, refuse_what, truth
+from ..game.balls import (
+    COLOUR_NAMES,
+    CUE,
+    N_BALLS,
+    N_REDS,
+    REDS_MASK,
+    SPOTS,
+    BallOn,
+    balls_on,
+    colour,
+    mask_of_present,
+    next_on,
+)
+from ..game.frame import MOST_BREAK
+from ..game.in_hand import place_cue, within_d
+from ..geometry import BALL_RADIUS
+from ..physics.table import Table
+
+ON = tuple(ball.name.lower() for ball in BallOn)
+"""What may be on, in words."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Position:
+    """The balls on a table in the middle of a visit, in words. It is checked when it is made, and never changes.
+
+    Parameters
+    ----------
+    cue : (float, float), optional
+        The cue ball's centre [m]: origin at the table's centre, +x to the yellow side, +y to the black end. May be left out with
+        ``in_hand``: then it lies at the free place of the D nearest to its usual place for the break.
+    reds : sequence of (float, float)
+        Up to 15 places [m]. They get the ids 1, 2, ... in this order.
+    yellow, green, brown, blue, pink, black : (float, float), optional
+        Places [m]. A ball that is left out is off the table.
+    on : str, optional
+        What must be struck first: "red", "any_colour" (a red was just potted), or a colour. Left out: red while there is one, else the
+        lowest colour.
+    in_hand : bool
+        Whether the cue ball may be placed in the D before the stroke.
+    points : int
+        Points of the visit so far.
+    over : bool
+        Whether the visit has ended: then anything may be on, and the cue ball may be missing.
+    table : str, Table or None
+        The table that the balls must fit on; it is not kept. None: unbounded cloth.
+
+    Raises
+    ------
+    ValueError
+        If a ball is off the table, in a cushion or over a pocket, if two balls overlap, or if what is on cannot be.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position
+    >>> Position(cue=(0.0, -0.6), reds=[(0.3, 0.5)], black=(0.0, 1.4605)).on
+    'red'
+    >>> Position(cue=(0.0, -0.6), black=(0.0, -0.62))
+    Traceback (most recent call last):
+    ...
+    ValueError: black = (0.0, -0.62): overlaps cue at (0.0, -0.6) by 0.0325 m, at most 1e-06 is allowed
+    """
+
+    cue: tuple[float, float] | None = None
+    reds: tuple[tuple[float, float], ...] = ()
+    yellow: tuple[float, float] | None = None
+    green: tuple[float, float] | None = None
+    brown: tuple[float, float] | None = None
+    blue: tuple[float, float] | None = None
+    pink: tuple[float, float] | None = None
+    black: tuple[float, float] | None = None
+    on: str | None = None
+    in_hand: bool = False
+    points: int = 0
+    over: bool = False
+    table: InitVar[str | Table | None] = "match"
+
+    def __post_init__(self, table: str | Table | None) -> None:
+        put: Any = lambda name, value: object.__setattr__(self, name, value)  # noqa: E731
+        put("in_hand", truth("in_hand", self.in_hand))
+        put("over", truth("over", self.over))
+        put("points", integer("points", self.points, 0, MOST_BREAK))
+        for name in ("cue", *COLOUR_NAMES):
+            if getattr(self, name) is not None:
+                put(name, tuple(array(name, getattr(self, name), (2,)).tolist()))
+        reds = array("reds", self.reds, (-1, 2)) if len(self.reds) else np.empty((0, 2))
+        if len(reds) > N_REDS:
+            raise refuse_what("reds", f"{len(reds)} places", f"must be at most {N_REDS}")
+        put("reds", tuple(map(tuple, reds.tolist())))
+        positions, on_table = self._layout()
+        if self.cue is None and self.in_hand and not self.over:
+            on_table[CUE] = True
+            positions[CUE] = place_cue(positions, on_table, *SPOTS[CUE].tolist())
+            put("cue", tuple(positions[CUE].tolist()))
+        _check_layout(positions, on_table, Table.of(table))
+        put("on", _named(self.on, mask_of_present(on_table)))
+        if not self.over:
+            check_playable(on_table, BallOn[str(self.on).upper()], on="on", cue="cue", balls="the balls given")
+            if self.in_hand and not within_d(*positions[CUE]):
+                raise refuse(
+                    "in_hand", True, f"must be False with the cue ball at ({positions[CUE, 0]:g}, {positions[CUE, 1]:g}), outside the D"
+                )
+
+    def _layout(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        positions, on_table = np.zeros((N_BALLS, 2)), np.zeros(N_BALLS, np.bool_)
+        places = {CUE: self.cue, **dict(enumerate(self.reds, 1)), **{colour(name): getattr(self, name) for name in COLOUR_NAMES}}
+        for ball, place in places.items():
+            if place is not None:
+                positions[ball], on_table[ball] = place, True
+        return positions, on_table
+
+    def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
+        """The position as ``Positions`` holds it.
+
+        Returns
+        -------
+        positions : float64 (22, 2)
+            Centres [m]; 0 for a ball off the table.
+        on_table : bool (22,)
+        game : int64 (5,)
+            What is on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit is over, strokes (0).
+        """
+        game = np.array([BallOn[str(self.on).upper()], self.in_hand, self.points, self.over, 0], np.int64)
+        return *self._layout(), game
+
+    @classmethod
+    def of_arrays(cls, positions: ArrayLike, on_table: ArrayLike, game: ArrayLike) -> "Position":
+        """The position in words that these arrays of one table stand for, see ``arrays``. Reds are numbered anew."""
+        places, there = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
+        ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
+        named = {name: tuple(places[i]) for name, i in {"cue": CUE, **{c: colour(c) for c in COLOUR_NAMES}}.items() if there[i]}
+        reds = tuple(tuple(places[i]) for i in range(1, N_REDS + 1) if there[i])
+        on = BallOn(ball_on).name.lower()
+        return cls(**named, reds=reds, on=on, in_hand=bool(in_hand), points=points, over=bool(over), table=None)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The position as JSON types, without the balls off the table; ``Position(**...)`` makes it again.
+
+        Returns
+        -------
+        dict
+        """
+        kept = asdict(self) | {"reds": [list(place) for place in self.reds]}
+        for name in ("cue", *COLOUR_NAMES):
+            kept[name] = kept[name] and list(kept[name])
+        return {name: value for name, value in kept.items() if value is not None}
+
+
+def _named(on: Any, balls: int) -> str:
+    """What is on, as a word of ``ON``."""
+    if on is None:
+        return BallOn(next_on(balls)).name.lower()
+    if isinstance(on, BallOn):
+        return on.name.lower()
+    word = on.strip().lower().replace(" ", "_") if isinstance(on, str) else on
+    if not isinstance(word, str) or word not in ON:
+        raise refuse("on", on, "must be one of " + ", ".join(map(repr, ON)))
+    return word
+
+
+def _name(ball: int) -> str:
+    """How ``Position`` calls a ball."""
+    return "cue" if ball == CUE else f"reds[{ball - 1}]" if ball <= N_REDS else COLOUR_NAMES[ball - N_REDS - 1]
+
+
+def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], table: Table) -> None:
+    """Raise ValueError, by the ball's name, unless the balls fit on the table."""
+    for ball in np.flatnonzero(on_table).tolist():
+        try:
+            table.check(positions[ball : ball + 1], BALL_RADIUS, _name(ball))
+        except ValueError as error:
+            raise ValueError(str(error).replace(f"{_name(ball)}[0] = ", f"{_name(ball)} = ", 1)) from None
+        others = np.flatnonzero(on_table[:ball])
+        apart = np.hypot(*(positions[others] - positions[ball]).T)
+        if len(others) and 2 * BALL_RADIUS - apart.min() > 1e-6:
+            other, place = int(others[apart.argmin()]), tuple(positions[ball].tolist())
+            at = tuple(positions[other].tolist())
+            raise refuse(
+                _name(ball), place, f"overlaps {_name(other)} at {at} by {2 * BALL_RADIUS - apart.min():.3g} m, at most 1e-06 is allowed"
+            )
+
+
+def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue: str, balls: str) -> None:
+    """Raise ValueError unless there is a stroke to play. ``on``, ``cue``, ``balls``: how the fields are called.
+
+    The rules are those of a saved state (``tasks.states.checked``).
+    """
+    there = mask_of_present(on_table)
+    if not there & 1:
+        raise refuse(cue, None, "must be on the table while the visit goes on")
+    if not balls_on(ball_on, there):
+        raise refuse(on, ball_on.name.lower(), f"must name balls of which one is on the table ({balls})")
+    if ball_on > BallOn.RED and there & REDS_MASK:
+        raise refuse(on, ball_on.name.lower(), f"must be 'red' or 'any_colour' while reds are on the table ({balls})")
+    lowest = next_on(there)
+    if ball_on not in (BallOn.ANY_COLOUR, lowest):
+        raise refuse(
+            on, ball_on.name.lower(), f"must be 'any_colour' or {BallOn(lowest).name.lower()!r}, the lowest on the table ({balls})"
+        )

@@ -1,0 +1,257 @@
+"""What is a stroke as an action? Choices of ``action="discrete"`` and plain aims as rows of the box action space, and the aim solver.
+
+Every row has the four numbers of ``aim="absolute"`` without elevation or placement: cue speed, side, top, direction.
+"""
+
+from math import pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._check import array, integer, number, refuse, refuse_what
+from .._jit import entry
+from ..game.balls import N_BALLS, balls_on_kernel, bits
+from ..game.frame_columns import BALL_ON
+from ..game.pots import POT_COLUMNS
+from ..geometry import BALL_RADIUS
+from ..physics.cloth import COLUMNS
+from ..physics.cue import MAX_ELEVATION, squirt
+from ..physics.impact.contact import parse_fidelity
+from ..physics.impact.polynomial import WORK
+from ..physics.parameters import Physics
+from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
+from ..tasks.discrete_actions import POTS, SIZE, chosen, masks
+from ..tasks.pot_aim import solved_aim
+from .positions import Positions, rows_of
+
+World = tuple[Physics, tuple[int, int]]
+"""Physics, and a fidelity as ``parse_fidelity`` gives it."""
+
+
+def world_of(physics: Any, fidelity: str) -> World:
+    """What users say of a world, checked."""
+    return Physics.of(physics), parse_fidelity(fidelity)
+
+
+def action_masks(positions: Any) -> NDArray[np.bool_]:
+    """Which choices of ``action="discrete"`` there are.
+
+    Parameters
+    ----------
+    positions : whatever ``Positions.of`` takes
+
+    Returns
+    -------
+    bool (m, 540)
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, action_masks
+    >>> int(action_masks(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))).sum())
+    270
+    """
+    at = Positions.of(positions)
+    out = np.empty((len(at), SIZE), np.bool_)
+    masks(np.arange(len(at)), at.positions, at.on_table, at.game, out)
+    return out
+
+
+def actions_of(speeds: ArrayLike, aims: ArrayLike, side: ArrayLike = 0.0, top: ArrayLike = 0.0) -> NDArray[np.float32]:
+    """Actions of ``aim="absolute"``.
+
+    Parameters
+    ----------
+    speeds : array_like, float (n,)
+        Cue speeds [m/s], 0.2 to 7.
+    aims : array_like, float (n,)
+        Directions in which the cue ball leaves [rad], anticlockwise from +x.
+    side, top : array_like, float, scalar or (n,)
+        Tip offsets over R, + right and + up, within the disc of radius 0.5.
+
+    Returns
+    -------
+    float32 (n, 4)
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite or out of range.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import actions_of
+    >>> actions_of([3.6], [0.0], top=0.25).tolist()
+    [[0.0, 0.0, 0.5, 0.0]]
+    """
+    fast, turns = array("speeds", speeds, (-1,)), array("aims", aims, (-1,)) / pi
+    if len(fast) and not (fast.min() >= MIN_SPEED and fast.max() <= MAX_SPEED):
+        number("speeds", float(fast.min() if fast.min() < MIN_SPEED else fast.max()), MIN_SPEED, MAX_SPEED)
+    actions = np.zeros((len(turns), 4), np.float32)
+    actions[:, 0] = 2.0 * (fast - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0
+    actions[:, 1], actions[:, 2] = 2.0 * np.asarray(side, np.float64), 2.0 * np.asarray(top, np.float64)
+    actions[:, 3] = turns - 2.0 * np.round(turns / 2.0)
+    if not (np.abs(actions) <= 1.0).all():
+        raise refuse("side, top", float(0.5 * np.abs(actions[:, 1:3]).max()), "must be finite and within 0.5")
+    return actions
+
+
+@entry(what="the choices as actions", uses=(chosen,))
+def _as_actions(positions, on_table, game, rows, picks, phys, end_mass_ratio, fidelity, n_steps, out):
+    found, motion, phase, work = np.empty((POTS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    for i in range(len(rows)):
+        k = rows[i]
+        on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
+        speed, side, top, aim, _ = chosen(
+            picks[i], positions[k], on_table[k], on, phys, end_mass_ratio, fidelity, n_steps, found, motion, phase, work
+        )
+        out[i, 0] = 2.0 * (speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0
+        out[i, 1], out[i, 2] = 2.0 * side, 2.0 * top
+        turned = (aim + squirt(side, end_mass_ratio)) / pi
+        out[i, 3] = turned - 2.0 * round(0.5 * turned)
+
+
+def as_actions(
+    positions: Any, rows: ArrayLike, choices: ArrayLike, *, physics: Any = None, fidelity: str = "standard"
+) -> NDArray[np.float32]:
+    """Choices of ``action="discrete"`` as actions of ``aim="absolute"``: the same strokes, to the rounding of float32.
+
+    Parameters
+    ----------
+    positions : whatever ``Positions.of`` takes
+    rows : array_like, int (n,)
+        On which position each choice is made.
+    choices : array_like, int (n,)
+        In [0, 540).
+    physics : None, str, dict or Physics
+        The world in which the aims are solved, "paper" if it is None.
+    fidelity : str
+
+    Returns
+    -------
+    float32 (n, 4)
+
+    Raises
+    ------
+    ValueError
+        If a row or a choice is out of range.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, as_actions
+    >>> as_actions(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), [0], [67]).shape
+    (1, 4)
+    """
+    return solved_choices(Positions.of(positions), rows, choices, world_of(physics, fidelity))
+
+
+def solved_choices(at: Positions, rows: ArrayLike, choices: ArrayLike, world: World) -> NDArray[np.float32]:
+    """``as_actions`` in a world that was checked."""
+    which = rows_of(at, rows)
+    picks = _integers("choices", choices, len(which), 0, SIZE - 1)
+    out = np.empty((len(which), 4), np.float32)
+    physics, (code, n_steps) = world
+    _as_actions(at.positions, at.on_table, at.game, which, picks, physics.pack(), physics.end_mass_ratio, code, n_steps, out)
+    return out
+
+
+@entry(what="the solving of aims", uses=(solved_aim,))
+def _pot_aim(positions, rows, balls, targets, ghosts, strokes, phys, end_mass_ratio, fidelity, n_steps, aims):
+    motion, state, work = np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    for i in range(len(rows)):
+        p, (speed, side, top, elevation) = positions[rows[i]], (strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3])
+        aims[i] = solved_aim(
+            p, balls[i], targets[i, 0], targets[i, 1], ghosts[i, 0], ghosts[i, 1], speed, side, top, elevation, phys, end_mass_ratio,
+            fidelity, n_steps, motion, state, work,
+        )  # fmt: skip
+
+
+def pot_aim(
+    positions: Any, rows: ArrayLike, balls: ArrayLike, targets: ArrayLike, speeds: ArrayLike, *, side: ArrayLike = 0.0,
+    top: ArrayLike = 0.0, elevation: ArrayLike = 0.0, ghosts: ArrayLike | None = None, physics: Any = None, fidelity: str = "standard",
+) -> NDArray[np.float64]:  # fmt: skip
+    """In which direction the cue ball must leave to send a ball to a point: throw, swerve and the ball's own curve included.
+
+    The cue ball and that ball alone are played on unbounded cloth until the ball rolls, and the direction is corrected in secant steps
+    until the ball passes the point by less than 1e-6 rad (``snooker_env.tasks.pot_aim``). Where no direction does (a stroke too soft to
+    arrive, a cut too thin) the best one tried is returned.
+
+    Parameters
+    ----------
+    positions : whatever ``Positions.of`` takes
+    rows : array_like, int (n,)
+        On which position each ball lies.
+    balls : array_like, int (n,)
+        The ball to send, by id, 1 to 21.
+    targets : array_like, float (n, 2)
+        Where to send it [m]; the aim points of pockets are ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
+    speeds : array_like, float, scalar or (n,)
+        Cue speeds [m/s], above 0.
+    side, top, elevation : array_like, float, scalar or (n,)
+        Tip offsets over R and elevation of the cue [rad].
+    ghosts : array_like, float (n, 2), optional
+        Where the straight line has the cue ball meet the ball [m]; left out: 2 R behind it as seen from the target.
+    physics : None, str, dict or Physics
+        "paper" if it is None.
+    fidelity : str
+
+    Returns
+    -------
+    float64 (n,)
+        Directions [rad], anticlockwise from +x, as ``actions_of`` takes them.
+
+    Raises
+    ------
+    ValueError
+        If a row or ball is out of range, a ball is off the table, or an array has another shape.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, pot_aim
+    >>> position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)])
+    >>> float(pot_aim(position, [0], [1], [(0.8, 0.8)], 2.3)[0].round(3))
+    0.785
+    """
+    at = Positions.of(positions)
+    return solved_aims(
+        at, rows, balls, targets, speeds, side, top, elevation, ghosts, world_of(physics, fidelity)
+    )  # fmt: skip
+
+
+def solved_aims(
+    at: Positions, rows: ArrayLike, balls: ArrayLike, targets: ArrayLike, speeds: ArrayLike, side: ArrayLike, top: ArrayLike,
+    elevation: ArrayLike, ghosts: ArrayLike | None, world: World,
+) -> NDArray[np.float64]:  # fmt: skip
+    """``pot_aim`` in a world that was checked."""
+    which = rows_of(at, rows)
+    n, (physics, (code, n_steps)) = len(which), world
+    ids, to = _integers("balls", balls, n, 1, N_BALLS - 1), array("targets", targets, (n, 2))
+    there = at.on_table[which, ids] & at.on_table[which, 0]
+    if not there.all():
+        raise refuse(f"balls[{int(np.argmin(there))}]", int(ids[np.argmin(there)]), "must be on the table, and the cue ball too")
+    if ghosts is None:
+        lie = at.positions[which, ids]
+        along = to - lie
+        behind = lie - 2.0 * BALL_RADIUS * along / np.maximum(np.hypot(*along.T), 1e-9)[:, None]
+    else:
+        behind = array("ghosts", ghosts, (n, 2))
+    strokes = np.empty((n, 4))
+    high = (np.inf, physics.max_offset, physics.max_offset, MAX_ELEVATION)
+    for c, (name, value) in enumerate({"speeds": speeds, "side": side, "top": top, "elevation": elevation}.items()):
+        strokes[:, c] = array(name, value, (n,) if np.ndim(value) else ())
+        low = -high[c] if name in ("side", "top") else 0.0
+        if n and not (low <= strokes[:, c].min() and strokes[:, c].max() <= high[c]):
+            number(name, float(strokes[:, c].min() if strokes[:, c].min() < low else strokes[:, c].max()), low, high[c])
+    out = np.empty(n)
+    _pot_aim(at.positions, which, ids, to, behind, strokes, physics.pack(), physics.end_mass_ratio, code, n_steps, out)
+    return out
+
+
+def _integers(field: str, values: ArrayLike, n: int, low: int, high: int) -> NDArray[np.int64]:
+    """An int64 array (n,), each number in [low, high]."""
+    a = np.asarray(values)
+    if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
+        raise refuse_what(field, f"{a.dtype} array of shape {a.shape}", f"must be integers of shape ({n},)")
+    for k in np.flatnonzero((a < low) | (a > high))[:1].tolist():
+        integer(f"{field}[{k}]", int(a[k]), low, high)
+    return np.ascontiguousarray(a, np.int64)

@@ -1,0 +1,82 @@
+"""How are many tables shared out among threads? In chunks, each thread with work space of its own; whoever asks, the same comes out."""
+
+import os
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+from .stroke import ShotBuffers
+from .tables import Crew
+
+CHUNK = 128
+"""Most tables played in one go: few enough for a work space that stays in the cache, enough to make the calls from Python cheap."""
+LEAST = 8
+"""Fewest tables that are worth a thread or a chunk of their own."""
+
+
+def processors() -> int:
+    """How many processors this process may use: fewer than the machine has, where a scheduler or a container says so.
+
+    Returns
+    -------
+    int
+    """
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class Threads(Crew):
+    """The crew of many tables: chunks of them, shared out among threads. It may be asked from several threads at once."""
+
+    def __init__(self, threads):
+        super().__init__()
+        self.threads = threads
+        self._pool, self._pool_process, self._desks = None, 0, []
+        self._lock = threading.Lock()
+
+    def __call__(self, which, task):
+        """Share the tables out, a chunk at a time."""
+        n = len(which)
+        threads = max(1, min(self.threads, n // LEAST))
+        even = n if threads == 1 else max(LEAST, -(-n // (4 * threads)))  # shots differ in length
+        size = min(CHUNK, even)
+        starts = iter(range(0, n, max(1, size)))
+
+        def play():
+            desk = self._desk(size)
+            for start in starts:  # a range's iterator gives each start once, whichever thread asks
+                task(which[start : start + size], desk)
+            self._desks.append(desk)
+
+        if threads == 1:
+            play()
+            return
+        with self._lock:
+            if self._pool is None or self._pool_process != os.getpid():  # a forked process has none of its parent's threads
+                self._pool, self._pool_process = ThreadPoolExecutor(self.threads - 1, "snooker"), os.getpid()
+            others = [self._pool.submit(play) for _ in range(threads - 1)]
+        try:
+            play()
+        finally:
+            for other in others:
+                other.exception()  # wait for all of them, whatever happened
+        for other in others:
+            other.result()
+
+    def _desk(self, size):
+        """Work space for so many shots that nobody else uses."""
+        try:
+            desk = self._desks.pop()
+        except IndexError:
+            return ShotBuffers(size)
+        return desk if len(desk) >= size else ShotBuffers(size)
+
+    def shutdown(self):
+        """End the threads."""
+        if self._pool is not None and self._pool_process == os.getpid():
+            self._pool.shutdown()
+        self._pool = None
+
+    def __getstate__(self):
+        return {k: v for k, v in self.__dict__.items() if k != "_lock"} | {"_pool": None, "_desks": [], "generators": ()}
+
+    def __setstate__(self, state):
+        self.__dict__.update(state, _lock=threading.Lock())  # threads and locks belong to one process

@@ -1,0 +1,225 @@
+"""Does a planned stroke lead where the environment's stroke leads, bit for bit, and is whatever makes no sense refused by name?"""
+
+import pickle
+from concurrent.futures import ThreadPoolExecutor
+
+import gymnasium
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.planning import Planner, Position, Positions
+
+SILENT = Planner({})
+"""Box actions without noise."""
+
+
+def actions(n, k, seed=0):
+    return np.random.default_rng(seed).uniform(-1.0, 1.0, (n, k)).astype(np.float32)
+
+
+def same(one, other):
+    return (
+        np.array_equal(one.points, other.points) and np.array_equal(one.goes_on, other.goes_on)
+        and np.array_equal(one.observations, other.observations) and np.array_equal(one.afterstates.positions, other.afterstates.positions)
+        and np.array_equal(one.afterstates.on_table, other.afterstates.on_table)
+        and np.array_equal(one.afterstates.game, other.afterstates.game)
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"aim": "target", "noise": "amateur"},
+        {"action": "discrete", "noise": "club", "layout": "random:6"},
+        {"aim": "target", "elevation": True, "placement": True, "layout": "break_off", "noise": "professional"},
+        {"aim": "target", "physics": "match", "table": "tight", "fidelity": "fast", "layout": "line_up"},
+    ],
+)
+def test_a_planned_stroke_is_the_stroke_of_the_environment(options):
+    """From the same state, with the same stream: points, end, table, game and observation, bit for bit."""
+    env = sn.SnookerEnv(**options)
+    planner, scored = Planner(env, threads=1), 0
+    for k in range(12):
+        env.reset(seed=k)
+        state = env.get_state()
+        chosen = np.flatnonzero(env.action_masks())[[17]] if env.action_space.shape == () else actions(1, env.action_space.shape[0], seed=k)
+        points, goes_on, left, seen = planner.play(state, [0], chosen, [state["stream"]])
+        observation, reward, ended, _, info = env.step(chosen[0])
+        assert points[0] == reward and goes_on[0] == (not ended) and np.array_equal(seen[0], observation)
+        assert np.array_equal(left.positions[0], env.positions) and np.array_equal(left.on_table[0], env.on_table)
+        assert (left.ball_on[0], left.in_hand[0], left.points[0], left.over[0]) == (env.ball_on, env.in_hand, info["break"], env.over)
+        assert np.array_equal(left.observations()[0], observation)
+        scored += reward > 0
+    assert scored or options["layout"] == "break_off"
+
+
+def test_whole_tables_are_read_from_a_vector_environment_and_left_as_they_are():
+    env = gymnasium.make_vec("Snooker-v0", 9, vectorization_mode="vector_entry_point", aim="target", noise="club")
+    env.reset(seed=3)
+    before, streams = env.unwrapped.get_state(), [state["stream"] for state in env.unwrapped.get_state()]
+    at, strokes = Positions.of(env), actions(9, 4)
+    kept = at.copy()
+    played = Planner(env).play(at, np.arange(9), strokes, np.array(streams, np.uint64))
+    assert env.unwrapped.get_state() == before and np.array_equal(at.positions, kept.positions)
+    assert np.array_equal(at.on_table, kept.on_table) and np.array_equal(at.game, kept.game)
+    observations, rewards, ended, _, _ = env.step(strokes)
+    assert np.array_equal(played.points, rewards) and np.array_equal(~played.goes_on, ended)
+    assert np.array_equal(played.observations, observations) and not np.array_equal(played.afterstates.positions, at.positions)
+
+
+def test_any_number_of_threads_and_any_order_of_strokes_give_the_same():
+    env = sn.SnookerVectorEnv(7, aim="target", noise="club")
+    env.reset(seed=1)
+    rng = np.random.default_rng(2)
+    rows, strokes, keys = rng.integers(0, 7, 333), actions(333, 4), rng.integers(0, 2**64 - 1, 333, dtype=np.uint64)
+    one = Planner(env, threads=1)
+    first = one.play(env, rows, strokes, keys)
+    assert one.shots == 333 and one.threads == 1
+    for threads in (2, 5):
+        assert same(first, Planner(env, threads=threads).play(env, rows, strokes, keys))
+    order = rng.permutation(333)
+    turned = Planner(env).play(env, rows[order], strokes[order], keys[order])
+    assert np.array_equal(turned.observations, first.observations[order])
+    shared = Planner(env, threads=2)
+    with ThreadPoolExecutor(4) as pool:
+        many = list(pool.map(lambda _: shared.play(env, rows, strokes, keys), range(4)))
+    assert all(same(first, other) for other in many) and shared.shots == 4 * 333
+    assert same(first, pickle.loads(pickle.dumps(shared)).play(env, rows, strokes, keys))
+
+
+def test_the_key_alone_decides_the_errors():
+    position = Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)])
+    planner, stroke = Planner({"noise": "club"}), np.tile(np.float32([[0.0, 0.0, 0.0, 0.3]]), (6, 1))
+    cue = planner.play(position, np.zeros(6, int), stroke, [5, 5, 6, 7, 7, 2**64 - 1]).afterstates.positions[:, 0]
+    assert np.array_equal(cue[0], cue[1]) and np.array_equal(cue[3], cue[4]) and len(np.unique(cue, axis=0)) == 4
+    again = planner.play(position, [0], stroke[:1], np.array([[5, 0]], np.uint64)).afterstates.positions[0, 0]
+    assert np.array_equal(again, cue[0])  # a key is a stream at its beginning
+    later = planner.play(position, [0], stroke[:1], [[5, 3]]).afterstates.positions[0, 0]
+    assert not np.array_equal(later, cue[0])
+
+
+def test_noise_given_takes_the_place_of_the_environments_own():
+    env = sn.SnookerEnv(noise="club", aim="target")
+    env.reset(seed=0)
+    exact, strokes = Planner(env, noise="none"), actions(4, 4)
+    assert exact.noise.silent and not Planner(env).noise.silent
+    assert same(exact.play(env, [0] * 4, strokes), Planner(sn.SnookerEnv(aim="target")).play(env, [0] * 4, strokes, [1, 2, 3, 4]))
+    loud = Planner(env, noise={"aim_deg": 3.0}).play(env, [0] * 4, strokes, [1, 2, 3, 4])
+    assert not np.array_equal(loud.afterstates.positions, exact.play(env, [0] * 4, strokes).afterstates.positions)
+
+
+def test_afterstates_are_positions_to_play_on():
+    planner = Planner({"action": "discrete"})
+    position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.8)], black=(0.0, 1.4605), pink=(0.2, -0.3))
+    choices = np.flatnonzero(sn.planning.action_masks(position)[0])
+    first = planner.play(position, np.zeros(len(choices), int), choices)
+    made = np.flatnonzero(first.goes_on)
+    assert len(made) > 5 and (first.points[made] == 1).all() and (first.afterstates.ball_on[made] == 0).all()
+    second = planner.play(first.afterstates, made, np.zeros(len(made), int))
+    assert len(second.points) == len(made) and not (first.afterstates.over[made]).any()
+    lost = int(np.flatnonzero(~first.goes_on)[0])
+    with pytest.raises(ValueError, match=rf"positions\[{lost}\].over = True: must be False: the visit has ended"):
+        planner.play(first.afterstates, [made[0], lost], [0, 0])
+
+
+def test_a_frame_and_a_match_are_planned_as_a_visit():
+    pytest.importorskip("pettingzoo")
+    frame = gymnasium.make("Snooker-v0", task="frame", aim="target", placement=True, decision=True)
+    frame.reset(seed=0)
+    match = sn.match_env(aim="target")
+    match.reset(seed=0)
+    for env in (frame, match):
+        at, planner = Positions.of(env), Planner(env)
+        assert len(at) == 1 and at.in_hand[0] and at.ball_on[0] == 1 and planner.action_space.shape == (7,)
+        stroke = np.float32([[0.6, 0.0, 0.0, 0.1, 0.5, 0.5, 0.0]])
+        _, _, left, seen = planner.play(at, [0], stroke)
+        env.step(stroke[0])
+        after = env.unwrapped.get_state()
+        assert seen.shape == (1, 121) and np.array_equal(left.positions[0], after["positions"])
+
+
+def test_what_may_be_planned_for():
+    for source in (sn.SnookerEnv(aim="target"), {"aim": "target"}, gymnasium.make("Snooker-v0", aim="target", max_episode_steps=3)):
+        assert Planner(source).action_space.shape == (4,) and not Planner(source).discrete
+    assert Planner({"action": "discrete"}).discrete
+    assert Planner({"physics": "match", "table": "tight"}).table.name == "tight"
+    for wrong in (gymnasium.make("CartPole-v1"), None, 3, "Snooker-v0"):
+        with pytest.raises(ValueError, match=r"env_or_options = a .*must be an environment of snooker_env"):
+            Planner(wrong)
+    with pytest.raises(ValueError, match="aim = 'north'"):
+        Planner({"aim": "north"})
+    with pytest.raises(ValueError, match="threads = 0"):
+        Planner({}, threads=0)
+    with pytest.raises(ValueError, match="noise = 'loud'"):
+        Planner({}, noise="loud")
+
+
+AT = Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)])
+STROKE = [[0.0, 0.0, 0.0, 0.2]]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        ((AT, [1], STROKE), r"rows\[0\] = 1: must be in \[0, 1\)"),
+        ((AT, [-1], STROKE), r"rows\[0\] = -1"),
+        ((AT, [0.0], STROKE), "rows = float64 array"),
+        ((AT, [[0]], STROKE), r"rows = int64 array of shape \(1, 1\)"),
+        ((AT, [0, 0], STROKE), r"actions = array of shape \(1, 4\)"),
+        ((AT, [0], [[0.0, 0.0, 0.0]]), r"actions = array of shape \(1, 3\)"),
+        ((AT, [0], [[0.0, 0.0, 0.0, np.nan]]), r"actions\[0\] = .*must be finite"),
+        ((AT, [0], [[0.0, 0.0, 0.0, 1.1]]), r"actions\[0\] ="),
+        ((AT, [0], [["a", "b", "c", "d"]]), "actions = "),
+        ((AT, [0], STROKE, [1, 2]), r"keys = array of shape \(2,\)"),
+        ((AT, [0], STROKE, [-1]), "keys = array of object: must be 1 integers"),
+        ((AT, [0], STROKE, [0.5]), "keys = array of object"),
+        ((None, [0], STROKE), "positions = a NoneType"),
+        (([], [0], STROKE), "positions = a list"),
+        ((AT, [0], STROKE, np.array([-1])), "keys = negative numbers: must be 1"),
+        (({"points": 1}, [0], STROKE), "state = a dict without"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_by_name(arguments, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        SILENT.play(*arguments)
+    assert SILENT.play(AT, [0], STROKE).points.shape == (1,)
+
+
+def test_keys_may_only_be_left_out_without_noise():
+    with pytest.raises(ValueError, match=r"keys = array of shape \(\): must be 1 integers"):
+        Planner({"noise": "club"}).play(AT, [0], STROKE)
+
+
+def test_choices_are_integers_in_range():
+    planner = Planner({"action": "discrete"})
+    for wrong, complaint in (([540], r"actions\[0\] = 540"), ([0.5], "actions = array of float64"), ([[0, 1]], "actions = ")):
+        with pytest.raises(ValueError, match=complaint):
+            planner.play(AT, [0], wrong)
+
+
+def test_no_strokes_are_no_error():
+    points, goes_on, left, seen = SILENT.play(AT, [], np.zeros((0, 4)))
+    assert (len(points), len(goes_on), len(left), seen.shape) == (0, 0, 0, (0, 121))
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        (lambda at: at.positions[2, 1].__setitem__(0, np.nan), r"positions\[2\], ball 1 = .*must be finite"),
+        (lambda at: at.positions[2, 1].__setitem__(slice(None), at.positions[2, 0]), r"positions\[2\] = balls 0 and 1: overlap"),
+        (lambda at: at.positions[2, 1].__setitem__(0, 0.9), r"positions\[2\]\[1\] = \(0.9, 0.3\): overlaps the cushion"),
+        (lambda at: at.on_table[2].__setitem__(0, False), r"positions\[2\].cue = None: must be on the table"),
+        (lambda at: at.ball_on.__setitem__(2, 9), r"positions\[2\].ball_on = 9: must be in \[-1, 7\]"),
+        (lambda at: at.ball_on.__setitem__(2, 7), r"positions\[2\].ball_on = 'black': must name balls"),
+        (lambda at: at.ball_on.__setitem__(2, -1), r"positions\[2\].ball_on = 'nothing': must name balls"),
+        (lambda at: at.points.__setitem__(2, 200), r"positions\[2\].points = 200"),
+    ],
+)
+def test_an_unsound_position_is_refused_by_its_row_if_it_is_played(change, complaint):
+    at = Positions.of([AT] * 4)
+    change(at)
+    assert len(SILENT.play(at, [0, 1, 3], STROKE * 3).points) == 3
+    for rows in ([0, 2], [0, 1, 2, 3]):
+        with pytest.raises(ValueError, match=complaint):
+            SILENT.play(at, rows, STROKE * len(rows))

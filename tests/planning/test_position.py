@@ -1,0 +1,134 @@
+"""Does a position in words mean what it says, and does it come back from the arrays that planning and environments use?"""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.game import SPOTS, BallOn
+from snooker_env.game.frame_columns import FREE_BALL
+from snooker_env.planning import Position, Positions
+
+FULL = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (-0.3, 0.7)], "pink": (0.2, 0.1), "black": (0.0, 1.4605)}
+
+
+def test_words_and_arrays_say_the_same():
+    position = Position(**FULL, on="any colour", points=9)
+    assert position.on == "any_colour" and position.reds == ((0.3, 0.5), (-0.3, 0.7)) and position.yellow is None
+    positions, on_table, game = position.arrays()
+    assert np.flatnonzero(on_table).tolist() == [0, 1, 2, 20, 21] and game.tolist() == [0, 0, 9, 0, 0]
+    assert positions[[0, 1, 2, 20, 21]].tolist() == [[0.1, -1.2], [0.3, 0.5], [-0.3, 0.7], [0.2, 0.1], [0.0, 1.4605]]
+    assert Position.of_arrays(positions, on_table, game) == position and hash(position) == hash(Position(**FULL, on="any_colour", points=9))
+    assert Position(**json.loads(json.dumps(position.to_dict()))) == position
+    assert set(position.to_dict()) == {"cue", "reds", "pink", "black", "on", "in_hand", "points", "over"}
+    assert dataclasses.replace(position, pink=None).pink is None
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        position.on = "red"
+
+
+def test_what_is_on_follows_from_the_balls_if_it_is_not_said():
+    assert Position(**FULL).on == "red"
+    assert Position(**FULL | {"reds": []}).on == "pink"
+    assert Position(**FULL, on=BallOn.ANY_COLOUR).on == "any_colour"
+
+
+def test_a_cue_ball_in_hand_lies_in_the_d():
+    assert Position(reds=[(0.3, 0.3)], in_hand=True).cue == pytest.approx(tuple(SPOTS[0]))
+    beside = Position(reds=[tuple(SPOTS[0])], in_hand=True)  # its usual place is taken
+    assert np.hypot(beside.cue[0] - SPOTS[0, 0], beside.cue[1] - SPOTS[0, 1]) == pytest.approx(2 * 0.02625, abs=1e-3)
+    with pytest.raises(ValueError, match="in_hand = True: must be False with the cue ball at"):
+        Position(cue=(0.0, 0.0), reds=[(0.3, 0.3)], in_hand=True)
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        ({"reds": [(0.1, -1.21)]}, r"reds\[0\] = \(0.1, -1.21\): overlaps cue at \(0.1, -1.2\) by 0.0425 m"),
+        ({"pink": (0.0, 1.44)}, r"black = .*overlaps pink"),
+        ({"blue": (0.88, 0.5)}, r"blue = \(0.88, 0.5\): overlaps the cushion at x = 0.889"),
+        ({"yellow": (3.0, 0.0)}, r"yellow = \(3.0, 0.0\): must be on the table"),
+        ({"green": (-0.889, -1.7845)}, r"green = .* is over a pocket"),
+        ({"black": (np.nan, 0.0)}, r"black\[0\] = nan"),
+        ({"brown": 3.0}, "brown"),
+        ({"cue": "centre"}, "cue"),
+        ({"reds": [(0.04 * k - 0.5, 0.3) for k in range(16)]}, "reds = 16 places: must be at most 15"),
+        ({"on": "puce"}, "on = 'puce': must be one of"),
+        ({"on": "black"}, "on = 'black': must be 'red' or 'any_colour'"),
+        ({"on": "blue"}, "on = 'blue': must name balls of which one"),
+        ({"reds": [], "on": "black"}, "on = 'black': must be 'any_colour' or 'pink'"),
+        ({"cue": None}, "cue = None: must be on the table"),
+        ({"reds": [], "pink": None, "black": None}, "on = 'nothing': must name balls"),
+        ({"points": 156}, "points = 156"),
+        ({"in_hand": 1}, "in_hand = 1: must be True or False"),
+        ({"table": "oval"}, "table = 'oval'"),
+    ],
+)
+def test_a_position_that_cannot_be_is_refused(words, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        Position(**FULL | words)
+
+
+def test_a_visit_that_is_over_needs_nothing_on():
+    assert Position(black=(0.0, 1.4605), over=True, on="nothing").cue is None
+    assert Position(over=True).on == "nothing"
+
+
+def test_the_table_decides_what_fits():
+    mouth = (0.834, -1.766)  # in a corner's mouth, which is wider on the usual table
+    sn.Table.preset("match").check(np.array([mouth]), 0.02625)
+    assert Position(**FULL, yellow=mouth).yellow == mouth
+    with pytest.raises(ValueError, match=r"yellow = \(0.834, -1.766\): overlaps"):
+        Position(**FULL, yellow=mouth, table="tight")
+    assert Position(**FULL, yellow=(5.0, 5.0), table=None).yellow == (5.0, 5.0)
+
+
+def test_positions_of_states_and_of_environments_are_the_same():
+    env = sn.SnookerVectorEnv(4, noise="club", layout="random:5")
+    env.reset(seed=0)
+    batch, states = Positions.of(env), Positions.of(env.get_state())
+    for name in ("positions", "on_table", "game"):
+        assert np.array_equal(getattr(batch, name), getattr(states, name))
+    assert Positions.of(batch) is batch and len(Positions.of(env.get_state()[1])) == 1 and repr(batch) == "Positions(4 rows)"
+    assert batch.balls_on.sum(axis=1).tolist() == [5] * 4 and not batch.over.any() and not batch.in_hand.any()
+
+
+def test_one_row_is_words_and_any_other_index_a_batch():
+    env = sn.SnookerVectorEnv(5, layout="random:3")
+    env.reset(seed=0)
+    batch = Positions.of(env)
+    assert isinstance(batch[2], Position) and batch[-1] == batch[4] and [p.on for p in batch] == ["red"] * 5
+    assert np.array_equal(Positions.of(list(batch)).observations(), batch.observations())  # reds keep their order here
+    for rows in (slice(1, 5, 2), [1, 3], np.array([False, True, False, True, False])):
+        assert np.array_equal(batch[rows].positions, batch.positions[[1, 3]]) and batch[rows].positions.flags.c_contiguous
+    view = batch[1:3]
+    view.ball_on[:] = 0
+    assert batch.ball_on.tolist() == [1, 0, 0, 1, 1]
+    with pytest.raises(IndexError):
+        batch[5]
+
+
+@pytest.mark.parametrize(
+    ("arrays", "complaint"),
+    [
+        ((np.zeros((2, 21, 2)), np.zeros((2, 22), bool), np.zeros((2, 5), int)), "positions = array of shape"),
+        ((np.full((2, 22, 2), np.nan), np.zeros((2, 22), bool), np.zeros((2, 5), int)), r"positions\[0, 0, 0\] = nan"),
+        ((np.zeros((2, 22, 2)), np.zeros((2, 22)), np.zeros((2, 5), int)), "on_table = float64 array"),
+        ((np.zeros((2, 22, 2)), np.zeros((1, 22), bool), np.zeros((2, 5), int)), "on_table = bool array of shape"),
+        ((np.zeros((2, 22, 2)), np.zeros((2, 22), bool), np.zeros((2, 4), int)), "game = int64 array of shape"),
+        ((np.zeros((2, 22, 2)), np.zeros((2, 22), bool), np.zeros((2, 5))), "game = float64 array"),
+    ],
+)
+def test_arrays_of_the_wrong_shape_or_type_are_refused(arrays, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        Positions(*arrays)
+
+
+def test_a_free_ball_is_refused():
+    env = sn.SnookerVectorEnv(3, task="frame")
+    env.reset(seed=0)
+    assert len(Positions.of(env)) == 3
+    env.tables.game[1, FREE_BALL] = True
+    with pytest.raises(ValueError, match="free ball on table 1 = True: must be False: a planned stroke is judged as one of a visit"):
+        Positions.of(env)

@@ -1,0 +1,138 @@
+"""Do agents, commands and examples get along with what the package promises? They import public names only, and each of those is there."""
+
+import ast
+import doctest
+import importlib
+import inspect
+import re
+from pathlib import Path
+
+import pytest
+
+import snooker_env as sn
+from tests.processes import python
+
+ROOT = Path(sn.__file__).resolve().parents[1]
+PACKAGE = ROOT / "snooker_env"
+USERS = sorted(
+    path
+    for name in ("agents", "commands", "examples", "train.py")
+    for path in [ROOT / name, *(ROOT / name).rglob("*.py")]
+    if path.is_file()
+)
+README = "\n".join(re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL))
+
+
+def promised(path):
+    """The names in ``__all__`` of a file, or None if it has none."""
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and [target.id for target in node.targets if isinstance(target, ast.Name)] == ["__all__"]:
+            return ast.literal_eval(node.value)
+    return None
+
+
+def dotted(path):
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+ALL = {dotted(path): names for path in PACKAGE.rglob("*.py") if (names := promised(path)) is not None}
+"""Module -> its public names; a module without ``__all__`` has none."""
+
+
+def private(source):
+    """What some code uses of the package that is not public: lines like "snooker_env.tasks.visit: Visits"."""
+    tree, found, aliases = ast.parse(source), [], {"snooker_env"}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                if alias.name == "snooker_env":
+                    aliases.add(alias.asname or alias.name)
+                elif alias.name.startswith("snooker_env.") and alias.name not in ALL:
+                    found.append(alias.name)
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "snooker_env":
+            for name in [alias.name for alias in node.names]:
+                if name not in [*ALL.get(node.module, ()), "__version__"] and f"{node.module}.{name}" not in ALL:
+                    found.append(f"{node.module}: {name}")
+    attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)]
+    used = {node.attr for node in attributes if isinstance(node.value, ast.Name) and node.value.id in aliases}
+    found += [f"snooker_env.{name}" for name in used - {*ALL["snooker_env"], "__version__"} if f"snooker_env.{name}" not in ALL]
+    return found + re.findall(r"\b(?:env|tables|venv)\.(?:frames|shooter|visits)\b", source)  # what environments are made of
+
+
+def test_the_reader_of_uses_sees_every_kind():
+    assert private("import snooker_env as sn\nsn.simulate\nsn.planning.Planner\nfrom snooker_env import Position, kernels") == []
+    assert (
+        private("from snooker_env.game import BallOn\nfrom snooker_env.planning import Planner\nfrom snooker_env import __version__") == []
+    )
+    for wrong in (
+        "import snooker_env._check", "from snooker_env._check import refuse", "from snooker_env.game.balls import BallOn",
+        "import snooker_env.tasks.visit", "from snooker_env.tasks import visit", "from snooker_env.planning import rows_of",
+        "import snooker_env as sn\nsn.simulation", "def f():\n from snooker_env import _jit", "tables.visits.positions",
+    ):  # fmt: skip
+        assert len(private(wrong)) == 1, wrong
+
+
+@pytest.mark.parametrize("path", USERS, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_agents_commands_and_examples_use_public_names_only(path):
+    assert private(path.read_text(encoding="utf-8")) == []
+
+
+def test_the_readme_uses_public_names_only():
+    assert private(README) == [] and README.count("snooker_env") > 5
+    assert len(USERS) > 40
+
+
+def test_public_modules_are_those_that_the_package_names():
+    named = set(re.findall(r"^\* ``(snooker_env[.\w]*)``", sn.__doc__, re.MULTILINE))
+    assert named | {"snooker_env"} == set(ALL)
+    assert not [module for module in ALL if "._" in module]
+
+
+@pytest.mark.parametrize("module", sorted(ALL))
+def test_every_public_name_is_there_once(module):
+    names = ALL[module]
+    assert len(set(names)) == len(names)
+    loaded = importlib.import_module(module)
+    assert not [name for name in names if not hasattr(loaded, name)] and loaded.__all__ == names
+
+
+def test_environments_and_planning_are_reached_from_the_package_and_loaded_when_asked():
+    out, _ = python(
+        "import sys, snooker_env as sn\n"
+        "heavy = lambda: [n for n in sys.modules if n.startswith(('snooker_env.envs', 'snooker_env.planning', 'snooker_env.tasks'))]\n"
+        "print(heavy(), 'SnookerEnv' in dir(sn), 'planning' in dir(sn))\n"
+        "print(sn.planning.Planner is sn.Planner, sn.SnookerEnv.__module__, sn.SnookerVectorEnv.__module__)\n"
+        "from snooker_env import *\n"
+        "print(Position is sn.Position, SnookerEnv is sn.SnookerEnv)\n",
+    )
+    assert out.splitlines() == ["[] True True", "True snooker_env.envs.snooker snooker_env.envs.vector", "True True"]
+    with pytest.raises(AttributeError, match=r"module 'snooker_env' has no attribute 'Snooker'"):
+        _ = sn.Snooker
+
+
+EXAMPLES = sorted(dotted(path) for path in PACKAGE.rglob("*.py") if ">>> " in path.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("module", EXAMPLES)
+def test_examples_in_docstrings_run(module):
+    failed, tried = doctest.testmod(importlib.import_module(module))
+    assert failed == 0 and tried > 0
+
+
+@pytest.mark.parametrize("name", ALL["snooker_env.planning"])
+def test_planning_is_documented_in_numpys_style(name):
+    from snooker_env import planning
+
+    thing = getattr(planning, name)
+    for what in (
+        [thing, *(m for k, m in vars(thing).items() if not k.startswith("_") and inspect.isfunction(m))]
+        if inspect.isclass(thing)
+        else [thing]
+    ):
+        text, signature = inspect.getdoc(what), inspect.signature(what)
+        if [p for p in signature.parameters if p not in ("self", "cls")]:
+            assert re.search(r"^(Parameters|Attributes)\n-{10}$", text, re.MULTILINE), what
+        if inspect.isfunction(what):
+            assert name == "processors" or re.search(r"^Returns\n-{7}$", text, re.MULTILINE), what
+            assert signature.return_annotation is not signature.empty, what
+            assert all(p.annotation is not p.empty for k, p in signature.parameters.items() if k != "self"), what
