@@ -32,7 +32,7 @@ def _smooth_cushion(v, w, nx, ny, phys, e):
     p = (1.0 + e) * vy / cos_t
     a1, a2 = vx + R * (wy * sin_t - wz * cos_t), -vy * sin_t + R * wx
     s = hypot(a1, a2)
-    k = min(phys[P_MU_W] * p / s, 1.0 / 3.5) if s > 0.0 else 0.0
+    k = min(phys[P_MU_C] * p / s, 1.0 / 3.5) if s > 0.0 else 0.0
     f1, f2 = -k * a1, -k * a2
     q = 2.5 / R
     after = (vx + f1, -e * vy - sin_t * f2, vz)

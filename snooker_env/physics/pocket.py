@@ -24,7 +24,7 @@ each a parabola, with the impacts on the edge at its end. Oracle: a compliant ba
 from math import inf, sqrt
 
 from .._jit import kernel
-from .parameters import P_E_J, P_G, P_MU_W, P_R, P_SIN
+from .parameters import P_E_J, P_G, P_MU_C, P_R, P_SIN
 
 JAW, LOST, BACK = range(3)
 """How a leg of the flight ends."""
@@ -139,7 +139,7 @@ def strike_jaw(vx, vy, u, w, nx, ny, sin_phi, phys):
     sz = -u + R * (w[0] * y - w[1] * x) - closing * z
     slip = sqrt(sx * sx + sy * sy + sz * sz)
     p = (1.0 + phys[P_E_J]) * closing
-    f = min(phys[P_MU_W] * p, slip / 3.5) / slip if slip > 0.0 else 0.0
+    f = min(phys[P_MU_C] * p, slip / 3.5) / slip if slip > 0.0 else 0.0
     fx, fy, fz = -f * sx, -f * sy, -f * sz
     q = 2.5 / R
     return (
