@@ -11,7 +11,7 @@ FREE_BALLS, LOOSE_CUSHION, SMOOTH_CLOTH, MIRROR, AT_ONCE = 101, 102, 103, 104, 1
 cushion in closed form, with friction at the nose but none at the cloth; the cushion as a mirror with a restitution. A ball that drops at
 once where its centre crosses the edge of a pocket."""
 
-_FLIES = "if kind == _POT and state[i] != FALLING:"
+_FLIES = "if kind == events.POT and state[i] != FALLING"
 """Where the engine asks whether a ball at the edge of a pocket can meet a jaw behind it."""
 
 _ADDED = '''
@@ -64,5 +64,5 @@ def load():
     texts["physics/impact/contact.py"] += _ADDED
     if texts["physics/engine.py"].count(_FLIES) != 1:
         raise RuntimeError(f"engine.py has changed: {_FLIES!r} is not in it once")
-    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES[:-1]} and fidelity != {AT_ONCE}:")
+    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES} and world.fidelity != {AT_ONCE}")
     return _copies.load("snooker_env_variants", texts, ["simulation"])[0]
