@@ -308,7 +308,7 @@ def _hand_back(balls, paths, end, at_rest, phys):
     return end
 
 
-@inlined
+@kernel
 def run(balls, world, max_events, log, paths, forecast, series):
     """One shot to rest, in place. ``paths``, ``forecast`` and ``series`` are work space.
 

@@ -104,20 +104,21 @@ def jaw_gap(x, y, z, jaws, k, R, sin_theta):
     Beyond its ends (part 1, else 0) an arc goes on straight along its tangents: on one side into the throat, on the other as the nose. A
     ball above the nose's height meets it as a wall: none flies over a cushion.
     """
-    dx, dy, ux, uy, c = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY], jaws[k, JAW_COS]
+    dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
+    cos_half = jaws[k, JAW_COS]
     far, near = dx * dx + dy * dy, jaws[k, JAW_RADIUS] + 4.0 * R
     if far > near * near:
         return 1.0, 0.0, 0.0, 0.0, 0
     far = sqrt(far)
     along, aside, part = dx * ux + dy * uy, dy * ux - dx * uy, 0
     nx, ny = dx / far, dy / far
-    if along < c * far:
-        s, part = sqrt(1.0 - c * c), 1
-        far = c * along + s * abs(aside)
+    if along < cos_half * far:
+        sin_half, part = sqrt(1.0 - cos_half * cos_half), 1
+        far = cos_half * along + sin_half * abs(aside)
         if far <= jaws[k, JAW_RADIUS]:
             return 1.0, 0.0, 0.0, 0.0, 0
-        s = s if aside > 0.0 else -s
-        nx, ny = c * ux - s * uy, c * uy + s * ux
+        s = sin_half if aside > 0.0 else -sin_half
+        nx, ny = cos_half * ux - s * uy, cos_half * uy + s * ux
     # the nose is where a ball on the bed is R from the table's arc; one that has dropped is held as far off, so that it comes back free
     sin_phi = min(1.0, max(0.0, sin_theta + z / R))
     high = min(sin_phi, sin_theta)

@@ -26,7 +26,7 @@ _STANDARD = Accuracy(tol=5e-8, delta=1e-7, creep=1e-3, order=12)
 _LOOSE = Accuracy(tol=1e-4, delta=1e-5, creep=1e-2, order=8)
 
 _NO_CLOSING = 1e-60
-"""A closing speed [m/s] below this is zero: the scaled slips would overflow. The slowest that a shot can give is some 1e-12."""
+"""A closing speed [m/s] below this is zero: the scaled slips would overflow. Nothing physical is lost."""
 
 
 def parse_fidelity(fidelity):
@@ -66,12 +66,10 @@ def _to_world(a, nx, ny):
 
 @kernel
 def _friction_impulse_free(xa, za, ya, law, e):
-    """Free spheres, per unit mass: normal impulse and the friction impulse opposite to the first slip, capped where slip ends."""
-    pn = 0.5 * (1.0 + e) * ya
-    s = hypot(xa, za)
-    if s == 0.0:
+    """Two free spheres, per unit mass: the friction impulse, opposite to the first slip and no more than ends it, and the normal
+    impulse.""" pn = 0.5 * (1.0 + e) * ya s = hypot(xa, za) if s == 0.0:
         return 0.0, 0.0, pn
-    pt = min(friction_coefficient(s, law) * pn, s / 7.0)
+    pt = min(friction_coefficient(s, law) * pn, s / inertia.BALLS.k1)
     return -pt * xa / s, -pt * za / s, pn
 
 

@@ -15,9 +15,11 @@ from .polynomial import CLOSING, ROW, WORK_DONE, state_at, time_of, value_at
 from .taylor import turned
 
 _CLOSE = 0.01
-"""How near the ends are located, over tol and the step's length."""
+"""How near the ends are located, over tol and the step's length. Twice or half: no change above rounding, as one more step of Halley's
+method passes either."""
 _TURN_HALVINGS, _LOOSE_HALVINGS = 50, 40
-"""Bisections that go down to rounding; one of them to 1e-12 of a step, where a slip that breaks loose is still zero."""
+"""Bisections down to rounding, and to 1e-12 of a step, where a slip that breaks loose is still zero. Twice or half: no change above 1e-15
+in play."""
 
 
 class Target(NamedTuple):

@@ -14,7 +14,7 @@ F1, F2, G1, G2, P, WORK_DONE, LIFT, CLOSING = range(8)
 """Columns: the fields of ``Impulses`` in their order, and the closing speed."""
 
 _MOST_TRIALS = 60
-"""Halley's method takes 2 or 3; even halving alone would end after so many."""
+"""Halley's method takes 2 or 3; even halving alone would end after so many. Twice or half: no change."""
 
 
 @kernel
