@@ -66,10 +66,12 @@ def _to_world(a, nx, ny):
 
 @kernel
 def _friction_impulse_free(xa, za, ya, law, e):
-    """Two free spheres, per unit mass: the friction impulse, opposite to the first slip and no more than ends it, and the normal
-    impulse.""" pn = 0.5 * (1.0 + e) * ya s = hypot(xa, za) if s == 0.0:
+    """Two free spheres, per unit mass: friction impulse, opposite to the first slip and no more than ends it, and normal impulse."""
+    pn = 0.5 * (1.0 + e) * ya
+    s = hypot(xa, za)
+    if s == 0.0:
         return 0.0, 0.0, pn
-    pt = min(friction_coefficient(s, law) * pn, s / inertia.BALLS.k1)
+    pt = min(friction_coefficient(s, law) * pn, s / inertia.BALLS.k1)  # of free spheres the same for both tangents
     return -pt * xa / s, -pt * za / s, pn
 
 
