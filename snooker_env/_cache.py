@@ -18,6 +18,7 @@ import warnings
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, _CacheLocator
 
@@ -26,7 +27,7 @@ _WRITE_GROUP, _WRITE_OTHERS, _STICKY = 0o020, 0o002, 0o1000
 _DIGEST = hashlib.sha256().digest_size
 
 
-def source_hash(root=_PACKAGE):
+def source_hash(root: Path = _PACKAGE) -> str:
     """A hash of every Python file of the package, names included (16 hex digits)."""
     h = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):
@@ -35,7 +36,7 @@ def source_hash(root=_PACKAGE):
 
 
 @cache  # what was imported from there stays what it was
-def _hash_of(folder):
+def _hash_of(folder: Path) -> str:
     """The hash of the whole package that a folder outside this one belongs to; of the folder alone if it is in none."""
     while (folder / "__init__.py").is_file() and (folder.parent / "__init__.py").is_file():
         folder = folder.parent
@@ -49,7 +50,7 @@ class UnsafeFolderError(OSError):
     """A folder into which somebody else could put code; says which and why."""
 
 
-def _check_own(folder, *, home=False):
+def _check_own(folder: Path, *, home: bool = False) -> None:
     """Raise UnsafeFolderError unless only this user (and root) decides what lies in ``folder``, and if it is a link, where that leads.
 
     ``home`` is the folder that the user has chosen: others may write to it where they cannot exchange what is not theirs (as in /tmp),
@@ -65,7 +66,7 @@ def _check_own(folder, *, home=False):
         raise UnsafeFolderError(f"others can write to {folder} (mode {mode:04o})")
 
 
-def _claim(home, folder):
+def _claim(home: Path, folder: Path) -> None:
     """Make ``folder``, which is below ``home``, for this user alone, with all that leads to it; UnsafeFolderError where it is there already
     and is not his alone."""
     for part in (*reversed(folder.parents), folder):
@@ -74,7 +75,7 @@ def _claim(home, folder):
             _check_own(part, home=part == home)
 
 
-def cache_folder():
+def cache_folder() -> Path | None:
     """Where compiled entry kernels are kept, or None (then they live in memory only).
 
     ``$NUMBA_CACHE_DIR`` if set, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it ``snooker_env/<source hash>``.
@@ -187,11 +188,11 @@ class Kept(FunctionCache):
 
     _impl_class = _Implementation
 
-    def __init__(self, py_func):
+    def __init__(self, py_func: Any):
         super().__init__(py_func)
         self._cache_file = _Files(self.cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp())
 
-    def load_overload(self, sig, target_context):
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The machine code for this signature, or None."""
         try:
             self._impl.locator.ensure_cache_path()
@@ -204,7 +205,7 @@ class Kept(FunctionCache):
             _warn_once("broken", f"machine code kept in {self.cache_path} cannot be used ({what}): it is compiled and kept anew")
         return None
 
-    def save_overload(self, sig, data):
+    def save_overload(self, sig: Any, data: Any) -> None:
         """Keep it, if that is possible."""
         try:
             super().save_overload(sig, data)

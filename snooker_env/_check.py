@@ -1,19 +1,24 @@
 """How is bad input reported? One ValueError that names the field, the value and what is allowed."""
 
+from collections.abc import Collection
+from typing import Any
+
 import numpy as np
 
+from ._types import Bools, Floats
 
-def refuse(field, value, allowed):
+
+def refuse(field: str, value: Any, allowed: str) -> ValueError:
     """The one form of complaint in this package; always use as ``raise refuse(...)``."""
     return ValueError(f"{field} = {value!r}: {allowed}")
 
 
-def refuse_what(field, what, allowed):
+def refuse_what(field: str, what: str, allowed: str) -> ValueError:
     """The same where the value is too large to show: ``what`` says in words what was found."""
     return ValueError(f"{field} = {what}: {allowed}")
 
 
-def number(field, value, low=-np.inf, high=np.inf, *, open_low=False):
+def number(field: str, value: Any, low: float = -np.inf, high: float = np.inf, *, open_low: bool = False) -> float:
     """A finite real in [low, high] (or (low, high] with ``open_low``) as float."""
     left, right = "(" if open_low or low == -np.inf else "[", ")" if high == np.inf else "]"
     bounds = f"must be a finite number in {left}{low:g}, {high:g}{right}"
@@ -30,7 +35,7 @@ def number(field, value, low=-np.inf, high=np.inf, *, open_low=False):
     return x
 
 
-def array(field, value, shape, most=np.inf, unit=""):
+def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, unit: str = "") -> Floats:
     """A finite float64 array of the given shape (-1: any length), no number beyond ``most`` [unit]; always a fresh C-ordered copy."""
     free = iter("bn" if shape.count(-1) == 2 else "n")
     want = "(" + ", ".join(next(free) if s == -1 else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
@@ -53,14 +58,14 @@ def array(field, value, shape, most=np.inf, unit=""):
     return a
 
 
-def choice(field, value, options):
+def choice(field: str, value: Any, options: Collection[str]) -> str:
     """One of ``options`` (a collection of names)."""
     if not isinstance(value, str) or value not in options:
         raise refuse(field, value, "must be one of " + ", ".join(repr(o) for o in options))
     return value
 
 
-def integer(field, value, low, high):
+def integer(field: str, value: Any, low: float, high: float) -> int:
     """An int in [low, high]."""
     other = (bool, np.bool_, np.timedelta64)  # this one is a NumPy integer, too
     if isinstance(value, other) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
@@ -68,7 +73,7 @@ def integer(field, value, low, high):
     return int(value)
 
 
-def flags(field, value, shape):
+def flags(field: str, value: Any, shape: tuple[int, ...]) -> Bools:
     """A bool array of the given shape, always a fresh C-ordered copy."""
     try:
         a = np.array(value, order="C")
@@ -79,7 +84,7 @@ def flags(field, value, shape):
     return a
 
 
-def truth(field, value):
+def truth(field: str, value: Any) -> bool:
     """A bool."""
     if not isinstance(value, (bool, np.bool_)):
         raise refuse(field, value, "must be True or False")

@@ -5,6 +5,7 @@
 * Only entry kernels are cached, under the hash of all the source that they may have been made from.
 """
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -36,7 +37,7 @@ def _inner(function, options):
     return made
 
 
-def kernel(function=None, *, seconds=0, uses=()) -> Any:
+def kernel(function: Callable[..., Any] | None = None, *, seconds: int = 0, uses: tuple[Any, ...] = ()) -> Any:
     """Compile an inner kernel: called from other kernels, never from Python, never cached by itself.
 
     It may not make arrays. So numba need not count references to those it is given (``_nrt``), which costs a fifth of a shot.
@@ -49,12 +50,12 @@ def kernel(function=None, *, seconds=0, uses=()) -> Any:
     return made
 
 
-def inlined(function):
+def inlined(function: Callable[..., Any]) -> Any:
     """Compile an inner kernel as a part of its one caller, a large ``kernel``: else its code would be optimised once more there."""
     return _inner(function, _INLINED)
 
 
-def entry(function=None, *, what="", seconds=0, uses=()) -> Any:
+def entry(function: Callable[..., Any] | None = None, *, what: str = "", seconds: int = 0, uses: tuple[Any, ...] = ()) -> Any:
     """Compile a kernel that Python calls: its machine code is kept on disk.
 
     One that takes over a second to compile says ``what`` it is, for a line on stderr before it does; ``seconds`` and ``uses`` as for

@@ -6,6 +6,7 @@
 import os
 import sys
 import time
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, NamedTuple
 
@@ -14,7 +15,7 @@ from numba.core import event
 from ._cache import CACHE_FOLDER
 
 
-def say(text):
+def say(text: str) -> None:
     """A line on stderr, unless the user wants none or has no stderr."""
     if os.environ.get("SNOOKER_ENV_QUIET", "0") in ("", "0") and sys.stderr is not None:
         with suppress(OSError, ValueError):
@@ -26,9 +27,9 @@ class Cost(NamedTuple):
 
     what: str
     seconds: int
-    uses: tuple
+    uses: tuple[Any, ...]
 
-    def total(self):
+    def total(self) -> int:
         """How long it will take [s]: the large kernels that it uses are compiled with it unless that was done before in this process."""
         return self.seconds + sum(kernel.cost.seconds for kernel in self._missing())
 
@@ -54,7 +55,7 @@ _running: list[_WarmUp] = []
 
 
 @contextmanager
-def warming_up(kernels):
+def warming_up(kernels: Iterable[Any]) -> Iterator[None]:
     """While it lasts, each notice says which of the ``kernels`` it is about; the last one says how long they all took."""
     _running.append(_WarmUp(kernels))
     start = time.perf_counter()

@@ -5,7 +5,7 @@ from ._notices import warming_up
 from .simulation import collide_balls, collide_cushion, simulate
 
 
-def warmup():
+def warmup() -> None:
     """Compile every kernel of the package, for one table or many, or load it from the cache; stderr tells how far that is.
 
     Call it in the parent before worker processes start: otherwise each of them compiles for itself. Nothing is said where all comes from
@@ -18,7 +18,7 @@ def warmup():
     from .game.spotting import spot_colours
     from .planning import Planner, Positions, clear_paths, obstructions
     from .planning import pots as direct_pots
-    from .tasks.box_actions import line
+    from .tasks.box_actions import Actions, line
 
     with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
         simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
@@ -37,7 +37,7 @@ def warmup():
         env.reset(seed=0)
         env.step([0.0] * 4)
         pots(env.positions, env.on_table, REDS_MASK)
-        env.options.rules.actions.shot([0.0] * 4, env.positions, env.on_table, REDS_MASK)
+        Actions("absolute", False, False, env.physics).shot([0.0] * 4, env.positions, env.on_table, REDS_MASK)
         line(env.positions, env.on_table, REDS_MASK)
         is_snookered(env.positions, env.on_table, REDS_MASK)
         spot_colours(env.positions, env.on_table, 0)

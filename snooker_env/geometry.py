@@ -16,6 +16,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ._check import number, refuse
+from ._types import Floats
 
 __all__ = [
     "BALL_RADIUS", "BAULK_Y", "COLOUR_SPOTS", "D_RADIUS", "HALF_LENGTH", "HALF_WIDTH", "POCKETS", "POCKET_AIMS", "POCKET_PLACES", "PRESETS",
@@ -85,7 +86,7 @@ class Pocket:
     fall_depth: float
     fall_radius: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         name = "pocket." + ("middle" if self.is_middle else "corner")
         straight = 90.0 if self.is_middle else 45.0
         limits = {"start": (0, 1), "jaw_radius": (0, 1), "turn": (0, straight), "fall_depth": (-1, 1), "fall_radius": (0, 1)}
@@ -100,7 +101,7 @@ class Pocket:
             raise refuse(name, self, "must have a fall at least as wide as the throat, so that no ball passes beside it")
 
     @classmethod
-    def corner(cls, *, mouth, shelf, fall_radius, cut=135.0, jaw_radius=0.0):
+    def corner(cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 135.0, jaw_radius: float = 0.0) -> "Pocket":
         """A corner pocket by its published sizes [m, degrees].
 
         mouth: from jaw to jaw where they leave the noses; shelf: from the middle of the mouth to the slate's edge; fall_radius: of the
@@ -114,7 +115,7 @@ class Pocket:
         )  # fmt: skip
 
     @classmethod
-    def middle(cls, *, mouth, shelf, fall_radius, cut=90.0, jaw_radius=0.0):
+    def middle(cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 90.0, jaw_radius: float = 0.0) -> "Pocket":
         """A middle (side) pocket by its published sizes, as in ``corner``; cut: 90 for parallel facings, WPA 104."""
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
@@ -125,28 +126,28 @@ class Pocket:
     # Seen from the pocket's origin (the corner, or the middle on the nose line): depth outwards along the axis, offset across it.
 
     @property
-    def mouth(self):
+    def mouth(self) -> float:
         """From jaw to jaw where they leave the noses [m]."""
         return 2.0 * self.start if self.is_middle else sqrt(2.0) * self.start
 
     @property
-    def mouth_depth(self):
+    def mouth_depth(self) -> float:
         """How deep the line of the mouth lies [m]: at a corner in front of where the nose lines meet."""
         return 0.0 if self.is_middle else -self.start / sqrt(2.0)
 
     @property
-    def shelf(self):
+    def shelf(self) -> float:
         """From the middle of the mouth to the slate's edge [m]."""
         depth = self.fall_depth if self.is_middle else sqrt(2.0) * self.fall_depth
         return depth - self.fall_radius - self.mouth_depth
 
     @property
-    def taper(self):
+    def taper(self) -> float:
         """The angle between a facing and the axis [rad]; 0: the facings are parallel."""
         return radians((90.0 if self.is_middle else 45.0) - self.turn)
 
     @property
-    def _arc_end(self):
+    def _arc_end(self) -> tuple[float, float]:
         """Offset and depth of the place where a jaw's arc ends."""
         angle = radians(self.turn)
         on, in_ = self.jaw_radius * sin(angle), self.jaw_radius * (1.0 - cos(angle))  # along the nose, and away from its line
@@ -155,19 +156,19 @@ class Pocket:
         return (self.start - on + in_) / sqrt(2.0), (in_ - self.start + on) / sqrt(2.0)
 
     @property
-    def _ends_over_the_fall(self):
+    def _ends_over_the_fall(self) -> bool:
         offset, depth = self._arc_end
         return offset**2 + (depth - self.mouth_depth - self.shelf - self.fall_radius) ** 2 < self.fall_radius**2
 
     @property
-    def facing(self):
+    def facing(self) -> float:
         """Length of a facing [m], down to the depth of the fall's middle; 0 where the arc already ends over the fall."""
         if self._ends_over_the_fall:
             return 0.0
         return (self.mouth_depth + self.shelf + self.fall_radius - self._arc_end[1]) / cos(self.taper)
 
     @property
-    def throat(self):
+    def throat(self) -> float:
         """The least width between the two jaws [m]."""
         return 2.0 * (self._arc_end[0] - self.facing * sin(self.taper))
 
@@ -193,12 +194,12 @@ class Bed:
     """Fields of ``Physics`` that belong to the balls and noses of this game: R [m], M [kg], sin_theta. Empty: any ball."""
 
     @property
-    def pockets(self):
+    def pockets(self) -> tuple[str, ...]:
         """The names of its pockets, by index: those of ``POCKETS`` that it has, in that order."""
         return tuple(name for name, (_, sy) in zip(POCKETS, SIDES, strict=True) if (self.corner if sy else self.middle))
 
 
-def parts(bed):
+def parts(bed: Bed) -> tuple[Floats, Floats, Floats]:
     """Noses (k, 5), jaws (m, 6) and falls (p, 3) of a ``Bed``, columns as in ``physics.table.Table``. Index of a fall = pocket."""
     X, Y = bed.width / 2, bed.length / 2
     end = bed.corner.start if bed.corner else 0.0
@@ -242,7 +243,7 @@ def _jaw(pocket, start, onward, outward):
     return arcs
 
 
-def _ball(**fields):
+def _ball(**fields: float) -> Mapping[str, float]:
     return MappingProxyType(fields)
 
 
@@ -253,7 +254,7 @@ _MIDDLE = Pocket(is_middle=True, start=0.109185, jaw_radius=0.0669, turn=90.0, f
 _SNOOKER = _ball(R=BALL_RADIUS, M=0.1406, sin_theta=0.4)
 
 
-def scaled(pocket, factor):
+def scaled(pocket: Pocket, factor: float) -> Pocket:
     """A pocket of the same shape, ``factor`` times as large."""
     lengths = {name: factor * getattr(pocket, name) for name in ("start", "jaw_radius", "fall_depth", "fall_radius")}
     return Pocket(is_middle=pocket.is_middle, turn=pocket.turn, **lengths)

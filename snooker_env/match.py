@@ -1,7 +1,17 @@
 """How do I get a match of two players? ``match_env``: the PettingZoo environment, with PettingZoo loaded only when it is asked for."""
 
+from typing import TYPE_CHECKING, Any
 
-def match_env(options=None, *, render_mode=None, **given):
+from ._types import RenderMode
+
+if TYPE_CHECKING:
+    from .envs.match import MatchEnv as _MatchEnv
+    from .tasks.options import Options
+else:  # neither PettingZoo nor the environments are loaded before they are asked for
+    _MatchEnv = Options = Any
+
+
+def match_env(options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any) -> "_MatchEnv":
     """A frame of snooker between "player_0" and "player_1": a PettingZoo AEC environment (``snooker_env.envs.match.MatchEnv``).
 
     The arguments are those of ``Snooker-v0`` with ``task="frame"``, as keywords or as ``Options``, but for an opponent. As keywords,

@@ -18,7 +18,11 @@ except ModuleNotFoundError as error:
     wanted = 'snooker_env.sb3 needs Stable-Baselines3; install it, in a clone of snooker_env, with: pip install -e ".[train]"'
     raise ImportError(wanted) from error
 
+from collections.abc import Sequence
+from typing import Any
+
 from ._check import choice, integer, refuse
+from ._types import Bools, Observation, Singles
 from .envs.vector import SnookerVectorEnv
 
 __all__ = ["SnookerVecEnv"]
@@ -34,7 +38,11 @@ class SnookerVecEnv(VecEnv):
     entries for each table at each step being slow, but for those named in ``info_keys``.
     """
 
-    def __init__(self, num_envs, *, seed=None, info_keys=(), **kwargs):
+    tables: SnookerVectorEnv
+    info_keys: tuple[str, ...]
+    reset_infos: list[dict[str, Any]]
+
+    def __init__(self, num_envs: int, *, seed: int | None = None, info_keys: Sequence[str] = (), **kwargs: Any):
         if seed is not None:
             seed = integer("seed", seed, 0, 2**63 - 1)
         if "autoreset_mode" in kwargs:
@@ -49,7 +57,7 @@ class SnookerVecEnv(VecEnv):
         if seed is not None:
             self.seed(seed)
 
-    def reset(self):
+    def reset(self) -> Observation:
         """New visits on all tables, with the seeds and options set before: ``set_options([{"state": ...}, ...])`` starts from states.
 
         These hold their random numbers; with ``seed`` called too, those of the seeds take their place.
@@ -67,11 +75,11 @@ class SnookerVecEnv(VecEnv):
         self._returns[:], self._lengths[:] = 0.0, 0
         return observation
 
-    def step_async(self, actions):
+    def step_async(self, actions: Any) -> None:
         """Note the actions."""
         self._actions = actions
 
-    def step_wait(self):
+    def step_wait(self) -> tuple[Observation, Singles, Bools, list[dict[str, Any]]]:
         """Play them: observations, rewards (float32), ends, infos."""
         observation, rewards, terminated, truncated, info = self.tables.step(self._actions)
         done = terminated | truncated
@@ -90,15 +98,15 @@ class SnookerVecEnv(VecEnv):
         self._returns[done], self._lengths[done] = 0.0, 0
         return observation, rewards.astype(np.float32), done, infos
 
-    def close(self):
+    def close(self) -> None:
         """End the threads."""
         self.tables.close()
 
-    def get_images(self):
+    def get_images(self) -> Sequence[Any]:
         """A picture of each table."""
         return self.tables.render()
 
-    def get_attr(self, attr_name, indices=None):
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         """An attribute of the tables asked for: what all share, or of each its own, as ``points``."""
         if hasattr(self.tables, attr_name) and attr_name not in ("np_random", "np_random_seed"):
             return [getattr(self.tables, attr_name) for _ in self._get_indices(indices)]
@@ -108,16 +116,16 @@ class SnookerVecEnv(VecEnv):
             raise AttributeError(str(error)) from None
         return [each[k] for k in self._get_indices(indices)]
 
-    def set_attr(self, attr_name, value, indices=None):
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         """Not to be had: the tables share everything."""
         raise AttributeError(f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv")
 
-    def env_method(self, method_name, *method_args, indices=None, **method_kwargs):
+    def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
         """``get_state`` or ``action_masks`` of the tables asked for; no other method belongs to one table."""
         choice("method_name", method_name, ("get_state", "action_masks"))
         states = getattr(self.tables, method_name)()
         return [states[k] for k in self._get_indices(indices)]
 
-    def env_is_wrapped(self, wrapper_class, indices=None):
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
         """No table is wrapped, but each reports its episodes as a ``Monitor`` would."""
         return [issubclass(wrapper_class, Monitor) for _ in self._get_indices(indices)]

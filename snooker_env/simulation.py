@@ -5,15 +5,17 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._check import array, flags, integer, refuse, refuse_what
 from ._jit import entry
+from ._types import Batches, Bools, Fidelity, FlagRows, Flags, Floats, Ints, Real, Solver, Vector, Vectors
 from .physics import cloth, cue, engine, trajectory
 from .physics.events import EventKind, Status
 from .physics.impact import contact
 from .physics.impact.polynomial import WORK
-from .physics.parameters import FASTEST, FASTEST_IMPACT, MOST_SPIN, MOST_SPIN_IMPACT, P_E_B, Physics
-from .physics.table import Table
+from .physics.parameters import FASTEST, FASTEST_IMPACT, MOST_SPIN, MOST_SPIN_IMPACT, P_E_B, Physics, PhysicsLike
+from .physics.table import Table, TableLike
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
 """One logged event; ``kind`` is an ``EventKind``."""
@@ -58,7 +60,9 @@ def _spin(name, value):
     return tuple(array(name, value, (3,), MOST_SPIN_IMPACT, "rad/s").tolist())
 
 
-def collide_balls(v1, w1, v2, w2, normal, physics=None, fidelity="standard"):
+def collide_balls(
+    v1: Vector, w1: Vector, v2: Vector, w2: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
+) -> tuple[Floats, Floats, Floats, Floats]:
     """The frictional impact of two balls standing on the cloth (Mathavan, Jackson & Parkin 2014, 2.1 to 2.4).
 
     v1, v2: velocities [m/s], w1, w2: spins [rad/s], each (3,), no number beyond 1e6 m/s and 1e9 rad/s; normal: horizontal unit
@@ -71,13 +75,15 @@ def collide_balls(v1, w1, v2, w2, normal, physics=None, fidelity="standard"):
     """
     physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
     args = _velocity("v1", v1), _spin("w1", w1), _velocity("v2", v2), _spin("w2", w2)
-    *out, solved = _collide_balls(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
+    v1_after, w1_after, v2_after, w2_after, solved = _collide_balls(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
     if not solved:
         raise SimulationError(f"the impact of v1, w1, v2, w2 = {args} did not end at fidelity {fidelity!r}; try another fidelity")
-    return tuple(np.array(a) for a in out)
+    return np.array(v1_after), np.array(w1_after), np.array(v2_after), np.array(w2_after)
 
 
-def collide_cushion(v, w, normal, physics=None, fidelity="standard"):
+def collide_cushion(
+    v: Vector, w: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
+) -> tuple[Floats, Floats]:
     """The impact of a ball with a cushion's nose (Mathavan, Jackson & Parkin 2010, with Coulomb's law at zero slip).
 
     v: velocity [m/s], w: spin [rad/s], (3,) each, bounded as in ``collide_balls``; normal: horizontal unit vector INTO the cushion.
@@ -87,13 +93,15 @@ def collide_cushion(v, w, normal, physics=None, fidelity="standard"):
     """
     physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
     args = _velocity("v", v), _spin("w", w)
-    *out, solved = _collide_cushion(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
+    v_after, w_after, solved = _collide_cushion(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
     if not solved:
         raise SimulationError(f"the cushion impact of v, w = {args} did not end at fidelity {fidelity!r}; try another fidelity")
-    return tuple(np.array(a) for a in out)
+    return np.array(v_after), np.array(w_after)
 
 
-def strike(speed, aim, side=0.0, top=0.0, elevation=0.0, physics=None):
+def strike(
+    speed: Real, aim: Real, side: Real = 0.0, top: Real = 0.0, elevation: Real = 0.0, physics: PhysicsLike = None
+) -> tuple[Floats, Floats]:
     """The cue ball's velocity (3,) [m/s] and spin (3,) [rad/s] just after the cue has struck it.
 
     speed in [0, 1000]: the speed the cue gives [m/s], along the cue; aim: direction of the cue [rad], anticlockwise from +x; side, top: tip
@@ -121,15 +129,15 @@ class Shot:
     * events: Structured array of ``time`` [s], ``kind`` (EventKind), ``i``, ``j``, in order.
     """
 
-    positions: np.ndarray
-    potted: np.ndarray
-    on_table: np.ndarray
+    positions: Floats
+    potted: Ints
+    on_table: Bools
     duration: float
-    events: np.ndarray
-    segments: np.ndarray = field(repr=False)
+    events: NDArray[np.void]
+    segments: Floats = field(repr=False)
     physics: Physics = field(repr=False)
 
-    def at(self, t):
+    def at(self, t: Real | Vector) -> tuple[Floats, Floats, Floats]:
         """Positions (n, 2) [m], velocities (n, 2) [m/s] and spins (n, 3) [rad/s] at time t [s], finite and not negative.
 
         t may be an array of shape (m,): then a leading axis m is added to each. At the time of an impact: just after it. From ``duration``
@@ -137,7 +145,8 @@ class Shot:
         about the vertical stays as it is). A potted ball lies still in its place of ``positions``, without spin, from its pot on, and
         one that was not on the table where it was given. A ball in the air over a pocket has the mean velocity from event to event.
         """
-        times = array("t", t if np.ndim(t) else [t], (-1,))
+        single = np.ndim(np.asarray(t)) == 0
+        times = array("t", [t] if single else t, (-1,))
         if times.size and times.min() < 0:
             raise refuse("t", float(times.min()), "must not be negative")
         n, m = len(self.positions), len(times)
@@ -146,19 +155,19 @@ class Shot:
         trajectory.states_at(segments, n, times, self.physics.pack(), *out)
         if self.physics.spin_decel > 0:
             out[2][times >= self.duration] = 0.0  # rounding may leave 1e-14 of a spin at the very time at which it ends
-        return tuple(a[0] for a in out) if np.ndim(t) == 0 else out
+        return (out[0][0], out[1][0], out[2][0]) if single else out
 
 
 @dataclass(frozen=True, eq=False)
 class ShotBatch:
     """Many simulated shots: the fields of ``Shot`` with a leading axis b. ``events``: one array a shot if asked for, else None."""
 
-    positions: np.ndarray
-    potted: np.ndarray
-    on_table: np.ndarray
-    duration: np.ndarray
-    event_count: np.ndarray
-    events: list[np.ndarray] | None = None
+    positions: Floats
+    potted: Ints
+    on_table: Bools
+    duration: Floats
+    event_count: Ints
+    events: list[NDArray[np.void]] | None = None
 
 
 def _balls(positions, velocities, spins, on_table, batch):
@@ -173,7 +182,17 @@ def _balls(positions, velocities, spins, on_table, batch):
     return r, v, w, here
 
 
-def simulate(positions, velocities, spins, table="match", physics=None, fidelity="standard", *, on_table=None, max_events=MAX_EVENTS):
+def simulate(
+    positions: Vectors,
+    velocities: Vectors,
+    spins: Vectors,
+    table: TableLike = "match",
+    physics: PhysicsLike = None,
+    fidelity: Fidelity = "standard",
+    *,
+    on_table: Flags | None = None,
+    max_events: int = MAX_EVENTS,
+) -> Shot:
     """Play one shot until everything is at rest.
 
     positions (n, 2) [m], velocities (n, 2) [m/s] and spins (n, 3) [rad/s] of n balls in the world frame (origin at the table's centre, +y
@@ -185,14 +204,25 @@ def simulate(positions, velocities, spins, table="match", physics=None, fidelity
     Returns a ``Shot``. Raises ValueError on bad input (field, value, what is allowed), SimulationError if the shot does not come to rest
     within ``max_events`` events.
     """
-    physics, table, fidelity = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
+    physics, table, solver = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=False)
     physics.check_stopping()
     table.check(r, physics.R, "positions", here)
-    return play(r, v, w, here, physics, table, fidelity, integer("max_events", max_events, 1, 2**31))
+    return play(r, v, w, here, physics, table, solver, integer("max_events", max_events, 1, 2**31))
 
 
-def play(positions, velocities, spins, on_table, physics, table, fidelity, max_events=MAX_EVENTS, *, path=True):
+def play(
+    positions: Floats,
+    velocities: Floats,
+    spins: Floats,
+    on_table: Bools,
+    physics: Physics,
+    table: Table,
+    fidelity: Solver,
+    max_events: int = MAX_EVENTS,
+    *,
+    path: bool = True,
+) -> Shot:
     """``simulate`` without its checks, for callers whose layouts are known to be sound; the arrays given are left as they are.
 
     fidelity: as ``parse_fidelity`` returns it. path=False saves the log that ``Shot.at`` needs.
@@ -212,26 +242,26 @@ def play(positions, velocities, spins, on_table, physics, table, fidelity, max_e
 
 
 def simulate_batch(
-    positions, velocities, spins, table="match", physics=None, fidelity="standard", *, on_table=None, threads=None, events=False,
-    max_events=MAX_EVENTS,
-):  # fmt: skip
+    positions: Batches, velocities: Batches, spins: Batches, table: TableLike="match", physics: PhysicsLike=None, fidelity: Fidelity="standard", *, on_table: FlagRows | None=None, threads: int | None=None, events: bool=False,
+    max_events: int=MAX_EVENTS,
+) -> ShotBatch:  # fmt: skip
     """Play b shots on b tables at once: positions (b, n, 2), velocities (b, n, 2), spins (b, n, 3), on_table (b, n) bool or None.
 
     threads: how many to use, None for one per core; results do not depend on it. events: also return each shot's event log.
     Returns a ``ShotBatch``. Errors as in ``simulate``.
     """
-    physics, table, fidelity = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
+    physics, table, solver = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=True)
     physics.check_stopping()
     table.check(r, physics.R, "positions", here)
     threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
     max_events = integer("max_events", max_events, 1, 2**31)
     start = r.copy(), v.copy(), w.copy(), here.copy()
-    out = _run((r, v, w, here), physics, table, fidelity, max_events, _FIRST_LOG if events else 0, 0, threads)
+    out = _run((r, v, w, here), physics, table, solver, max_events, _FIRST_LOG if events else 0, 0, threads)
     logs = [out.log(k) for k in range(len(r))] if events else None
     for k in np.flatnonzero(out.status != int(Status.OK)).tolist():
         if out.status[k] == Status.LOG_FULL:  # rare: a log longer than the first guess; played once more with room
-            one = play(start[0][k], start[1][k], start[2][k], start[3][k], physics, table, fidelity, max_events, path=False)
+            one = play(start[0][k], start[1][k], start[2][k], start[3][k], physics, table, solver, max_events, path=False)
             r[k], here[k], out.potted[k], out.duration[k] = one.positions, one.on_table, one.potted, one.duration
             out.n_events[k] = len(one.events)
             if logs is not None:

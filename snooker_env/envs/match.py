@@ -6,10 +6,14 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium.utils import seeding
+from numpy.typing import NDArray
 from pettingzoo import AECEnv
 
 from .._check import choice, refuse
+from .._types import Action, Bools, Floats, Observation, RenderMode
+from ..game.frame import Frame
 from ..game.frame_columns import POINTS, STROKES
+from ..simulation import Shot
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
@@ -17,12 +21,12 @@ from ..tasks.options import Options, options_of
 from ..tasks.rewards import frame_reward
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import I_FOULS, I_PENALTY, I_POINTS, Crew
-from .pictures import FPS, MODES, Pictures
+from .pictures import FPS, MODES, Picture, Pictures
 
 PLAYERS = ("player_0", "player_1")
 
 
-class MatchEnv(AECEnv):
+class MatchEnv(AECEnv[str, Any, Any]):
     """A frame of snooker between two players, one stroke a step.
 
     ## Turns
@@ -65,9 +69,24 @@ class MatchEnv(AECEnv):
     has ended both players are terminated, or truncated, at once.
     """
 
-    metadata = {"name": "snooker_match_v0", "render_modes": list(MODES), "is_parallelizable": False, "render_fps": FPS}  # noqa: RUF012
+    metadata: dict[str, Any] = {"name": "snooker_match_v0", "render_modes": list(MODES), "is_parallelizable": False, "render_fps": FPS}  # noqa: RUF012
 
-    def __init__(self, options: Options | None = None, *, render_mode: str | None = None, **given: Any):
+    options: Options
+    tables: Frames
+    """The one table: ``tasks.frame.Frames``."""
+    possible_agents: list[str]
+    agents: list[str]
+    observation_spaces: dict[str, Any]
+    action_spaces: dict[str, Any]
+    rewards: dict[str, float]
+    terminations: dict[str, bool]
+    truncations: dict[str, bool]
+    infos: dict[str, dict[str, Any]]
+    np_random: np.random.Generator
+    last_shot: Shot | None
+    """The ``Shot`` of the last turn, with its path when a render mode is set; None where none was played."""
+
+    def __init__(self, options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any):
         super().__init__()
         if options is None:
             box = given.get("action", "box") == "box"
@@ -80,7 +99,6 @@ class MatchEnv(AECEnv):
             choice("render_mode", render_mode, MODES)
         self.render_mode = render_mode
         self.tables = Frames(self.options.rules, 1)
-        """The one table: ``tasks.frame.Frames``."""
         self.possible_agents = list(PLAYERS)
         self.agents = []
         self.observation_spaces = {name: observations.space(self.options.observation, frame=True) for name in PLAYERS}
@@ -89,50 +107,49 @@ class MatchEnv(AECEnv):
         self._seeded = False
         self._buffers, self._last = ShotBuffers(1, path=render_mode is not None), None
         self.last_shot = None
-        """The ``Shot`` of the last turn, with its path when a render mode is set; None where none was played."""
         self._pictures = Pictures(self.options.rules.table, render_mode)
 
     @property
-    def positions(self):
+    def positions(self) -> Floats:
         """Where the balls lie: (22, 2) [m]."""
         return self.tables.positions[0].copy()
 
     @property
-    def on_table(self):
+    def on_table(self) -> Bools:
         """Which balls are on the table: (22,) bool."""
         return self.tables.on_table[0].copy()
 
     @property
-    def frame(self):
+    def frame(self) -> Frame:
         """The ``snooker_env.game.frame.Frame`` that is played."""
         return self.tables.frame(0)
 
     @property
-    def strokes(self):
+    def strokes(self) -> int:
         """How many strokes both players have played."""
         return int(self.tables.game[0, STROKES])
 
-    def observation_space(self, agent):
+    def observation_space(self, agent: str) -> gymnasium.Space[Any]:
         """The same object each time."""
         return self.observation_spaces[agent]
 
-    def action_space(self, agent):
+    def action_space(self, agent: str) -> gymnasium.Space[Any]:
         """The same object each time."""
         return self.action_spaces[agent]
 
-    def observe(self, agent):
+    def observe(self, agent: str) -> Observation:
         """What ``agent`` sees now; a fresh array (or dict of arrays)."""
         rows = self.tables.observe(np.zeros(1, np.int64), PLAYERS.index(agent))
         return observations.shaped(self.options.observation, rows[0])
 
-    def action_mask(self, agent):
+    def action_mask(self, agent: str) -> NDArray[np.int8]:
         """With ``action="discrete"``: which choices ``agent`` has, int8 (n,); none unless it is his turn."""
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         there = agent == self.agent_selection and not self.tables.ended()[0]
         return (self.tables.action_masks()[0] & there).astype(np.int8)
 
-    def reset(self, seed=None, options=None):
+    def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """A new frame. options: None or {"state": a state of ``get_state``}; other keys are not read, PettingZoo's own test gives some."""
         if options is not None and not isinstance(options, dict):
             raise refuse("options", options, 'must be None or {"state": ...}')
@@ -168,7 +185,7 @@ class MatchEnv(AECEnv):
         self.agent_selection = PLAYERS[frame.striker]
         self.infos = {name: self._info(frame, k) for k, name in enumerate(PLAYERS)}
 
-    def step(self, action):
+    def step(self, action: Action) -> None:
         """The selected player's action, None once he has terminated. ValueError if it is not finite, of the right shape and in [-1, 1]."""
         if not self.agents:
             raise gymnasium.error.ResetNeeded("the frame is over: call reset() before step()")
@@ -209,11 +226,11 @@ class MatchEnv(AECEnv):
             info["action_mask"] = self.action_mask(PLAYERS[player])
         return info
 
-    def get_state(self):
+    def get_state(self) -> dict[str, Any]:
         """The whole state as JSON types: table, frame, strokes and random numbers."""
         return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
-    def set_state(self, state):
+    def set_state(self, state: dict[str, Any]) -> None:
         """Take over a state from ``get_state``; the next stroke plays on identically. Rewards not yet collected are zero.
 
         ValueError if it is not sound, and then nothing has changed.
@@ -229,13 +246,13 @@ class MatchEnv(AECEnv):
         self._seeded = True
         self._begin()
 
-    def render(self):
+    def render(self) -> Picture:
         """The table with the cue ball's last path: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise."""
         return self._pictures.render(self.tables.positions[0], self.tables.on_table[0], self.last_shot, self.tables.text(0))
 
     def _show(self, *, film):
         self._pictures.show(self.tables.positions[0], self.tables.on_table[0], self.last_shot, self.tables.text(0), film=film)
 
-    def close(self):
+    def close(self) -> None:
         """Close the window, if there is one."""
         self._pictures.close()

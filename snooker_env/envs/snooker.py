@@ -6,22 +6,28 @@ import gymnasium
 import numpy as np
 
 from .._check import choice, refuse
+from .._types import Action, Bools, Floats, Observation, RenderMode
 from ..game.balls import BallOn
+from ..game.frame import Frame
 from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
+from ..physics.parameters import Physics
+from ..physics.table import Table
+from ..simulation import Shot
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
+from ..tasks.noise import Noise
 from ..tasks.options import Options, options_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, Tables
 from ..tasks.visit import Visits
-from .pictures import FPS, MODES, Pictures
+from .pictures import FPS, MODES, Picture, Pictures
 
 TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames}
 """Who plays each task."""
 
 
-class SnookerEnv(gymnasium.Env):
+class SnookerEnv(gymnasium.Env[Any, Any]):
     """Snooker shot selection: one step is one whole shot.
 
     ## Description
@@ -118,88 +124,88 @@ class SnookerEnv(gymnasium.Env):
     May 2022.
     """
 
-    metadata = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012 - Gymnasium's own convention
+    metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012 - Gymnasium's own convention
 
-    def __init__(self, options: Options | None = None, *, render_mode: str | None = None, **given: Any):
-        self.options = options_of(options, given)
-        self.tables = TABLES[self.options.task](self.options.rules, 1)
+    def __init__(self, options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any):
+        self.options: Options = options_of(options, given)
+        self.tables: Tables = TABLES[self.options.task](self.options.rules, 1)
         """The one table: ``tasks.tables.Tables``."""
         self.action_space: Any = self.options.rules.actions.space
-        self.observation_space = observations.space(self.options.observation, frame=self.options.task == "frame")
+        self.observation_space: Any = observations.space(self.options.observation, frame=self.options.task == "frame")
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
         self._pictures = Pictures(self.options.rules.table, render_mode)
         self._buffers, self._seeded = ShotBuffers(1, path=render_mode is not None), False
-        self.last_shot = None
+        self.last_shot: Shot | None = None
         """The ``Shot`` of the last step, with its path when a render mode is set; None before the first."""
 
     # the state of the table ------------------------------------------------------------------------------------------------
 
     @property
-    def positions(self):
+    def positions(self) -> Floats:
         """Where the balls lie: (22, 2) [m]."""
         return self.tables.positions[0].copy()
 
     @property
-    def on_table(self):
+    def on_table(self) -> Bools:
         """Which balls are on the table: (22,) bool."""
         return self.tables.on_table[0].copy()
 
     @property
-    def ball_on(self):
+    def ball_on(self) -> BallOn:
         """What is on, a ``BallOn``."""
         return BallOn(self.tables.game[0, BALL_ON])
 
     @property
-    def in_hand(self):
+    def in_hand(self) -> bool:
         """Whether the cue ball is in hand."""
         return bool(self.tables.game[0, IN_HAND])
 
     @property
-    def points(self):
+    def points(self) -> int:
         """Points of the visit so far; in a frame of the striker's."""
         return int(self.tables.game[0, POINTS])
 
     @property
-    def over(self):
+    def over(self) -> bool:
         """Whether the visit or frame has ended, stopped by the referee too, or not yet begun."""
         return bool(self.tables.ended()[0])
 
     @property
-    def on(self):
+    def on(self) -> int:
         """Mask of the balls that may be struck first, bit i for ball i."""
         return self.tables.on(0)
 
     @property
-    def frame(self):
+    def frame(self) -> Frame | None:
         """The ``snooker_env.game.frame.Frame`` that is played; None in a visit."""
         return self.tables.frame(0) if isinstance(self.tables, Frames) else None
 
     @property
-    def physics(self):
+    def physics(self) -> Physics:
         """The ``Physics`` it is played by."""
         return self.options.rules.physics
 
     @property
-    def table(self):
+    def table(self) -> Table:
         """The ``Table`` it is played on."""
         return self.options.rules.table
 
     @property
-    def noise(self):
+    def noise(self) -> Noise:
         """The ``Noise`` of its strokes."""
         return self.options.rules.noise
 
-    def get_state(self):
+    def get_state(self) -> dict[str, Any]:
         """The whole state as JSON types: table, game and random numbers. ``set_state`` brings it back exactly."""
         return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
-    def set_state(self, state):
+    def set_state(self, state: dict[str, Any]) -> None:
         """Take over a state from ``get_state``; the next shot plays on identically. ValueError if it is not sound, with nothing changed."""
         self._take(self.tables.checked(state, self.np_random), seed=None)
 
-    def _take(self, sound, *, seed):
+    def _take(self, sound: Any, *, seed: int | None) -> None:
         """Take over a sound state; with a seed the random numbers are not the state's but those of ``np_random``."""
         if seed is None:
             self.np_random.bit_generator.state, self._np_random_seed = sound.rng, -1  # Gymnasium's number for "not from a seed"
@@ -210,7 +216,7 @@ class SnookerEnv(gymnasium.Env):
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
-    def reset(self, *, seed=None, options=None):
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
         """A new visit or frame. options: None or {"state": a state of ``get_state``}; with a seed too, see States."""
         if options is not None and not isinstance(options, dict):
             raise refuse("options", options, 'must be None or {"state": ...}')
@@ -230,7 +236,7 @@ class SnookerEnv(gymnasium.Env):
             self._show()
         return observations.shaped(self.options.observation, out.observations[0]), self.tables.info(out, 0)
 
-    def step(self, action):
+    def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Play one shot. ValueError if the action is not finite and within [-1, 1]."""
         a = self.options.rules.actions.check(action)
         tables = self.tables
@@ -245,29 +251,29 @@ class SnookerEnv(gymnasium.Env):
         observation = observations.shaped(self.options.observation, out.observations[0])
         return observation, float(out.rewards[0]), bool(out.terminated[0]), bool(out.truncated[0]), tables.info(out, 0)
 
-    def action_masks(self):
+    def action_masks(self) -> Bools:
         """With ``action="discrete"``: which choices there are, bool (n,), as sb3-contrib's maskable algorithms ask for them."""
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.tables.action_masks()[0]
 
-    def _crew(self):
+    def _crew(self) -> Crew:
         return Crew(self._buffers, (self.np_random,), self._watch)
 
-    def _watch(self, k, buffers, j, own):
+    def _watch(self, k: int, buffers: ShotBuffers, j: int, own: bool) -> None:
         """Called after each stroke of either player: all are shown, else the agent's own is kept."""
         if own or self.render_mode is not None:
             self.last_shot = buffers.shot(j, self.options.rules.physics)
         if self.render_mode == "human":
             self._show(film=True)
 
-    def render(self):
+    def render(self) -> Picture:
         """The table with the cue ball's last path: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise."""
         return self._pictures.render(self.positions, self.on_table, self.last_shot, self.tables.text(0))
 
-    def close(self):
+    def close(self) -> None:
         """Close the window, if there is one."""
         self._pictures.close()
 
-    def _show(self, *, film=False):
+    def _show(self, *, film: bool = False) -> None:
         self._pictures.show(self.positions, self.on_table, self.last_shot, self.tables.text(0), film=film)

@@ -4,7 +4,7 @@ gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry
 """
 
 import copy
-from typing import Any
+from typing import Any, Literal
 
 import gymnasium
 import numpy as np
@@ -13,11 +13,13 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from .._check import choice, integer, refuse, refuse_what
+from .._types import Bools, Floats, Observation
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.options import NEVER, Options, options_of
+from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
-from .pictures import Pictures
+from .pictures import Picture, Pictures
 from .snooker import TABLES, SnookerEnv
 
 PICTURES = ("rgb_array", "ansi")
@@ -31,7 +33,7 @@ NOT_OF_A_TABLE = {
 
 OUTPUTS = {"observations": "observations", "rewards": "rewards", "terminations": "terminated", "truncations": "truncated"}
 """What a step can write into arrays that it is given, and what ``StepOutput`` calls it."""
-DTYPES = {"observations": np.float32, "rewards": np.float64, "terminations": np.bool_, "truncations": np.bool_}
+DTYPES: dict[str, type[np.generic]] = {"observations": np.float32, "rewards": np.float64, "terminations": np.bool_, "truncations": np.bool_}
 
 
 def _check_out(name, a, shape, dtype):
@@ -43,7 +45,7 @@ def _check_out(name, a, shape, dtype):
     return a
 
 
-class SnookerVectorEnv(VectorEnv):
+class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
     ``num_envs`` tables; ``autoreset_mode``: NEXT_STEP, SAME_STEP or DISABLED (of ``gymnasium.vector.AutoresetMode``, or its value);
@@ -63,7 +65,17 @@ class SnookerVectorEnv(VectorEnv):
     "truncations": ...}``, any of them, of the right shape and dtype, C-contiguous (shared memory, for instance); these are returned.
     """
 
-    metadata = SnookerEnv.metadata
+    metadata: dict[str, Any] = SnookerEnv.metadata
+
+    num_envs: int
+    options: Options
+    autoreset_mode: AutoresetMode
+    single_action_space: Any
+    single_observation_space: Any
+    action_space: Any
+    observation_space: Any
+    tables: Tables
+    """The tables: ``tasks.tables.Tables``."""
 
     def __init__(
         self,
@@ -71,7 +83,7 @@ class SnookerVectorEnv(VectorEnv):
         options: Options | None = None,
         *,
         max_episode_steps: int | None = None,
-        render_mode: str | None = None,
+        render_mode: Literal["rgb_array", "ansi"] | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         threads: int | None = None,
         **given: Any,
@@ -90,7 +102,6 @@ class SnookerVectorEnv(VectorEnv):
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.tables = TABLES[self.options.task](self.options.rules, self.num_envs, limit=limit)
-        """The tables: ``tasks.tables.Tables``."""
         self._pictures = Pictures(self.options.rules.table, render_mode)
         self._generators: list[Any] = [None] * self.num_envs
         self._generator_seeds = [-1] * self.num_envs
@@ -101,7 +112,9 @@ class SnookerVectorEnv(VectorEnv):
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
-    def reset(self, *, seed: int | list[int | None] | None = None, options=None, out=None):
+    def reset(
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None, out: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
         """New visits or frames on all tables, or on those of ``options["reset_mask"]``."""
         options = {} if options is None else options
         if not isinstance(options, dict):
@@ -135,7 +148,7 @@ class SnookerVectorEnv(VectorEnv):
         self._done[wanted] = False
         return self._shaped(written, out), self.tables.infos(written.reals, written.counts, wanted)
 
-    def step(self, actions, *, out=None):
+    def step(self, actions: Any, *, out: dict[str, Any] | None = None) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
         """One step of each table. ValueError, before anything is played, if an action is not finite and within [-1, 1]."""
         a = self.options.rules.actions.check_many(actions, self.num_envs)
         given = self._given(out, OUTPUTS)
@@ -165,13 +178,13 @@ class SnookerVectorEnv(VectorEnv):
             self._done = done
         return self._shaped(written, out), written.rewards, written.terminated, written.truncated, infos
 
-    def action_masks(self):
+    def action_masks(self) -> Bools:
         """With ``action="discrete"``: which choices there are on each table, bool (num_envs, n)."""
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.tables.action_masks()
 
-    def call(self, name, *args, **kwargs):
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """For each table what ``SnookerEnv`` calls ``name``, an attribute or a method (which gets the arguments): a tuple, as
         ``SyncVectorEnv.call`` gives it. ValueError for what does not belong to one table, AttributeError for what is not there."""
         if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
@@ -180,36 +193,36 @@ class SnookerVectorEnv(VectorEnv):
         found = [getattr(self._table(k, generator), name) for k, generator in enumerate(self.np_random)]
         return tuple(each(*args, **kwargs) if callable(each) else each for each in found)
 
-    def get_attr(self, name):
+    def get_attr(self, name: str) -> tuple[Any, ...]:
         """``call`` without arguments: an attribute of each table."""
         return self.call(name)
 
-    def set_attr(self, name, values):
+    def set_attr(self, name: str, values: Any) -> None:
         """Not to be had."""
         raise AttributeError(f"{name} cannot be set: the tables share everything; make another environment")
 
-    def _table(self, k, generator):
+    def _table(self, k: int, generator: np.random.Generator) -> SnookerEnv:
         """Table k as a ``SnookerEnv``; they share the table's state."""
         env = copy.copy(self._one)
         env.tables, env._np_random, env._np_random_seed = self.tables.view(k), generator, self._generator_seeds[k]
         return env
 
-    def render(self):
+    def render(self) -> tuple[Picture, ...]:
         """A picture of each table: uint8 (H, W, 3) for "rgb_array", str for "ansi"."""
         t = self.tables
         return tuple(self._pictures.render(t.positions[k], t.on_table[k], None, t.text(k)) for k in range(self.num_envs))
 
-    def close_extras(self, **kwargs):
+    def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""
         self._crew.shutdown()
 
     @property
-    def threads(self):
+    def threads(self) -> int:
         """How many threads play the tables, fixed when the environment is made."""
         return self._crew.threads
 
     @property
-    def np_random(self):
+    def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
         """The numpy generator of each table; each is asked once, for the key of its table's stream."""
         for k in range(self.num_envs):
             if self._generators[k] is None:
@@ -217,20 +230,20 @@ class SnookerVectorEnv(VectorEnv):
         return tuple(self._generators)
 
     @property
-    def np_random_seed(self):
+    def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override]
         """The seed of each table's generator; -1 where it came with a state."""
-        return self.np_random and tuple(self._generator_seeds)
+        return tuple(self._generator_seeds) if self.np_random else ()
 
-    def _seed_generator(self, k, seed):
+    def _seed_generator(self, k: int, seed: int | None) -> None:
         self._generators[k], self._generator_seeds[k] = seeding.np_random(seed)
 
     # states ----------------------------------------------------------------------------------------------------------------
 
-    def get_state(self):
+    def get_state(self) -> list[dict[str, Any]]:
         """The state of each table, as ``SnookerEnv.get_state`` gives it; strokes towards ``max_episode_steps`` are not part of it."""
         return [self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)]
 
-    def _set_state(self, k, state, *, seeded):
+    def _set_state(self, k: int, state: Any, *, seeded: bool) -> None:
         if not seeded:
             self._generators[k].bit_generator.state, self._generator_seeds[k] = state.rng, -1
         self.tables.set_state(k, state)

@@ -8,9 +8,10 @@ import numpy as np
 
 from .._check import array, refuse
 from .._jit import entry, kernel
+from .._types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS
 from .balls import N_BALLS, balls_on_kernel, bits, check_table, mask_of
-from .referee import check, numbers_of, verdict_of
+from .referee import Situation, Stroke, Verdict, check, numbers_of, verdict_of
 from .ruling import AUTO, FLAG, OUTCOME, ruling
 from .snookered import NO_JAWS, snookered
 from .spotting import spot
@@ -68,7 +69,9 @@ def settle_one(positions, on_table, ball_on, free_ball, lead, first, touching, m
     return settle(positions, on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags, jaws, radius)
 
 
-def settle_table(positions, on_table, situation, stroke, *, jaws=NO_JAWS, radius=BALL_RADIUS):
+def settle_table(
+    positions: Vectors, on_table: Flags, situation: Situation, stroke: Stroke, *, jaws: Vectors = NO_JAWS, radius: float = BALL_RADIUS
+) -> tuple[Verdict, Floats, Bools]:
     """Judge a ``Stroke`` and put the table in order: the ``Verdict`` and new ``positions`` (22, 2) and ``on_table`` (22,) bool.
 
     ``positions`` are those after the stroke, ``on_table`` that before it, and it must agree with ``situation.on_table``. The fields

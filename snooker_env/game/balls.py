@@ -5,12 +5,15 @@ ball, 1 to 15 the reds, 16 to 21 the colours in the order of their values. A set
 or a bool array (22,); positions are float64 (22, 2).
 """
 
+from collections.abc import Iterable
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 
 from .._check import array, integer, refuse
 from .._jit import kernel
+from .._types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS
 
 N_BALLS = 22
@@ -95,7 +98,7 @@ def count(mask):
     return n
 
 
-def next_on(mask):
+def next_on(mask: int) -> int:
     """The ball on (a ``BallOn``) for a player who comes to the table: red while there is one, then the lowest colour, or NOTHING (-1)."""
     if mask & REDS_MASK:
         return 1
@@ -105,7 +108,7 @@ def next_on(mask):
     return -1
 
 
-def balls_on(ball_on, on_table):
+def balls_on(ball_on: int, on_table: int) -> int:
     """The mask of the balls that ``ball_on`` (a ``BallOn``) allows, of those in the mask ``on_table``."""
     if ball_on == 1:
         return on_table & REDS_MASK
@@ -117,11 +120,11 @@ def balls_on(ball_on, on_table):
 
 
 # The same two for kernels; Python calls the plain ones, which need no compiling.
-next_on_kernel = kernel(next_on)
-balls_on_kernel = kernel(balls_on)
+next_on_kernel: Any = kernel(next_on)
+balls_on_kernel: Any = kernel(balls_on)
 
 
-def mask_of(balls):
+def mask_of(balls: Iterable[int]) -> int:
     """The mask of an iterable of ids."""
     mask = 0
     for ball in balls:
@@ -129,18 +132,18 @@ def mask_of(balls):
     return mask
 
 
-def mask_of_present(on_table):
+def mask_of_present(on_table: Bools) -> int:
     """The mask of a bool array (22,)."""
     return int(on_table @ _BITS)
 
 
-def ids_of(mask):
+def ids_of(mask: int) -> tuple[int, ...]:
     """The ids in a mask, in order."""
     integer("mask", mask, 0, ALL_MASK)
     return tuple(i for i in range(N_BALLS) if mask >> i & 1)
 
 
-def check_table(positions, on_table):
+def check_table(positions: Vectors, on_table: Flags) -> tuple[Floats, Bools]:
     """Fresh copies of ``positions`` (22, 2) and ``on_table`` (22,) bool; raises ``ValueError`` for anything else."""
     present = np.array(on_table)
     if present.shape != (N_BALLS,) or present.dtype != np.bool_:
@@ -148,7 +151,7 @@ def check_table(positions, on_table):
     return array("positions", positions, (N_BALLS, 2)), present
 
 
-def colour(name):
+def colour(name: str) -> int:
     """The id of a colour by its name."""
     if name not in COLOUR_NAMES:
         raise refuse("colour", name, "must be one of " + ", ".join(map(repr, COLOUR_NAMES)))

@@ -20,11 +20,16 @@ is not drawn here but passed in.
 
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, fields, replace
+from typing import Any, Literal, TypeAlias
 
 from .._check import choice, integer, refuse, refuse_what, truth
+from .._types import MissRule
 from .balls import ALL_MASK, BLACK, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of, next_on
-from .referee import FULL_TABLE, MOST_POINTS, Situation, judge
+from .referee import FULL_TABLE, MOST_POINTS, Situation, Stroke, Verdict, judge
 from .ruling import Foul, Outcome
+
+Choice: TypeAlias = Literal["play", "play_again", "replace"]
+"""What may be chosen after a foul."""
 
 PHASES = ("stroke", "choice", "lot", "over")
 MISS_RULES = ("off", "clear_path")
@@ -32,7 +37,7 @@ MOST_BREAK = 155
 """The highest break: a free ball and the colour after it, then 147. What a break has and what the table still offers are never more."""
 
 
-def points_available(on_table, ball_on):
+def points_available(on_table: int, ball_on: int) -> int:
     """The most points that the balls on the table still offer: 8 a red, 7 if a colour is on after a red, and the colours' values."""
     reds = bin(on_table & REDS_MASK).count("1")
     return 8 * reds + 7 * (ball_on == BallOn.ANY_COLOUR) + int(sum(VALUES[i] for i in ids_of(on_table & COLOURS_MASK)))
@@ -46,10 +51,10 @@ class Saved:
     ball_on: BallOn
     in_hand: bool
     free_ball: bool
-    layout: tuple | None = None
+    layout: tuple[Any, ...] | None = None
     """The caller's own record of where the balls lay, anything that JSON can hold; it is kept and handed back, not read."""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _set(self, "on_table", _object_balls(self.on_table))
         for name in ("in_hand", "free_ball"):
             _set(self, name, truth(name, getattr(self, name)))
@@ -74,10 +79,10 @@ class Frame:
     free_ball: bool = False
     """The striker may nominate a free ball (in phase "choice": if he chooses to play)."""
     respotted_black: bool = False
-    phase: str = "stroke"
+    phase: Literal["stroke", "choice", "lot", "over"] = "stroke"
     """"stroke": ``play`` is next. "choice": after a foul, ``choose``. "lot": before a re-spotted black, ``draw``. "over"."""
     winner: int | None = None
-    miss: str = "off"
+    miss: MissRule = "off"
     """The rule for a foul and a miss: one of ``MISS_RULES``."""
     miss_called: bool = False
     """The last stroke was a foul and a miss, so that the position may be replaced."""
@@ -88,7 +93,7 @@ class Frame:
     saved: Saved | None = None
     """The position before the last stroke, if it was a foul."""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         choice("phase", self.phase, PHASES)
         choice("miss", self.miss, MISS_RULES)
         for name, high in (("striker", 1), ("breaker", 1), ("break_points", MOST_BREAK), ("failures", 2)):
@@ -149,23 +154,23 @@ class Frame:
                 raise refuse_what(name, "a position" if name == "saved" else repr(getattr(self, name)), allowed)
 
     @classmethod
-    def start(cls, *, breaker=0, miss="off", on_table=FULL_TABLE):
+    def start(cls, *, breaker: int = 0, miss: MissRule = "off", on_table: int = FULL_TABLE) -> "Frame":
         """A new frame; ``on_table`` if it starts from a table with fewer balls."""
         ball_on = next_on(integer("on_table", on_table, 0, ALL_MASK))
         return cls(striker=breaker, breaker=breaker, miss=miss, on_table=on_table & ~CUE_BIT, ball_on=BallOn(ball_on))
 
     @property
-    def situation(self):
+    def situation(self) -> Situation:
         """What the referee needs to judge the next stroke."""
         lead = self.scores[self.striker] - self.scores[1 - self.striker]
         return Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball, lead=lead)
 
     @property
-    def available(self):
+    def available(self) -> int:
         """Points that the table still offers (a free ball not counted)."""
         return points_available(self.on_table, self.ball_on)
 
-    def needs_snookers(self, player):
+    def needs_snookers(self, player: int) -> bool:
         """Whether ``player`` trails by more than the table offers, and so needs penalty points."""
         integer("player", player, 0, 1)
         return self.scores[1 - player] - self.scores[player] > self.available
@@ -174,10 +179,12 @@ class Frame:
         if self.phase != phase:
             raise refuse("phase", self.phase, f"must be {phase!r} to {act}")
 
-    def _over(self, winner, **changes):
+    def _over(self, winner: int, **changes: Any) -> "Frame":
         return replace(self, phase="over", winner=winner, **_SETTLED | changes)
 
-    def play(self, stroke, *, clear_path=False, full_ball_path=False, layout=None):
+    def play(
+        self, stroke: Stroke, *, clear_path: bool = False, full_ball_path: bool = False, layout: tuple[Any, ...] | None = None
+    ) -> tuple["Frame", Verdict]:
         """One stroke: the next frame and the referee's ``Verdict``.
 
         ``clear_path`` and ``full_ball_path`` say whether before the stroke a straight path was clear to any part, and to the full face,
@@ -224,13 +231,13 @@ class Frame:
         return bool(clear_path or full_ball_path) and not decided
 
     @property
-    def choices(self):
+    def choices(self) -> tuple[Choice, ...]:
         """What the opponent may choose after a foul; empty in other phases."""
         if self.phase != "choice":
             return ()
         return ("play", "play_again", "replace") if self.miss_called else ("play", "play_again")
 
-    def choose(self, what):
+    def choose(self, what: Choice) -> "Frame":
         """The opponent's decision after a foul; it cannot be taken back.
 
         "play": the opponent plays the table as it lies (with the free ball, if there is one). "play_again": the offender plays it, and
@@ -247,35 +254,35 @@ class Frame:
         before = {name: getattr(self.saved, name) for name in _REPLACED}
         return replace(again, warned=self.failures >= 2, **before)
 
-    def draw(self, first):
+    def draw(self, first: int) -> "Frame":
         """Who plays first at a re-spotted black: the winner of the lot has chosen ``first``."""
         self._in_phase("lot", "draw")
         return replace(self, phase="stroke", striker=integer("first", first, 0, 1), break_points=0)
 
     @property
-    def may_claim(self):
+    def may_claim(self) -> bool:
         """Whether the striker may claim the frame: only the black is left and he leads by more than 7."""
         return self.phase == "stroke" and self.on_table == 1 << BLACK and self.situation.lead > 7
 
-    def claim(self):
+    def claim(self) -> "Frame":
         """The striker claims the frame."""
         if not self.may_claim:
             raise refuse("lead", self.situation.lead if self.phase == "stroke" else self.phase, "must be over 7 with only the black left")
         return self._over(self.striker)
 
-    def concede(self, player):
+    def concede(self, player: int) -> "Frame":
         """``player`` gives the frame up; only the striker may."""
         if self.phase not in ("stroke", "choice") or integer("player", player, 0, 1) != self.striker:
             raise refuse("player", player, "must be the striker of a frame that is not over")
         return self._over(1 - player)
 
-    def restart(self):
+    def restart(self) -> "Frame":
         """The referee ends a stalemate: scores are void, the balls are set up again and the same player breaks."""
         if self.phase == "over":
             raise refuse("phase", self.phase, "must not be over to restart")
         return Frame.start(breaker=self.breaker, miss=self.miss)
 
-    def to_dict(self):
+    def to_dict(self) -> dict[str, Any]:
         """The frame as plain numbers, strings, lists and None: what JSON can hold."""
         plain = asdict(self) | {"scores": list(self.scores), "ball_on": int(self.ball_on)}
         if self.saved is not None:
@@ -283,7 +290,7 @@ class Frame:
         return plain
 
     @classmethod
-    def from_dict(cls, plain, field="frame"):
+    def from_dict(cls, plain: dict[str, Any], field: str = "frame") -> "Frame":
         """The frame that ``to_dict`` gave, also after a round trip through JSON.
 
         ValueError, which names the part of ``field`` that is wrong, also where parts do not fit together by the rules.

@@ -7,11 +7,12 @@ that "replace" brings back lies beside the rows, in arrays of its own: ``Layouts
 The first five columns mean the same for a visit without a frame, whose rows hold nothing else.
 """
 
-from collections import namedtuple
+from typing import NamedTuple
 
 import numpy as np
 
 from .._jit import kernel
+from .._types import Bools, Floats, Ints, MissRule
 from .balls import COLOURS_MASK, N_BALLS, REDS_MASK, VALUES, BallOn, balls_on_kernel, count, next_on_kernel
 from .frame import PHASES, Frame, Saved
 from .ruling import FOUL, OUTCOME
@@ -33,8 +34,14 @@ COLUMNS = 24
 
 _MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
 
-Layouts = namedtuple("Layouts", "positions on_table")
-"""Of n tables: positions (n, 22, 2) [m] and on_table (n, 22) bool before the last foul."""
+
+class Layouts(NamedTuple):
+    """Where the balls lay on n tables before the last foul."""
+
+    positions: Floats
+    """(n, 22, 2) [m]."""
+    on_table: Bools
+    """(n, 22)."""
 
 
 @kernel
@@ -153,7 +160,7 @@ def draw(row, first):
     row[PHASE], row[STRIKER], row[POINTS] = STROKE, first, 0
 
 
-def frame_of(row, miss, layouts, k):
+def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int) -> Frame:
     """The ``Frame`` that row ``row`` (COLUMNS,) means; ``miss``: its rule, ``layouts``: ``Layouts``, of which row k is read."""
     at = row.tolist()
     saved = None
@@ -173,7 +180,7 @@ def frame_of(row, miss, layouts, k):
     )  # fmt: skip
 
 
-def write_frame(frame, strokes, row, layouts, k):
+def write_frame(frame: Frame, strokes: int, row: Ints, layouts: Layouts, k: int) -> None:
     """Write a sound ``Frame`` into ``row`` (COLUMNS,), and the layout that it keeps into row k of ``layouts``."""
     row[:] = 0
     row[[BALL_ON, IN_HAND, POINTS, OVER]] = frame.ball_on, frame.in_hand, frame.break_points, frame.phase == "over"

@@ -3,10 +3,13 @@
 The centre must lie on or within the lines of the D: the baulk line's part between yellow and green, and the half circle behind it.
 """
 
+from typing import Any
+
 import numpy as np
 
 from .._check import number, refuse
 from .._jit import entry, kernel
+from .._types import Flags, Place, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from .balls import N_BALLS, check_table
 from .spotting import CLEARANCE, occupied
@@ -15,12 +18,12 @@ ROUNDING = 1e-12
 """A point on a line of the D is within it, to this [m]."""
 
 
-def within_d(x, y):
+def within_d(x: float, y: float) -> bool:
     """Is (x, y) on or within the lines of the D?"""
     return y <= BAULK_Y + ROUNDING and np.hypot(x, y - BAULK_Y) <= D_RADIUS + ROUNDING
 
 
-in_d = kernel(within_d)
+in_d: Any = kernel(within_d)
 """The same for kernels."""
 
 
@@ -93,7 +96,7 @@ def _nearest_place(positions, on_table, x, y, radius):
     return nearest_place(positions, on_table, x, y, radius)
 
 
-def place_cue(positions, on_table, x, y, *, radius=BALL_RADIUS):
+def place_cue(positions: Vectors, on_table: Flags, x: float, y: float, *, radius: float = BALL_RADIUS) -> Place:
     """The free place in the D nearest to (x, y): (x, y). The cue ball may be anywhere; it is not in its own way.
 
     Raises ``ValueError`` for wrong arrays or numbers, and if the D has no free place (no legal table is that full).

@@ -6,11 +6,13 @@ ball off the table keeps its row of ``balls.SPOTS``. Balls that are not racked o
 
 from dataclasses import dataclass
 from math import atan2, cos, hypot, sin
+from typing import Any
 
 import numpy as np
 
 from .._check import refuse
 from .._jit import entry, kernel
+from .._types import Bools, Floats
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from .balls import CUE, GREEN, N_BALLS, N_REDS, REDS_MASK, SPOTS, YELLOW
 from .opened import NO_BANK, bank_without, kept
@@ -167,19 +169,19 @@ class Plan:
     """A layout's name as the kernels read it. A copy is made anew from the name: the bank of tables is never copied."""
 
     name: str
-    code: np.ndarray
+    code: Floats
     """Kind, number of reds, and two numbers: the first and last table of the bank, or the window of a pot."""
-    tables: np.ndarray
+    tables: Floats
     """The bank of opened tables, or none."""
     unfit: tuple[int, ...] = ()
     """The tables of the bank that others stand in for, as they do not fit the table played on."""
 
     @property
-    def in_hand(self):
+    def in_hand(self) -> bool:
         """Whether the cue ball may be moved within the D."""
         return self.name == "break_off"
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         return plan_of, (self.name, self.unfit)
 
 
@@ -188,7 +190,7 @@ _COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = ("opened", "held_out", *_NAMES)
 
 
-def plan_of(name, unfit=()):
+def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     """The ``Plan`` of a layout: one of ``LAYOUTS``, ``"random:N"`` with N reds, or ``"pots:D"`` with D one of ``POT_WINDOWS``.
 
     ``unfit``: tables of the bank not to be dealt, a tuple of indices in order.
@@ -212,7 +214,7 @@ def plan_of(name, unfit=()):
     return Plan(name, np.array(code, np.float64), tables, unfit if len(tables) else ())
 
 
-def layout(plan, rng):
+def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
     """A layout by its ``Plan`` or name (see ``plan_of``): ``positions`` (22, 2) [m] and ``on_table`` (22,) bool, fresh.
 
     ``rng``: a numpy Generator, of which one number is drawn: the key of the layout's stream.
@@ -223,11 +225,11 @@ def layout(plan, rng):
     return positions[0], on_table[0]
 
 
-def break_off(rng):
+def break_off(rng: np.random.Generator) -> tuple[Floats, Bools]:
     """The start of a frame: reds racked, colours on their spots, the cue ball at a random place in the D."""
     return layout("break_off", rng)
 
 
-def opened(rng):
+def opened(rng: np.random.Generator) -> tuple[Floats, Bools]:
     """A table opened by play, all 22 balls on it."""
     return layout("opened", rng)

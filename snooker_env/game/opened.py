@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .._types import Floats
 from .balls import N_BALLS
 
 FILE = Path(__file__).with_name("opened.npz")
@@ -20,7 +21,7 @@ NO_BANK.setflags(write=False)
 
 
 @cache
-def bank():
+def bank() -> Floats:
     """(k, 22, 2) float64 [m], read-only."""
     with np.load(FILE) as data:
         tables = data["positions"].astype(np.float64)
@@ -28,13 +29,13 @@ def bank():
     return tables
 
 
-def kept(size):
+def kept(size: int) -> tuple[range, range]:
     """The tables that are not held out, and those that are, of ``size`` in all."""
     return range(size - HELD_OUT), range(size - HELD_OUT, size)
 
 
 @lru_cache(8)
-def bank_without(unfit):
+def bank_without(unfit: tuple[int, ...]) -> Floats:
     """The bank with each table of ``unfit``, a tuple of indices, replaced by the next of its part (held out or not) that is not in it.
 
     So a stream deals the same tables as ever, but for these; some of each part must be left.

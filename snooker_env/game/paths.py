@@ -9,6 +9,7 @@ import numpy as np
 
 from .._check import integer, refuse
 from .._jit import entry, kernel
+from .._types import Flags, Vectors
 from ..geometry import BALL_RADIUS
 from .balls import ALL_MASK, CUE_BIT, N_BALLS, check_table
 from .snookered import SLACK, segment_distance
@@ -113,7 +114,7 @@ def _paths(positions, on_table, on, radius):
     return clear_path(positions, on_table, on, radius), full_ball_path(positions, on_table, on, radius)
 
 
-def paths(positions, on_table, on, *, radius=BALL_RADIUS):
+def paths(positions: Vectors, on_table: Flags, on: int, *, radius: float = BALL_RADIUS) -> tuple[bool, bool]:
     """Both tests for Python: (any part, full ball). The cue ball must be on the table; raises ``ValueError`` if it is not."""
     placed, present = check_table(positions, on_table)
     if not present[0]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from .._check import refuse
 from .._jit import kernel
+from .._types import Words
 
 _M0, _M1 = np.uint64(0xD2511F53), np.uint64(0xCD9E8D57)  # multipliers and key steps of Philox 4x32
 _W0, _W1 = np.uint64(0x9E3779B9), np.uint64(0xBB67AE85)
@@ -48,7 +49,7 @@ def normals(stream):
     return far * cos(2.0 * pi * v), far * sin(2.0 * pi * v)
 
 
-def stream_of(rng):
+def stream_of(rng: np.random.Generator) -> Words:
     """A new stream whose key is drawn from a numpy ``Generator``. Raises ValueError for anything else."""
     if not isinstance(rng, np.random.Generator):
         raise refuse("rng", rng, "must be a numpy.random.Generator")

@@ -15,6 +15,7 @@ from math import acos, hypot
 import numpy as np
 
 from .._jit import entry, kernel
+from .._types import Flags, Floats, Vectors
 from ..geometry import AIM_X, AIM_Y, AXIS_X, AXIS_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, IS_MIDDLE, POCKET_AIMS
 from .balls import N_BALLS
 
@@ -110,7 +111,7 @@ def _pots(positions, on_table, on, radius, pots):
     return find_pots(positions, on_table, on, radius, pots)
 
 
-def pots(positions, on_table, on, *, most=32, radius=BALL_RADIUS):
+def pots(positions: Vectors, on_table: Flags, on: int, *, most: int = 32, radius: float = BALL_RADIUS) -> Floats:
     """The direct pots (k, POT_COLUMNS) of the balls in the mask ``on``, widest tolerance first, ``most`` at the most."""
     out = np.zeros((most, POT_COLUMNS))
     n = _pots(np.ascontiguousarray(positions, dtype=np.float64), np.ascontiguousarray(on_table, dtype=np.bool_), int(on), radius, out)

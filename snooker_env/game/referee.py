@@ -1,6 +1,7 @@
 """How does Python ask the referee? ``judge(Situation, Stroke) -> Verdict``: checked in, named out, around the kernel ``ruling``."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from .._check import integer, refuse
 from .._jit import entry
@@ -27,7 +28,7 @@ class Situation:
     lead: int = 0
     """The striker's score less the opponent's; it matters for the end of the frame only."""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         integer("on_table", self.on_table, 0, ALL_MASK)
         object.__setattr__(self, "ball_on", BallOn(integer("ball_on", self.ball_on, BallOn.ANY_COLOUR, BallOn.BLACK)))
         integer("lead", self.lead, -MOST_POINTS, MOST_POINTS)
@@ -71,7 +72,7 @@ class Stroke:
     behind_free_ball: bool = False
     """... and by the ball that was nominated as the free ball."""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("first", "touching", "moved"):
             if integer(name, getattr(self, name), 0, ALL_MASK) & CUE_BIT:
                 raise refuse(name, getattr(self, name), "must name object balls only")
@@ -85,7 +86,7 @@ class Stroke:
             raise refuse("nominated", self.nominated, "must be a colour (ids 16 to 21), 0 for none or -1 (AUTO)")
 
     @property
-    def flags(self):
+    def flags(self) -> Flag:
         """The true ones among the bool fields, as a ``Flag``."""
         return Flag(sum(flag for flag in Flag if getattr(self, str(flag.name).lower())))
 
@@ -118,7 +119,7 @@ class Verdict:
     """The colour that counted as nominated (or as the free ball), 0 if none."""
 
     @property
-    def over(self):
+    def over(self) -> bool:
         """Whether the frame has ended."""
         return self.outcome in (Outcome.STRIKER_WINS, Outcome.OPPONENT_WINS)
 
@@ -128,7 +129,7 @@ def _ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, 
     return ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags)
 
 
-def verdict_of(result):
+def verdict_of(result: Any) -> Verdict:
     """The kernel's ``Ruling`` as a ``Verdict``."""
     return Verdict(
         fouls=Foul(result.fouls),
@@ -146,7 +147,7 @@ def verdict_of(result):
     )
 
 
-def check(situation, stroke):
+def check(situation: Situation, stroke: Stroke) -> None:
     """Raise ``ValueError`` if a ``Stroke`` cannot have been played in a ``Situation``."""
     for name in ("first", "touching", "potted", "off"):
         absent = getattr(stroke, name) & ~CUE_BIT & ~situation.on_table
@@ -160,13 +161,13 @@ def check(situation, stroke):
             raise refuse("nominated", NAMES[stroke.nominated], f"must be one of {what}" if what else "must be none: no choice is on")
 
 
-def numbers_of(situation, stroke):
+def numbers_of(situation: Situation, stroke: Stroke) -> tuple[int, ...]:
     """Both as the integers that the kernels take, in their order."""
     state = (situation.on_table, int(situation.ball_on), int(situation.free_ball), situation.lead)
     return (*state, stroke.first, stroke.touching, stroke.moved, stroke.potted, stroke.off, stroke.nominated, int(stroke.flags))
 
 
-def judge(situation, stroke):
+def judge(situation: Situation, stroke: Stroke) -> Verdict:
     """Judge one stroke: the ``Verdict`` on a ``Stroke`` in a ``Situation``. A pure function.
 
     Raises ``ValueError`` if the two cannot belong together (a ball potted that was not on the table, a nomination not open).

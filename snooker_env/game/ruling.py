@@ -11,6 +11,7 @@ simulates the cue ball's flight and the tip's contact must know them.
 
 from collections import namedtuple
 from enum import IntEnum, IntFlag
+from typing import NamedTuple
 
 from .._jit import kernel
 from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on_kernel, count, next_on_kernel
@@ -87,8 +88,22 @@ def _plain(enum):
 
 FLAG, FOUL, VISIT, OUTCOME = _plain(Flag), _plain(Foul), _plain(VisitEnd), _plain(Outcome)
 
-Ruling = namedtuple("Ruling", "fouls penalty points respotted on_table ball_on stays in_hand free_ball visit_end outcome nominated")
-"""What ``ruling`` returns, all integers; the fields are explained in ``referee.Verdict``."""
+
+class Ruling(NamedTuple):
+    """What ``ruling`` returns, all integers; the fields are explained in ``referee.Verdict``."""
+
+    fouls: int
+    penalty: int
+    points: int
+    respotted: int
+    on_table: int
+    ball_on: int
+    stays: int
+    in_hand: int
+    free_ball: int
+    visit_end: int
+    outcome: int
+    nominated: int
 
 
 @kernel
@@ -246,4 +261,4 @@ def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, o
     playing = outcome == OUTCOME.PLAYING
     in_hand = 1 if (potted | off) & CUE_BIT or outcome == OUTCOME.RESPOTTED_BLACK else 0
     free_next = 1 if playing and fouls and flags & FLAG.SNOOKERED else 0
-    return Ruling(fouls, penalty, points, respotted, remaining, next_on, stays, in_hand, free_next, visit_end, outcome, choice)
+    return Ruling(fouls, penalty, points, respotted, remaining, next_on, stays, in_hand, free_next, visit_end, outcome, choice)  # type: ignore[arg-type]

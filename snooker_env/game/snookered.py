@@ -13,6 +13,7 @@ import numpy as np
 
 from .._check import array, integer, refuse
 from .._jit import entry, kernel
+from .._types import Flags, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from .balls import ALL_MASK, CUE_BIT, N_BALLS, TOUCH, check_table
 from .spotting import occupied
@@ -127,7 +128,7 @@ def _snookered(positions, on_table, on, jaws, radius):
     return snookered(positions, on_table, on, jaws, radius)
 
 
-def is_snookered(positions, on_table, on, *, jaws=NO_JAWS, radius=BALL_RADIUS):
+def is_snookered(positions: Vectors, on_table: Flags, on: int, *, jaws: Vectors = NO_JAWS, radius: float = BALL_RADIUS) -> tuple[bool, int]:
     """``snookered`` for Python: (bool, mask of the effective snookering balls). ``on`` is the mask of the balls on.
 
     Raises ``ValueError`` for wrong arrays or a mask that names the cue ball.

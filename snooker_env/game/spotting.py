@@ -10,6 +10,7 @@ import numpy as np
 
 from .._check import integer, refuse
 from .._jit import entry, kernel
+from .._types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS, HALF_LENGTH
 from .balls import ALL_MASK, BLACK, COLOURS_MASK, N_BALLS, SPOTS, TOUCH, YELLOW, check_table
 
@@ -94,7 +95,7 @@ def _spot(positions, on_table, mask, radius):
     spot(positions, on_table, mask, radius)
 
 
-def spot_colours(positions, on_table, mask, *, radius=BALL_RADIUS):
+def spot_colours(positions: Vectors, on_table: Flags, mask: int, *, radius: float = BALL_RADIUS) -> tuple[Floats, Bools]:
     """Return colours to the table: new ``positions`` (22, 2) and ``on_table`` (22,) with the colours in ``mask`` placed by the rule.
 
     The arrays given are not changed. Raises ``ValueError`` for other shapes or a mask that names a ball that is no colour.

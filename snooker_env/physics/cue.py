@@ -4,7 +4,8 @@ from math import atan, cos, hypot, sin, sqrt
 
 from .._check import number, refuse
 from .._jit import entry, kernel
-from .parameters import FASTEST
+from .._types import Real
+from .parameters import FASTEST, Physics
 
 MAX_ELEVATION = 1.5
 """Highest elevation of the butt [rad]: just under the vertical."""
@@ -37,7 +38,9 @@ def _struck(speed, aim, side, top, elevation, R, end_mass_ratio):
     return struck(speed, aim, side, top, elevation, R, end_mass_ratio)
 
 
-def strike(speed, aim, side, top, elevation, physics):
+def strike(
+    speed: Real, aim: Real, side: Real, top: Real, elevation: Real, physics: Physics
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """``struck`` from Python, with its input checked; see ``snooker_env.strike``."""
     speed = number("speed", speed, 0, FASTEST)
     aim = number("aim", aim)

@@ -6,10 +6,12 @@ Sources: [MJP14] Mathavan, Jackson & Parkin, Sports Eng. (2014); [MJP10] the sam
 
 import dataclasses
 from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from .._check import choice, number, refuse
+from .._types import Floats, PhysicsName
 from ..geometry import BALL_RADIUS
 
 MARLOW = (9.951e-3, 0.108, 1.088)
@@ -76,7 +78,7 @@ class Physics:
     spin_decel: float = 22.0
     nap: float = 0.0
     e_b: float = 0.89
-    mu_bb: float | str | tuple[float, float, float] = 0.05
+    mu_bb: float | Literal["marlow"] | tuple[float, float, float] = 0.05
     e_c: float = 0.98
     e_c_knee: float = 0.0
     e_c_power: float = 0.0
@@ -86,7 +88,7 @@ class Physics:
     end_mass_ratio: float = 30.0
     max_offset: float = 0.5
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         low_high = {
             "R": (1e-3, 1), "M": (0, np.inf), "g": (0, np.inf), "mu_s": (0, 1), "mu_r": (0, 1), "spin_decel": (0, np.inf),
             "nap": (-np.inf, np.inf), "e_b": (0, 1), "e_c": (0, 1), "e_c_knee": (0, np.inf), "e_c_power": (0, _MOST_POWER), "mu_c": (0, 1),
@@ -109,7 +111,7 @@ class Physics:
             raise refuse("physics.nap", self.nap, f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size")
 
     @classmethod
-    def preset(cls, name="paper", **fields):
+    def preset(cls, name: PhysicsName = "paper", **fields: Any) -> "Physics":
         """A named world, with any field replaced: ``Physics.preset("paper", mu_bb=0.06)``.
 
         ``"paper"``: the constants of [MJP14] and [MJP10]. ``"match"``: measured snooker, that is e_b 0.94, Marlow's mu_bb(s) and a
@@ -120,7 +122,7 @@ class Physics:
         return cls._replaced(PRESETS[choice("physics", name, PRESETS)], fields)
 
     @classmethod
-    def of(cls, physics=None):
+    def of(cls, physics: "PhysicsLike" = None) -> "Physics":
         """What users may pass as ``physics``: None (paper), a preset's name, a dict of overrides (its ``"preset"`` key picks
         the base, else ``"paper"``), or a ``Physics``."""
         if isinstance(physics, cls):
@@ -133,13 +135,13 @@ class Physics:
         raise refuse("physics", physics, "must be None, a preset's name, a dict of overrides, or a Physics")
 
     @classmethod
-    def _replaced(cls, base, fields):
+    def _replaced(cls, base: dict[str, Any], fields: dict[str, Any]) -> "Physics":
         known = [f.name for f in dataclasses.fields(cls)]
         for field in fields:
             choice("physics field", field, known)
         return cls(**{**base, **fields})
 
-    def check_stopping(self):
+    def check_stopping(self) -> None:
         """Raise ValueError if balls in this world would never come to rest, or stop in no time."""
         for name in ("mu_s", "mu_r"):
             if not _LEAST_DECELERATION <= getattr(self, name) * self.g <= _MOST_DECELERATION:
@@ -154,13 +156,13 @@ class Physics:
             raise refuse("physics.spin_decel", self.spin_decel, allowed)
 
     @property
-    def friction_law(self):
+    def friction_law(self) -> tuple[float, float, float]:
         """(a, b, c) of mu_bb(s) = a + b exp(-c s); b = 0 for a constant."""
         if isinstance(self.mu_bb, str):
             return MARLOW
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
 
-    def pack(self):
+    def pack(self) -> Floats:
         """The constants as the kernels read them: float64, places ``P_*`` of this module."""
         return np.array([
             self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law,
@@ -168,7 +170,11 @@ class Physics:
         ])  # fmt: skip
 
 
-def _mu_bb(value):
+PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None
+"""What users may pass as ``physics``, see ``Physics.of``."""
+
+
+def _mu_bb(value: Any) -> float | Literal["marlow"] | tuple[float, float, float]:
     allowed = 'must be a number in [0, 1], "marlow", or (a, b, c) with a, b, c >= 0 and a + b <= 1'
     if isinstance(value, str):
         if value != "marlow":
@@ -184,7 +190,7 @@ def _mu_bb(value):
     return number("physics.mu_bb", value, 0, 1)
 
 
-PRESETS = {
+PRESETS: dict[str, dict[str, Any]] = {
     "paper": {},
     "match": {"e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee": 2.17, "e_c_power": 0.31},
 }

@@ -6,11 +6,13 @@ and a ball that touches it there is lost (``pocket.py``).
 
 from dataclasses import dataclass, field
 from math import hypot, inf, sqrt
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from .._check import array, choice, number, refuse, refuse_what
 from .._jit import entry
+from .._types import Batches, FlagRows, Flags, Floats, TableName, Vectors
 from ..geometry import PRESETS, Bed, Pocket, parts
 from .columns import (
     FALL_RADIUS,
@@ -48,23 +50,23 @@ class Table:
     """
 
     name: str
-    noses: np.ndarray
+    noses: Floats
     """(k, 5) straight noses: axis (0: x, 1: y), side (+-1), level [m], and the range lo, hi [m] along the other axis.
     The ball touches where side * coordinate = level - R."""
-    jaws: np.ndarray
+    jaws: Floats
     """(k, 6) jaw arcs: centre x, y, radius [m], unit vector to the arc's middle, cosine of its half angle."""
-    falls: np.ndarray
+    falls: Floats
     """(k, 3) falls: centre x, y, radius [m] of the slate's edge; a ball whose centre crosses it begins to drop. Index = pocket."""
     ball_radius: float | None = field(default=None, kw_only=True)
     """The ball [m] that it is made for, which ``physics.R`` must then be; None: any ball."""
     pockets: tuple[str, ...] = field(default=(), kw_only=True)
     """The names of its pockets, one a fall, or ()."""
-    bounds: np.ndarray = field(init=False, repr=False)
+    bounds: Floats = field(init=False, repr=False)
     """(2, 2) [m] between which lines the balls lie: of x and of y the levels of the outermost noses, infinite where there is none."""
     _narrowest: tuple[float, int, int] = field(init=False, repr=False)
-    _reach: np.ndarray = field(init=False, repr=False)
+    _reach: Floats = field(init=False, repr=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not isinstance(self.name, str):
             raise refuse("table.name", self.name, "must be a str")
         for name, columns in (("noses", 5), ("jaws", 6), ("falls", 3)):
@@ -85,7 +87,7 @@ class Table:
         object.__setattr__(self, "_reach", bounds + np.array([-past, past]))
 
     @classmethod
-    def preset(cls, name="match"):
+    def preset(cls, name: TableName = "match") -> "Table":
         """A table by its name; each is made for the balls of its game, see ``ball``.
 
         Snooker: ``"match"`` (throat of the corners 86.0 mm) and ``"tight"`` (80.14 mm), 3.569 x 1.778 m, balls of 52.5 mm. ``"uk8"``: UK
@@ -95,7 +97,17 @@ class Table:
         return _PRESETS[choice("table", name, PRESETS)]
 
     @classmethod
-    def rectangular(cls, length, width, *, pockets=6, corner=None, middle=None, ball_radius=None, name="rectangular"):
+    def rectangular(
+        cls,
+        length: float,
+        width: float,
+        *,
+        pockets: Literal[6, 4, 0] = 6,
+        corner: Pocket | None = None,
+        middle: Pocket | None = None,
+        ball_radius: float | None = None,
+        name: str = "rectangular",
+    ) -> "Table":
         """A rectangular table of your own with straight noses on its four sides.
 
         Parameters
@@ -142,7 +154,7 @@ class Table:
         return cls(name, *parts(bed), ball_radius=ball_radius, pockets=bed.pockets)
 
     @classmethod
-    def of(cls, table):
+    def of(cls, table: "TableLike") -> "Table":
         """What users may pass as ``table``: a preset's name, a ``Table``, or None for unbounded cloth."""
         if table is None:
             return UNBOUNDED
@@ -153,12 +165,12 @@ class Table:
         raise refuse("table", table, f"must be {', '.join(map(_quoted, PRESETS))}, a Table, or None for unbounded cloth")
 
     @property
-    def is_preset(self):
+    def is_preset(self) -> bool:
         """Is this the preset of its name, and no table of somebody's own that is called so?"""
         return _PRESETS.get(self.name) is self
 
     @property
-    def ball(self):
+    def ball(self) -> dict[str, float]:
         """Fields of ``Physics`` for the balls that it is made for, as in ``Physics.preset("match", **table.ball)``; {} for any ball.
 
         A preset knows R, M and sin_theta (the height of its noses), a table of your own R.
@@ -167,14 +179,14 @@ class Table:
             return dict(PRESETS[self.name].ball)
         return {} if self.ball_radius is None else {"R": self.ball_radius}
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         if self.is_preset:
             return Table.preset, (self.name,)
         if self is UNBOUNDED:
             return Table.of, (None,)
         return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
 
-    def unfit(self, positions, R):
+    def unfit(self, positions: Floats, R: float) -> list[int]:
         """Which of the layouts (b, n, 2), all balls on the table, are not sound here: their indices, in order."""
         here, found, first = np.ones(positions.shape[:2], bool), [], 0
         while True:
@@ -184,7 +196,7 @@ class Table:
             first += k + 1
             found.append(first - 1)
 
-    def check(self, positions, R, field="positions", on_table=None):
+    def check(self, positions: Batches | Vectors, R: float, field: str = "positions", on_table: FlagRows | Flags | None = None) -> None:
         """Raise ValueError unless every layout is sound: no ball off the table, in a cushion, jaw or other ball, or over a pocket.
 
         positions (n, 2) or, of many tables at once, (b, n, 2); on_table (n,) or (b, n) bool: balls that do not count are False.
@@ -220,6 +232,10 @@ class Table:
             raise refuse(*place, f"overlaps jaw {j} at ({self.jaws[j, JAW_X]:.4f}, {self.jaws[j, JAW_Y]:.4f})")
         depth = 2 * R - float(hypot(*(places[k, i] - places[k, j])))
         raise refuse_what(field, f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
+
+
+TableLike: TypeAlias = Table | TableName | None
+"""What users may pass as ``table``, see ``Table.of``."""
 
 
 def _check_shapes(noses, jaws, falls):
@@ -357,5 +373,5 @@ def _preset(name):
     return Table(name, *parts(bed), ball_radius=bed.ball["R"], pockets=bed.pockets)
 
 
-_PRESETS = {name: _preset(name) for name in PRESETS}
-UNBOUNDED = Table("unbounded", np.zeros((0, 5)), np.zeros((0, 6)), np.zeros((0, 3)))
+_PRESETS: dict[str, Table] = {name: _preset(name) for name in PRESETS}
+UNBOUNDED: Table = Table("unbounded", np.zeros((0, 5)), np.zeros((0, 6)), np.zeros((0, 3)))

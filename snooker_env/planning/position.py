@@ -1,5 +1,6 @@
 """How does one write down a position? ``Position``: the balls by name and what is on, checked; and the arrays that it stands for."""
 
+from collections.abc import Sequence
 from dataclasses import InitVar, asdict, dataclass
 from typing import Any
 
@@ -23,7 +24,7 @@ from ..game.balls import (
 from ..game.frame import MOST_BREAK
 from ..game.in_hand import place_cue, within_d
 from ..geometry import BALL_RADIUS
-from ..physics.table import Table
+from ..physics.table import Table, TableLike
 
 ON = tuple(ball.name.lower() for ball in BallOn)
 """What may be on, in words."""
@@ -71,7 +72,7 @@ class Position:
     """
 
     cue: tuple[float, float] | None = None
-    reds: tuple[tuple[float, float], ...] = ()
+    reds: Sequence[tuple[float, float]] = ()
     yellow: tuple[float, float] | None = None
     green: tuple[float, float] | None = None
     brown: tuple[float, float] | None = None
@@ -82,9 +83,9 @@ class Position:
     in_hand: bool = False
     points: int = 0
     over: bool = False
-    table: InitVar[str | Table | None] = "match"
+    table: InitVar[TableLike] = "match"
 
-    def __post_init__(self, table: str | Table | None) -> None:
+    def __post_init__(self, table: TableLike) -> None:
         put: Any = lambda name, value: object.__setattr__(self, name, value)  # noqa: E731
         put("in_hand", truth("in_hand", self.in_hand))
         put("over", truth("over", self.over))

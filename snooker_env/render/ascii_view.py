@@ -10,7 +10,7 @@ from textwrap import wrap
 import numpy as np
 
 from .._check import integer
-from .scene import BAULK_LINE, D_ARC, LETTERS, PALE, SPOT_MARKS, extent, is_marked
+from .scene import BAULK_LINE, D_ARC, LETTERS, PALE, SPOT_MARKS, Scene, extent, is_marked
 
 WIDTH = 100
 """Characters a line unless told."""
@@ -52,7 +52,7 @@ class _Grid:
                 self.mark(a + part * (b - a), character, owner)
 
 
-def ansi(scene, width=WIDTH, *, colour=False):
+def ansi(scene: Scene, width: int = WIDTH, *, colour: bool = False) -> str:
     """The scene as lines of text ``width`` characters wide (60 to 400), the status and a legend below. No line ends with a line break.
 
     colour: True adds terminal colour codes (24 bit) around balls and paths; without it there are none.

@@ -5,14 +5,17 @@ ball's picture is computed with exact edges for each quarter of a pixel, so one 
 """
 
 import os
+from collections.abc import Iterable
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._check import integer
-from ..physics.table import Table
-from .scene import BAULK_LINE, CUSHION, D_ARC, PALE, RAIL, SPOT_MARKS, extent, is_marked, outline
+from .._types import Floats, Vector, Vectors
+from ..physics.table import Table, TableLike
+from .scene import BAULK_LINE, CUSHION, D_ARC, PALE, RAIL, SPOT_MARKS, Scene, extent, is_marked, outline
 
 HEIGHT = 600
 """Height of a picture [pixels] unless told."""
@@ -69,12 +72,12 @@ def _halves(table):
     return ((high - low) / 2).tolist()
 
 
-def to_pixels(points, height=HEIGHT, table="match"):
+def to_pixels(points: Vector | Vectors, height: int = HEIGHT, table: TableLike = "match") -> Floats:
     """Column and row (float, origin at the picture's top left corner) of points (..., 2) [m] on a table's picture of that height."""
     return _View.of(height, Table.of(table))(points)
 
 
-def rgb_array(scene, height=HEIGHT):
+def rgb_array(scene: Scene, height: int = HEIGHT) -> NDArray[np.uint8]:
     """The picture as a fresh uint8 array (height, width, 3); its width follows from the height and the table, and is even."""
     pygame = _pygame()
     surface = _draw(pygame, scene, _View.of(height, scene.table))
@@ -85,17 +88,17 @@ def rgb_array(scene, height=HEIGHT):
 class Window:
     """A window on the screen. It opens at the first ``draw``, as wide as that table asks; its close button shuts it until ``close``."""
 
-    def __init__(self, height=HEIGHT, title="snooker"):
+    def __init__(self, height: int = HEIGHT, title: str = "snooker"):
         self._height, self._title = integer("height", height, 100, 4320), title
         self._screen = None
         self._shut = False
 
     @property
-    def is_open(self):
+    def is_open(self) -> bool:
         """False before the first ``draw`` and after the window was closed."""
         return self._screen is not None
 
-    def draw(self, scene):
+    def draw(self, scene: Scene) -> bool:
         """Show one scene. Returns False, and does nothing, once the user has pressed the close button."""
         pygame = _pygame()
         if self._screen is not None and any(event.type == pygame.QUIT for event in pygame.event.get()):
@@ -113,7 +116,7 @@ class Window:
         pygame.display.flip()
         return True
 
-    def play(self, scenes, fps=30.0):
+    def play(self, scenes: Iterable[Scene], fps: float = 30.0) -> bool:
         """Show scenes (e.g. of ``shot_scenes``) at ``fps`` pictures a second; stops early, with False, if the window is closed."""
         clock = _pygame().time.Clock()
         for scene in scenes:
@@ -122,7 +125,7 @@ class Window:
             clock.tick(fps)
         return True
 
-    def close(self):
+    def close(self) -> None:
         """Close the window, if there is one. A later ``draw`` opens it again."""
         self._shut = False
         if self._screen is not None:

@@ -4,17 +4,22 @@ World frame: origin at the table's centre, +x to the yellow side, +y to the blac
 ``outline`` gives the parts of a table that never move, ``shot_scenes`` cuts a shot into the pictures of a film.
 """
 
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._check import array, number, refuse
+from .._types import Flags, Floats, Ints, Vector, Vectors
 from ..game.balls import CUE, N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.columns import JAW_RADIUS
 from ..physics.engine import EventKind
-from ..physics.table import Table
+from ..physics.table import Table, TableLike
+from ..simulation import Shot
 
 RAIL = 0.155
 """From the nose line to the outer edge of the table [m]: cushion and wood."""
@@ -44,13 +49,13 @@ for _constant in (COLOURS, PALE, BAULK_LINE, D_ARC):
 class Outline:
     """The parts of a table that never move. All empty for unbounded cloth."""
 
-    cushions: tuple
+    cushions: tuple[Floats, ...]
     """Closed polygons (m, 2): nose, the jaws at its two ends, and the cushion's back under the wood."""
-    noses: tuple
+    noses: tuple[Floats, ...]
     """Polylines (m, 2): the part of each cushion that balls meet, jaw - nose - jaw."""
-    falls: np.ndarray
+    falls: Floats
     """(k, 3) centre x, y and radius of the slate circles over which balls drop."""
-    throats: np.ndarray
+    throats: Floats
     """(k, 5) the hole in the wood: from x, y (middle of the mouth) to x, y, half as wide as the fifth number says."""
 
 
@@ -59,32 +64,42 @@ class Scene:
     """One picture. Only balls on the table are in it; k of them."""
 
     table: Table
-    ids: np.ndarray
+    ids: Ints
     """(k,) ball ids: 0 the cue ball, 1 to 15 reds, 16 to 21 yellow to black."""
-    positions: np.ndarray
+    positions: Floats
     """(k, 2) [m]."""
     ball_radius: float
     """[m]."""
-    paths: dict
+    paths: dict[int, Floats]
     """Ball id -> (m, 2) [m]: where that ball ran."""
-    aim: np.ndarray | None
+    aim: Floats | None
     """(m, 2) [m]: line of aim."""
-    ghost: np.ndarray | None
+    ghost: Floats | None
     """(2,) [m]: where the cue ball should meet its object ball."""
     text: str
 
     @property
-    def colours(self):
+    def colours(self) -> NDArray[np.uint8]:
         """(k, 3) uint8."""
         return COLOURS[self.ids]
 
     @property
-    def labels(self):
+    def labels(self) -> tuple[str, ...]:
         """One letter a ball."""
         return tuple(LETTERS[i] for i in self.ids)
 
 
-def scene(table, positions, on_table=None, *, ball_radius=None, paths=None, aim=None, ghost=None, text=""):
+def scene(
+    table: TableLike,
+    positions: Vectors,
+    on_table: Flags | None = None,
+    *,
+    ball_radius: float | None = None,
+    paths: Mapping[int, Vectors] | None = None,
+    aim: Vectors | None = None,
+    ghost: Vector | None = None,
+    text: str = "",
+) -> Scene:
     """What to draw: n <= 22 balls with the ids 0 .. n-1 at ``positions`` (n, 2) [m], and what to lay over them.
 
     table: as in ``snooker_env.simulate``; on_table (n,) bool, None for all; ball_radius [m]: None for that of the table, or snooker's;
@@ -109,7 +124,7 @@ def scene(table, positions, on_table=None, *, ball_radius=None, paths=None, aim=
     )  # fmt: skip
 
 
-def ball_paths(shot, balls=(CUE,), until=None, step=0.02):
+def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), until: float | None = None, step: float = 0.02) -> dict[int, Floats]:
     """{ball: (m, 2) points [m]} of a ``Shot`` from its start to the time ``until`` [s] (None: to its end), every ``step`` seconds.
 
     Times of impacts are added, so that corners are sharp; a ball that did not move has no path.
@@ -128,7 +143,9 @@ def ball_paths(shot, balls=(CUE,), until=None, step=0.02):
     return paths
 
 
-def shot_scenes(table, shot, *, fps=30.0, speed=1.0, trail=(CUE,), **overlays):
+def shot_scenes(
+    table: TableLike, shot: Shot, *, fps: float = 30.0, speed: float = 1.0, trail: Iterable[int] = (CUE,), **overlays: Any
+) -> Iterator[Scene]:
     """The film of a ``Shot``: one ``Scene`` every speed / fps seconds of the shot's own time, and one of its end.
 
     A potted ball leaves the picture when it drops. trail: balls whose path grows as they run; overlays: as in ``scene``.
@@ -142,20 +159,20 @@ def shot_scenes(table, shot, *, fps=30.0, speed=1.0, trail=(CUE,), **overlays):
         yield scene(table, shot.at(t)[0], gone_at > t, **{"ball_radius": shot.physics.R, "paths": paths, **overlays})
 
 
-def extent(table):
+def extent(table: Table) -> Floats:
     """(2, 2) [m] what a picture of a ``Table`` shows between its rails: its bounds, and snooker's bed where it has none."""
     snooker = np.array([(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)])
     return np.where(np.isfinite(table.bounds), table.bounds, snooker)
 
 
-def is_marked(table):
+def is_marked(table: Table) -> bool:
     """Are snooker's lines and spots drawn on a ``Table``? On its bed, and on unbounded cloth."""
     ends = (HALF_WIDTH, HALF_LENGTH)
     return all(np.allclose(bounds, (-end, end), rtol=0.0, atol=1e-9) for bounds, end in zip(extent(table), ends, strict=True))
 
 
 @lru_cache(maxsize=16)
-def outline(table):
+def outline(table: Table) -> Outline:
     """The ``Outline`` of a ``Table``, put together from its noses, jaws and falls."""
     cushions, noses = [], []
     ends = [(_point(axis, side * level, end), _point(axis, side, 0.0)) for axis, side, level, *low_high in table.noses for end in low_high]

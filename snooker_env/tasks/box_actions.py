@@ -1,16 +1,19 @@
 """What shot does an action mean? The vector in [-1, 1]^k -> cue speed, tip offset, aim, elevation, place in the D."""
 
 from math import atan2, hypot, pi, radians, sqrt
+from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 
 from .._check import choice, refuse, refuse_what, truth
 from .._jit import entry, kernel
+from .._types import Action, Flags, Floats, Vectors
 from ..game.balls import N_BALLS
 from ..game.pots import POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from ..physics.cue import squirt
+from ..physics.parameters import Physics
 
 AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
@@ -93,7 +96,16 @@ class Actions:
     ==== ============ =======================================================================
     """
 
-    def __init__(self, aim, elevation, placement, physics, decision=False):
+    aim: str
+    elevation: bool
+    placement: bool
+    decision: bool
+    physics: Physics
+    space: spaces.Box
+    size: int
+    """How many numbers an action has."""
+
+    def __init__(self, aim: str, elevation: bool, placement: bool, physics: Physics, decision: bool = False):
         self.aim = choice("aim", aim, AIMS)
         self.elevation, self.placement = truth("elevation", elevation), truth("placement", placement)
         self.decision = truth("decision", decision)
@@ -101,7 +113,7 @@ class Actions:
         self.space = spaces.Box(-1.0, 1.0, (4 + self.elevation + 2 * self.placement + self.decision,), np.float32)
         self.size = 4 + self.elevation + 2 * self.placement + self.decision
 
-    def check(self, action):
+    def check(self, action: Action) -> list[float]:
         """The action as a list of floats; ValueError unless it is finite, of the right shape and within [-1, 1]."""
         allowed = f"must have shape ({self.size},), real numbers"
         try:
@@ -117,7 +129,7 @@ class Actions:
             raise refuse("action", a, "must be finite and within [-1, 1]")
         return a
 
-    def check_many(self, actions, n):
+    def check_many(self, actions: Any, n: int) -> Floats:
         """The actions of n tables as a fresh float64 array (n, size); ValueError as ``check``, naming the first table that is wrong."""
         allowed = f"must have shape ({n}, {self.size}), real numbers"
         try:
@@ -134,17 +146,17 @@ class Actions:
             raise refuse(f"actions[{k}]", a[k].tolist(), "must be finite and within [-1, 1]")
         return a
 
-    def pack(self):
+    def pack(self) -> Floats:
         """What the kernels must know: float64, places ``A_*`` of this module."""
         world = self.physics
         return np.array([self.aim == "target", self.elevation, self.placement, world.end_mass_ratio, world.max_offset, False], np.float64)
 
-    def shot(self, a, positions, on_table, on):
+    def shot(self, a: Any, positions: Vectors, on_table: Flags, on: int) -> tuple[float, float, float, float, float]:
         """(speed, side, top, aim, elevation) of an action list, the aim being the cue's direction [rad]."""
         return _shot(np.array(a, np.float64), np.array(positions, np.float64), np.array(on_table, np.bool_), int(on), self.pack())
 
 
-def line(positions, on_table, on):
+def line(positions: Vectors, on_table: Flags, on: int) -> float:
     """Direction [rad] of the best potting line: from the cue ball to the ghost of the direct pot with the widest tolerance (``game.pots``)
     among the balls on; if there is none, to the centre of the nearest ball on."""
     return _line(np.array(positions, np.float64), np.array(on_table, np.bool_), int(on))

@@ -4,16 +4,20 @@ The pots are the widest direct ones that the table offers (``game.pots``); one w
 Where there is none the first stands for a full hit on the nearest ball on. ``action_masks`` says which pots there are.
 """
 
+from typing import Any
+
 import numpy as np
 from gymnasium import spaces
 
 from .._check import refuse, refuse_what
 from .._jit import entry, kernel
+from .._types import Action, Floats
 from ..game.balls import bits
 from ..game.frame_columns import strikeable
 from ..game.pots import POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
+from ..physics.parameters import Physics
 from .box_actions import line_of
 from .pot_aim import solved_aim
 
@@ -28,7 +32,7 @@ STROKES = len(SPEEDS) * len(SIDES) * len(TOPS)
 SIZE = POTS * STROKES
 
 
-def choice_of(pot, speed, side, top):
+def choice_of(pot: int, speed: int, side: int, top: int) -> int:
     """The choice with these places: of the pots, widest first, and in ``SPEEDS``, ``SIDES`` and ``TOPS``."""
     return pot * STROKES + (speed * len(SIDES) + side) * len(TOPS) + top
 
@@ -68,21 +72,23 @@ def masks(which, positions, on_table, game, out):
 class Choices:
     """The discrete action space's meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``POTS``, ``SPEEDS``, ``SIDES``, ``TOPS``."""
 
-    size = 1
-    placement = decision = False
+    size: int = 1
+    placement: bool = False
+    decision: bool = False
+    space: spaces.Discrete
 
-    def __init__(self, physics):
+    def __init__(self, physics: Physics):
         self.physics = physics
         self.space = spaces.Discrete(SIZE)
 
-    def check(self, action):
+    def check(self, action: Action) -> list[float]:
         """The choice in a list; ValueError unless it is an integer in [0, SIZE)."""
         a = np.asarray(action)
         if a.dtype.kind not in "iu" or a.size != 1 or not 0 <= a.item() < SIZE:
             raise refuse("action", action, f"must be an integer in [0, {SIZE})")
         return [float(a.item())]
 
-    def check_many(self, actions, n):
+    def check_many(self, actions: Any, n: int) -> Floats:
         """The choices of n tables, float64 (n, 1); ValueError names the first table that is wrong."""
         a = np.asarray(actions)
         if a.dtype.kind not in "iu" or a.shape not in ((n,), (n, 1)):
@@ -94,7 +100,7 @@ class Choices:
             raise refuse(f"actions[{k}]", int(a[k]), f"must be in [0, {SIZE})")
         return a.astype(np.float64).reshape(n, 1)
 
-    def pack(self):
+    def pack(self) -> Floats:
         """What the kernels must know, places ``A_*`` of ``actions``."""
         world = self.physics
         return np.array([False, False, False, world.end_mass_ratio, world.max_offset, True], np.float64)

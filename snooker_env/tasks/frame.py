@@ -10,73 +10,78 @@ A cue ball in hand is put at once on the free place of the D nearest to its usua
 may place it elsewhere first. The physics is planar: no ball leaves the table and the cue ball jumps none, so those fouls cannot come up.
 """
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from .._check import refuse
+from .._types import Bools, Floats, Ints, Singles
 from ..game.balls import COLOURS_MASK, N_BALLS, mask_of_present
+from ..game.frame import Frame
 from ..game.frame_columns import COLUMNS, FREE_BALL, PHASE, SCORE_0, SCORE_1, STRIKER, STROKES, Layouts, frame_of, write_frame
 from ..game.layouts import deal_tables
 from . import frame_kernels
 from .frame_kernels import AGENT
 from .observations import FRAME_SIZE
-from .options import NEVER
+from .options import NEVER, Rules
 from .rewards import FRAME_REWARDS
-from .states import checked_frame
-from .stroke import address
-from .tables import COUNTS, REALS, Tables
+from .states import FrameState, checked_frame
+from .stroke import ShotBuffers, address
+from .tables import COUNTS, REALS, Crew, StepOutput, Tables
 
 
 class Frames(Tables):
     """n tables, each in the middle of its own frame."""
 
-    REALS = (*REALS, "score", "opponent_score")
-    COUNTS = (*COUNTS, "strokes", "opponent_strokes", "winner", "choice", "free_ball", "needs_snookers")
-    FLAGS = ("choice", "free_ball", "needs_snookers")
+    REALS: tuple[str, ...] = (*REALS, "score", "opponent_score")
+    COUNTS: tuple[str, ...] = (*COUNTS, "strokes", "opponent_strokes", "winner", "choice", "free_ball", "needs_snookers")
+    FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers")
     SIZE = FRAME_SIZE
     COLUMNS = COLUMNS
     KIND = "frame"
 
-    def __init__(self, rules, n, *, limit=NEVER):
+    def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         super().__init__(rules, n, limit=limit)
         self._saved_positions, self._saved_on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
         self._lead, self._replies, self._played = (np.zeros(n, np.int64) for _ in range(3))
         self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
 
     @property
-    def saved(self):
+    def saved(self) -> Layouts:
         """Where the balls lay before the last fouls: ``frame_columns.Layouts``."""
         return Layouts(self._saved_positions, self._saved_on_table)
 
-    def _columns(self):
+    def _columns(self) -> tuple[str, ...]:
         return (*super()._columns(), "_saved_positions", "_saved_on_table", "_lead", "_replies", "_played")
 
-    def frame(self, k):
+    def frame(self, k: int) -> Frame:
         """The ``game.frame.Frame`` on table k."""
         return frame_of(self.game[k], "clear_path" if self.rules.miss else "off", self.saved, k)
 
-    def on(self, k):
+    def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k: those on, and with a free ball every colour."""
         return super().on(k) | (COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, FREE_BALL] else 0)
 
-    def lead(self):
+    def lead(self) -> Ints:
         """The agent's scores less the opponent's: (n,)."""
         return self.game[:, SCORE_0 + AGENT] - self.game[:, SCORE_1 - AGENT]
 
-    def stopped(self):
+    def stopped(self) -> Bools:
         """Which frames the referee has stopped or would stop, as ``max_strokes`` have been played: bool (n,)."""
         return self.game[:, STROKES] >= self.rules.max_strokes
 
-    def ended(self):
+    def ended(self) -> Bools:
         """Where there is nothing more to play: bool (n,)."""
         return super().ended() | self.stopped()
 
-    def interrupted(self):
+    def interrupted(self) -> None:
         """A step or reset was cut short: a table at which it is the opponent's turn needs a reset."""
-        self.begun &= self.game[:, STRIKER] == AGENT
+        self.begun[self.game[:, STRIKER] != AGENT] = False
 
     # a turn ----------------------------------------------------------------------------------------------------------------
 
-    def prepare(self, which, actions, buffers):
+    def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
         """The strikers' decisions on the tables ``which``, and their strokes up to the strike: the tables on which there is a stroke."""
         if self.game[which, PHASE].any():
             plays = np.empty(len(which), np.bool_)
@@ -90,7 +95,7 @@ class Frames(Tables):
         )  # fmt: skip
         return which
 
-    def complete(self, which, out, buffers, crew, *, own, alone=False):
+    def complete(self, which: Ints, out: StepOutput, buffers: ShotBuffers, crew: Crew, *, own: bool, alone: bool = False) -> None:
         """Play and judge the shots of the tables ``which`` that have been struck. ``own``: ``out`` tells of them, else they are only
         counted; ``alone``: the agent gets the table back."""
         if not len(which):
@@ -110,7 +115,7 @@ class Frames(Tables):
             out.counts,
         )  # fmt: skip
 
-    def turn(self, prepare, out, crew):
+    def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:
         """One turn of whoever strikes on each table: a match. ``out`` gets the infos of strokes; returns where there was one, (n,) bool.
 
         ``prepare(which, buffers)``: decides and plays up to the strike, as the method of that name does; the tables with a stroke.
@@ -121,7 +126,7 @@ class Frames(Tables):
 
     # steps and resets of the frame task --------------------------------------------------------------------------------------
 
-    def step(self, actions, waiting, out, crew, *, same_step=False):
+    def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
         """One step of all tables: actions (n, k) float64 that were checked, results into ``out``.
 
         ``waiting`` (n,) bool: tables that begin a new frame instead of playing; ``same_step``: those whose frame ends begin a new one at
@@ -157,15 +162,16 @@ class Frames(Tables):
     def _reply(self, which, out, crew):
         """All that the opponent plays on the tables ``which`` until the agent is to play, or the frame has ended."""
         opponent = self.rules.opponent
+        assert opponent is not None  # alone, nobody replies
         while len(which := which[(self.game[which, STRIKER] != AGENT) & ~self.ended()[which]]):
-            actions = opponent.ask(self, which, crew.generators)
+            actions: Any = opponent.ask(self, which, crew.generators)
 
             def play(part, buffers, actions=actions):
                 self.complete(opponent.prepare(self, part, actions, buffers), out, buffers, crew, own=False)
 
             crew(which, play)
 
-    def reset(self, wanted, out, crew):
+    def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
         """New frames on the tables ``wanted`` (n,) bool; what a reset returns of all tables into ``out``."""
         self.begun[wanted] = False  # until the opponent has played, if it is he who breaks
         self._start(np.flatnonzero(wanted), out, crew)
@@ -186,7 +192,7 @@ class Frames(Tables):
             left = left[self.ended()[left]]
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
-    def deal(self, which, *, drawn):
+    def deal(self, which: Ints, *, drawn: bool) -> None:
         """New frames on the tables ``which``; ``drawn``: who breaks is drawn, else it is the agent."""
         plan = self.rules.plan
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
@@ -196,7 +202,7 @@ class Frames(Tables):
     def _show(self, which, out, *, fresh):
         frame_kernels.show(which, fresh, self.positions, self.on_table, self.game, self._replies, out.rows)
 
-    def observe(self, which, player):
+    def observe(self, which: Ints, player: int) -> Singles:
         """What ``player`` sees of the tables ``which``: float32 (len(which), FRAME_SIZE), fresh."""
         rows = np.empty((len(which), FRAME_SIZE), np.float32)
         frame_kernels.observe(which, player, self.positions, self.on_table, self.game, rows)
@@ -204,14 +210,14 @@ class Frames(Tables):
 
     # states ----------------------------------------------------------------------------------------------------------------
 
-    def get_state(self, k):
+    def get_state(self, k: int) -> dict[str, Any]:
         """Table k as JSON types: the parts of a ``states.FrameState`` but "rng"."""
         return {
             "positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist(), "frame": self.frame(k).to_dict(),
             "strokes": int(self.game[k, STROKES]), "stream": self.streams[k].tolist(),
         }  # fmt: skip
 
-    def checked(self, state, generator, *, to_play=False, either=False):
+    def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False) -> FrameState:
         """The ``states.FrameState`` that a dict describes; ValueError if it is not sound, if it is ``to_play`` and there is no stroke left,
         or unless ``either`` player may be the striker if it is not the agent."""
         miss = "clear_path" if self.rules.miss else "off"
@@ -226,14 +232,14 @@ class Frames(Tables):
             raise refuse("state.frame.striker", sound.frame.striker, f"must be {AGENT}, the agent, as always between two steps")
         return sound
 
-    def set_state(self, k, state):
+    def set_state(self, k: int, state: FrameState) -> None:
         """Take over a sound ``states.FrameState`` on table k."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
         self.streams[k] = np.array(state.stream, np.uint64)
         self._replies[k], self.begun[k] = 0, True
 
-    def text(self, k):
+    def text(self, k: int) -> str:
         """One line for the pictures."""
         frame = self.frame(k)
         on = frame.ball_on.name.lower().replace("_", " ")

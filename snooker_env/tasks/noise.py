@@ -31,14 +31,16 @@ within a diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009). Elevation: 0.1 to 
 
 from dataclasses import asdict, dataclass, fields
 from math import degrees, hypot, radians, sqrt
+from typing import TypeAlias
 
 import numpy as np
 
 from .._check import choice, number, refuse
 from .._jit import kernel
+from .._types import Floats, NoiseName
 from ..game.philox import normals
 from ..physics.cue import MAX_ELEVATION
-from ..physics.parameters import Physics
+from ..physics.parameters import Physics, PhysicsLike
 
 # Places in the packed deviations: 1 if there is no noise, then speed [m/s] and over the speed, tip offset over R, aim and elevation [rad].
 (N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION) = range(6)
@@ -80,12 +82,12 @@ class Noise:
     offset_mm: float = 0.0
     elevation_deg: float = 0.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for f in fields(self):
             object.__setattr__(self, f.name, number(f"noise.{f.name}", getattr(self, f.name), 0))
 
     @classmethod
-    def of(cls, noise):
+    def of(cls, noise: "NoiseLike") -> "Noise":
         """A level's name, or a dict of the fields above (others 0)."""
         if isinstance(noise, cls):
             return noise
@@ -98,11 +100,11 @@ class Noise:
         return LEVELS[noise]
 
     @property
-    def silent(self):
+    def silent(self) -> bool:
         """No noise at all: nothing is drawn then."""
         return not (self.aim_deg or self.speed_rel or self.speed_abs or self.offset_mm or self.elevation_deg)
 
-    def direction_deg(self, physics=None):
+    def direction_deg(self, physics: PhysicsLike = None) -> float:
         """Total error of the cue ball's direction, standard deviation [deg]: the aim's and that of the tip's squirt, added in squares.
 
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a small offset [TP A.31]: with the
@@ -113,13 +115,16 @@ class Noise:
         tip = self.offset_mm * 1e-3 / world.R
         return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + world.end_mass_ratio)))
 
-    def pack(self, R):
+    def pack(self, R: float) -> Floats:
         """What the kernels must know: float64, places ``N_*`` of this module; R the ball's radius [m]."""
         tip = self.offset_mm * 1e-3 / R
         return np.array([self.silent, self.speed_abs, self.speed_rel, tip, radians(self.aim_deg), radians(self.elevation_deg)], np.float64)
 
 
-LEVELS = {
+NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
+"""What users may pass as ``noise``, see ``Noise.of``."""
+
+LEVELS: dict[str, Noise] = {
     "none": Noise(),
     "professional": Noise(aim_deg=0.025, speed_rel=0.0175, offset_mm=0.15, elevation_deg=0.1),
     "amateur": Noise(aim_deg=0.034, speed_rel=0.025, offset_mm=0.21, elevation_deg=0.2),

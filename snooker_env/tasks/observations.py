@@ -5,6 +5,7 @@ from gymnasium import spaces
 
 from .._check import choice
 from .._jit import kernel
+from .._types import Observation, ObservationKind, Singles
 from ..game.balls import N_BALLS, REDS_MASK, VALUES, bits, count
 from ..geometry import HALF_LENGTH, HALF_WIDTH
 
@@ -31,7 +32,7 @@ FRAME_SIZE = SIZE + len(FRAME_ENTRIES)
 """Numbers in the flat observation of a visit, of a frame, and how many of them, at the front, are the table of balls."""
 
 
-def space(kind, *, frame=False):
+def space(kind: ObservationKind, *, frame: bool = False) -> spaces.Box | spaces.Dict:
     """The observation space: "flat" a Box of 22 * 5 + 11 numbers, "balls" a Dict of "balls" (22, 5) and "state" (11,).
 
     ``frame``: with the nine entries of a frame behind the eleven.
@@ -64,7 +65,7 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
     row[BALLS_SIZE + 10] = points / 155.0
 
 
-def shaped(kind, rows):
+def shaped(kind: ObservationKind, rows: Singles) -> Observation:
     """Flat observations (..., SIZE or more), which are taken over, as the observations of that kind."""
     if kind == "flat":
         return rows

@@ -4,24 +4,33 @@ An opponent is asked for all tables at which it is its turn: ``ask(frames, which
 then ``prepare(frames, which, actions, buffers)``, on several threads, which carries them out up to the strike.
 """
 
+from collections.abc import Callable, Sequence
 from math import atan2, hypot, inf, pi, sqrt
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from .._check import refuse, truth
 from .._jit import entry, kernel
+from .._types import Action, Bools, Floats, Ints, Observation, ObservationKind
 from ..game.balls import N_BALLS, bits
 from ..game.frame_columns import CHOICE, IN_HAND, PHASE, PLAY, choose, strikeable
 from ..game.philox import pair
 from ..game.pots import POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from . import observations
+from .box_actions import Actions
 from .discrete_actions import SIZE as CHOICES
 from .discrete_actions import Choices
 from .saved_models import SavedModel, outline
-from .stroke import place, strike
+from .stroke import ShotBuffers, place, strike
 
+if TYPE_CHECKING:
+    from .frame import Frames
+
+Policy: TypeAlias = Callable[[Observation, np.random.Generator], Action]
+"""A player in Python: what it sees from its own side of the table, and a generator for its random numbers, to an action."""
 OPPONENTS = ("none", "random", "ghost_ball")
 PLAYER = 1
 """The opponent's place in the frame."""
@@ -64,11 +73,11 @@ def _uniform_choice(which, streams, masks, actions):
 class UniformOpponent:
     """Every component of the action uniform, the decision too; of discrete actions one that there is."""
 
-    def ask(self, frames, which, generators):
+    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
         """Nothing: each table draws from its own stream."""
         return np.empty((frames.n, frames.rules.actions.size))
 
-    def prepare(self, frames, which, actions, buffers):
+    def prepare(self, frames: "Frames", which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
         """The strokes up to the strike: the tables on which there is one."""
         if isinstance(frames.rules.actions, Choices):
             _uniform_choice(which, frames.streams, frames.action_masks(which), actions)
@@ -149,10 +158,10 @@ class GhostBallOpponent:
     stroke for ever.
     """
 
-    def ask(self, frames, which, generators):
+    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> None:
         """Nothing: it plays as a kernel."""
 
-    def prepare(self, frames, which, actions, buffers):
+    def prepare(self, frames: "Frames", which: Ints, actions: Any, buffers: ShotBuffers) -> Ints:
         """Its strokes up to the strike, one on each table."""
         b = buffers
         options, noise, _ = frames.packed
@@ -167,10 +176,10 @@ class AskedOpponent:
     observations with a leading axis, as many generators, and the masks of discrete actions (None of others).
     """
 
-    def __init__(self, policy):
+    def __init__(self, policy: Policy):
         self.policy = policy
 
-    def ask(self, frames, which, generators):
+    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
         """Its actions on the tables ``which``: (n, k). Raises ValueError, naming "opponent's action", for a wrong one."""
         rules, k_of = frames.rules, which.tolist()
         seen = frames.observe(which, PLAYER)
@@ -193,7 +202,7 @@ class AskedOpponent:
             raise refuse("opponent's actions", len(wished), f"must be {len(which)}, one for each table that waits")
         return wished
 
-    def prepare(self, frames, which, actions, buffers):
+    def prepare(self, frames: "Frames", which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
         """The strokes up to the strike: the tables on which there is one."""
         return frames.prepare(which, actions, buffers)
 
@@ -206,19 +215,24 @@ class SavedPolicy:
     refused here, by what its file says of itself before anything of it runs.
     """
 
-    def __init__(self, path, kind, actions, trust):
+    path: Path
+    kind: ObservationKind
+    actions: Actions | Choices
+    trust: bool
+
+    def __init__(self, path: str | Path, kind: ObservationKind, actions: Actions | Choices, trust: bool):
         self.path, self.kind, self.actions, self.trust = Path(path), kind, actions, trust
         self._network = self._load()
 
-    def __getstate__(self):
+    def __getstate__(self) -> dict[str, Any]:
         return self.__dict__ | {"_network": None}  # loaded again where it is needed
 
-    def __call__(self, observation, rng):
+    def __call__(self, observation: Observation, rng: np.random.Generator) -> Action:
         """The action of one table."""
         one = {name: part[None] for name, part in observation.items()} if isinstance(observation, dict) else observation[None]
         return self.many(one, [rng], None)[0]
 
-    def many(self, observation, generators, masks):
+    def many(self, observation: Observation, generators: Sequence[np.random.Generator], masks: Bools | None) -> Any:
         """The actions of all tables whose observations these are; ``masks``: of discrete actions, if known."""
         if self._network is None:
             self._network = self._load()
@@ -255,7 +269,10 @@ class SavedPolicy:
         return network
 
 
-def visit_part(observation):
+Opponent: TypeAlias = UniformOpponent | GhostBallOpponent | AskedOpponent
+
+
+def visit_part(observation: Observation) -> Observation:
     """What the visit task would show of a frame's observations."""
     extra = len(observations.FRAME_ENTRIES)
     if isinstance(observation, dict):
@@ -263,7 +280,7 @@ def visit_part(observation):
     return observation[..., :-extra]
 
 
-def opponent_of(opponent, kind, actions, trust=False):
+def opponent_of(opponent: str | Path | Policy, kind: ObservationKind, actions: Actions | Choices, trust: bool = False) -> Opponent | None:
     """The player that ``opponent`` names; None for "none". ``kind``: of the observation, ``trust``: may code run, for a model's file."""
     allowed = "must be one of " + ", ".join(map(repr, OPPONENTS)) + ", a path to a model (.zip), or a callable(observation, rng) -> action"
     truth("trust", trust)

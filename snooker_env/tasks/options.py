@@ -4,23 +4,26 @@
 keywords, of which they make one.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 
 from .._check import choice, integer, refuse, refuse_what, truth
+from .._types import Fidelity, Floats, MissRule, ObservationKind, Solver
 from ..game.frame import MISS_RULES
 from ..game.layouts import Plan
 from ..geometry import BALL_RADIUS
 from ..physics.impact.contact import parse_fidelity
-from ..physics.parameters import Physics
-from ..physics.table import Table
+from ..physics.parameters import Physics, PhysicsLike
+from ..physics.table import Table, TableLike
 from .box_actions import AIMS, Actions
 from .discrete_actions import Choices
-from .noise import Noise
+from .noise import Noise, NoiseLike
 from .observations import OBSERVATIONS
-from .opponents import opponent_of
+from .opponents import Opponent, Policy, opponent_of
 from .rewards import FRAME_REWARDS, REWARDS
 from .table_fit import fitted, table_of
 
@@ -40,25 +43,25 @@ NEVER = 2**62
 class Rules:
     """The options of a game as its kernels need them: what ``Options.rules`` holds."""
 
-    actions: Any
+    actions: Actions | Choices
     """``Actions`` or ``Choices``."""
     noise: Noise
     physics: Physics
     table: Table
-    fidelity: tuple[int, int]
+    fidelity: Solver
     """As ``parse_fidelity`` gives it."""
     plan: Plan
     """How tables are dealt."""
     reward: str
-    observation: str
+    observation: ObservationKind
     miss: bool = False
     """Of a frame: whether a foul and a miss is called."""
     max_strokes: int = NEVER
     """Of a frame: after how many strokes of both players it is stopped."""
-    opponent: Any = None
+    opponent: Opponent | None = None
     """Of a frame: who plays the other side, as ``opponents.opponent_of`` gives it."""
 
-    def packed(self):
+    def packed(self) -> tuple[Floats, Floats, Floats]:
         """For the kernels: options of the action, deviations of the noise, physical parameters."""
         return self.actions.pack(), self.noise.pack(BALL_RADIUS), self.physics.pack()
 
@@ -70,27 +73,27 @@ class Options:
     Raises ValueError, naming the field, for whatever is unknown, of the wrong type, or does not go with another.
     """
 
-    task: str = "visit"
+    task: Literal["visit", "frame"] = "visit"
     layout: str = "default"
-    action: str = "box"
-    aim: str = "absolute"
-    observation: str = "flat"
-    noise: Any = "none"
-    reward: str = "points"
+    action: Literal["box", "discrete"] = "box"
+    aim: Literal["absolute", "target"] = "absolute"
+    observation: ObservationKind = "flat"
+    noise: NoiseLike = "none"
+    reward: Literal["points", "points_and_fouls", "pots", "win"] = "points"
     elevation: bool = False
     placement: bool = False
-    physics: Any = "paper"
-    table: Any = "match"
-    fidelity: str = "standard"
-    opponent: Any = "none"
-    miss: str = "off"
+    physics: PhysicsLike = "paper"
+    table: TableLike = "match"
+    fidelity: Fidelity = "standard"
+    opponent: str | Path | Policy = "none"
+    miss: MissRule = "off"
     decision: bool = False
     max_strokes: int | None = MAX_STROKES
     trust: bool = False
     rules: Rules = field(init=False, repr=False, compare=False)
     """The same, read."""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         frame = choice("task", self.task, TASKS) == "frame"
         if isinstance(self.layout, str) and self.layout == "default":
             object.__setattr__(self, "layout", LAYOUTS[self.task])
@@ -111,14 +114,14 @@ class Options:
         read = Rules(actions, noise, physics, table, fidelity, plan, self.reward, self.observation, miss, limit, opponent)
         object.__setattr__(self, "rules", read)
 
-    def _physics(self):
+    def _physics(self) -> Physics:
         physics = Physics.of(self.physics)
         if physics.R != BALL_RADIUS:
             raise refuse("physics.R", physics.R, f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it")
         physics.check_stopping()
         return physics
 
-    def _actions(self, physics):
+    def _actions(self, physics: Physics) -> Actions | Choices:
         if choice("action", self.action, ACTIONS) == "box":
             return Actions(self.aim, self.elevation, self.placement, physics, self.decision)
         for name in ("elevation", "placement", "decision"):
@@ -127,7 +130,7 @@ class Options:
         choice("aim", self.aim, AIMS)  # it has no say: the aim is solved
         return Choices(physics)
 
-    def _check_visit(self):
+    def _check_visit(self) -> None:
         """Raise ValueError unless what belongs to a frame is left as it is."""
         usual = {f.name: f.default for f in fields(self)}
         for name in FRAME_ONLY:
@@ -135,7 +138,7 @@ class Options:
             if not isinstance(value, (type(usual[name]), np.bool_)) or value != usual[name]:
                 raise refuse(name, value, f'must be {usual[name]!r} with task="visit"; it belongs to task="frame"')
 
-    def but(self, **changes):
+    def but(self, **changes: Any) -> "Options":
         """The same with some options changed."""
         return replace(self, **changes)
 
@@ -145,7 +148,7 @@ FRAME_ONLY = ("opponent", "trust", "miss", "decision", "max_strokes")
 NAMES = tuple(f.name for f in fields(Options) if f.init)
 
 
-def options_of(options, given):
+def options_of(options: Options | None, given: Mapping[str, Any]) -> Options:
     """The ``Options`` of an environment that was given ``options`` (None or some) and the keywords ``given``.
 
     Raises ValueError for what is not sound, TypeError for a keyword that is unknown.

@@ -29,7 +29,7 @@ def frame_reward_of(kind, gained, winner, player):
     return 0.0 if winner < 0 else 1.0 if winner == player else -1.0
 
 
-def frame_reward(name, gained, winner, player):
+def frame_reward(name: str, gained: float, winner: int | None, player: int) -> float:
     """The same for one player of a match, ``gained`` and ``winner`` (None while there is none) as player 0 sees them."""
     if name == "points":
         return float(gained if player == 0 else -gained)

@@ -9,6 +9,7 @@ import json
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from gymnasium import spaces
 
@@ -32,7 +33,7 @@ _ALGORITHMS = (
 """Library, class, and what only its models save besides that of those above; a recurrent one has no class of rollout buffers."""
 
 
-def part(path, name, most=MOST):
+def part(path: str | Path, name: str, most: int = MOST) -> bytes:
     """The bytes of one part of a zip file. Raises whatever ``zipfile`` does, and ValueError if there are more of them than ``most``."""
     with zipfile.ZipFile(path) as file:
         if file.getinfo(name).file_size > most:
@@ -40,7 +41,7 @@ def part(path, name, most=MOST):
         return file.read(name)
 
 
-def entries(path):
+def entries(path: str | Path) -> dict[str, Any]:
     """What a model's file says of itself, pickles left as text: a dict. Raises whatever ``zipfile`` and ``json`` do."""
     with zipfile.ZipFile(path) as file:
         name = PLAIN if PLAIN in file.namelist() else "data"
@@ -50,12 +51,12 @@ def entries(path):
     return found
 
 
-def by_train(found):
+def by_train(found: dict[str, Any]) -> bool:
     """Whether these ``entries`` are of a model of ``train.py``, which tells what it needs in plain."""
     return "recipe" in found
 
 
-def outline(space):
+def outline(space: spaces.Space[Any]) -> tuple[str, Any]:
     """Kind and size of a space, as far as Stable-Baselines3 writes them in plain."""
     if isinstance(space, spaces.Dict):
         return "Dict", str(space.spaces)
@@ -78,14 +79,14 @@ class SavedModel:
 
     path: Path
     field: str
-    data: dict
+    data: dict[str, Any]
     """Its ``data``, in which pickles are text."""
-    observation: tuple
-    action: tuple
+    observation: tuple[str, Any]
+    action: tuple[str, Any]
     """``outline`` of its spaces, by what it says itself."""
 
     @classmethod
-    def of(cls, path, field):
+    def of(cls, path: str | Path, field: str) -> "SavedModel":
         """Read a file. Raises ValueError if it is none of Stable-Baselines3."""
         try:
             data = entries(path)
@@ -98,12 +99,12 @@ class SavedModel:
             raise refuse(field, str(path), allowed)
         return cls(Path(path), field, data, *told)
 
-    def refused(self, allowed):
+    def refused(self, allowed: str) -> ValueError:
         """The complaint about this file."""
         return refuse(self.field, str(self.path), allowed)
 
     @property
-    def algorithm(self):
+    def algorithm(self) -> tuple[str, str]:
         """Library and class that saved it, told by the names of what it holds. Raises ValueError for any other."""
         held = {name for name, value in self.data.items() if value is not None}
         for library, name, own in _ALGORITHMS:
@@ -113,7 +114,7 @@ class SavedModel:
                 return ("sb3_contrib", "MaskablePPO") if masked else (library, name)
         raise self.refused("must be a model of MaskablePPO, " + ", ".join(name for _, name, _ in _ALGORITHMS))
 
-    def network(self, trust, consent):
+    def network(self, trust: bool, consent: str) -> Any:
         """Its network (an SB3 policy), loaded: the code in its pickles runs. ``consent``: how a user says that he wants that.
 
         Raises ValueError, before anything runs, without ``trust``; ValueError, too, if it cannot be loaded, ImportError without SB3.

@@ -1,14 +1,17 @@
 """Is a saved state sound? Checks every part of what ``get_state`` gave, of a visit and of a frame, before any of it is taken over."""
 
+from collections.abc import Collection
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._check import array, flags, integer, refuse, refuse_what, truth
+from .._types import Bools, Floats, MissRule
 from ..game.balls import CUE, CUE_BIT, N_BALLS, REDS_MASK, BallOn, balls_on, mask_of_present, next_on
 from ..game.frame import MOST_BREAK, Frame, points_available
 from ..game.in_hand import within_d
+from ..physics.table import Table
 
 MOST = 2**53 - 1
 """The highest score and the most strokes of a saved frame: a float, as observations and infos give them, still holds every integer."""
@@ -19,30 +22,30 @@ FAR = 1000.0
 class State(NamedTuple):
     """A sound state of a visit: what ``SnookerEnv`` is made of between two shots."""
 
-    positions: np.ndarray
-    on_table: np.ndarray
+    positions: Floats
+    on_table: Bools
     ball_on: BallOn
     in_hand: bool
     points: int
     over: bool
-    stream: list
+    stream: list[int]
     """Key and counter of the table's stream of random numbers."""
-    rng: dict
+    rng: dict[str, Any]
 
 
 class FrameState(NamedTuple):
     """A sound state of a frame, in ``SnookerEnv`` or a match."""
 
     frame: Frame
-    positions: np.ndarray
-    on_table: np.ndarray
+    positions: Floats
+    on_table: Bools
     strokes: int
-    stream: list
+    stream: list[int]
     """Key and counter of the table's stream of random numbers."""
-    rng: dict
+    rng: dict[str, Any]
 
 
-def check_keys(state, keys):
+def check_keys(state: Any, keys: Collection[str]) -> None:
     """Raise ValueError unless ``state`` is a dict with exactly these keys."""
     if not isinstance(state, dict):
         raise refuse("state", state, "must be a state of get_state(), a dict")
@@ -52,7 +55,7 @@ def check_keys(state, keys):
         raise refuse_what("state", f"a dict with {unknown}", f"must be a state of get_state() here, with the keys {list(keys)} only")
 
 
-def checked_layout(names, positions, on_table, table, R):
+def checked_layout(names: tuple[str, str], positions: Any, on_table: Any, table: Table, R: float) -> tuple[Floats, Bools]:
     """The arrays positions (22, 2) and on_table (22,); ValueError, by one of the two ``names``, unless they are a sound layout."""
     field = names[0]
     places, present = array(field, positions, (N_BALLS, 2)), flags(names[1], on_table, (N_BALLS,))
@@ -65,7 +68,7 @@ def checked_layout(names, positions, on_table, table, R):
     return places, present
 
 
-def check_in_hand(field, in_hand, name, positions):
+def check_in_hand(field: str, in_hand: bool, name: str, positions: Floats) -> None:
     """Raise ValueError if a cue ball in hand does not lie in the D, where it is to be seen until it is placed."""
     if in_hand and not within_d(*positions[CUE]):
         x, y = positions[CUE].tolist()
@@ -84,7 +87,7 @@ def _check_like(field, value, known):
         _check_like(f"{field}.{key}", value[key], known[key])
 
 
-def check_rng(rng, generator):
+def check_rng(rng: Any, generator: np.random.Generator) -> None:
     """Raise ValueError unless ``rng`` is a state that the numpy ``generator`` could take over; the generator is left as it is."""
     trial = type(generator.bit_generator)()
     _check_like("state.rng", rng, trial.state)
@@ -94,14 +97,14 @@ def check_rng(rng, generator):
         raise refuse("state.rng", rng, f"must be the state of a {type(trial).__name__} generator ({error})") from None
 
 
-def check_stream(stream):
+def check_stream(stream: Any) -> list[int]:
     """Key and counter of a stream as a list of two ints; ValueError if they are none."""
     if not isinstance(stream, list | tuple) or len(stream) != 2:
         raise refuse("state.stream", stream, "must be two integers, key and counter")
     return [integer(f"state.stream[{k}]", word, 0, 2**64 - 1) for k, word in enumerate(stream)]
 
 
-def checked(state, table, R, generator, *, to_play=False):
+def checked(state: Any, table: Table, R: float, generator: np.random.Generator, *, to_play: bool = False) -> State:
     """The ``State`` that a dict describes; ValueError names the first part that is wrong, or says that there is no shot ``to_play``.
 
     ``generator``: the numpy Generator that is to take over the part "rng"; it is left as it is.
@@ -132,7 +135,7 @@ def checked(state, table, R, generator, *, to_play=False):
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"])
 
 
-def checked_frame(state, miss, table, R, generator):
+def checked_frame(state: Any, miss: MissRule, table: Table, R: float, generator: np.random.Generator) -> FrameState:
     """The ``FrameState`` that a dict describes, played by the rule ``miss``; ValueError names the first part that is wrong.
 
     ``generator``: the numpy Generator that is to take over the part "rng"; it is left as it is.
@@ -174,6 +177,6 @@ def _checked_saved(frame, table, R):
     return replace(saved, layout=layout_of(positions, on_table))
 
 
-def layout_of(positions, on_table):
+def layout_of(positions: Floats, on_table: Bools) -> tuple[Any, ...]:
     """The layout as ``Saved`` keeps it: what JSON can hold, and unchanging."""
     return tuple(map(tuple, positions.tolist())), tuple(on_table.tolist())

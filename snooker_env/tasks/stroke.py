@@ -5,9 +5,13 @@ its own referee. Kernels go over the tables named by ``which``; row j of the ``S
 draws from its own stream (``game.philox``), so that no table's result depends on another, on their number or on the threads.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
+from numpy.typing import NDArray
 
 from .._jit import entry, kernel
+from .._types import Bools, Floats, Ints
 from ..game.balls import CUE, N_BALLS, TOUCH, bits
 from ..game.frame_columns import IN_HAND, strikeable
 from ..game.in_hand import nearest_place
@@ -16,10 +20,14 @@ from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.engine import EventKind, Status
 from ..physics.impact.polynomial import WORK
+from ..physics.parameters import Physics
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
 from .box_actions import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, place_of, shot_of, tip_on_disc
 from .noise import executed
+
+if TYPE_CHECKING:
+    from .options import Rules
 
 AT_ONCE = 1e-9
 """Contacts nearer than this [s] are simultaneous."""
@@ -126,7 +134,32 @@ def see(j, event_time, event_what, n_events, potted, positions, on_table, speed,
 class ShotBuffers:
     """Work space for up to m shots at once, each with a log of ``log`` events and, if wanted, its path."""
 
-    def __init__(self, m, log=512, *, path=False):
+    log: int
+    r: Floats
+    v: Floats
+    w: Floats
+    here: Bools
+    """(m, 22, 2) [m], (m, 22, 2) [m/s], (m, 22, 3) [rad/s], (m, 22): the balls before the shots, then after them."""
+    potted: Ints
+    """(m, 22) the pocket of each ball, or -1."""
+    shots: Floats
+    """(m, 6) of each strike, columns ``VX`` to ``SPEED``."""
+    seen: Ints
+    """(m, 6) what the referee sees, columns ``FIRST`` to ``FULL_PATH``."""
+    event_time: Floats
+    event_what: NDArray[np.int32]
+    """(m, log) [s] and (m, log, 3): time; kind, i, j of each event."""
+    segments: Floats
+    """The paths, if wanted."""
+    status: Ints
+    n_events: Ints
+    n_segments: Ints
+    duration: Floats
+    """(m,) how each shot ended, and how long it took [s]."""
+    enlarged: "ShotBuffers | None"
+    """Where the last shot is that needed more room."""
+
+    def __init__(self, m: int, log: int = 512, *, path: bool = False):
         self.log = log
         self.r, self.v, self.w = np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 3))
         self.here, self.potted = np.zeros((m, N_BALLS), np.bool_), np.zeros((m, N_BALLS), np.int64)
@@ -136,19 +169,18 @@ class ShotBuffers:
         self.status, self.n_events, self.n_segments = (np.zeros(m, np.int64) for _ in range(3))
         self.duration = np.zeros(m)
         self.enlarged = None
-        """Where the last shot is that needed more room."""
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.duration)
 
-    def again(self, j, log):
+    def again(self, j: int, log: int) -> "ShotBuffers":
         """Work space for shot j alone with a log of that length: struck as before, ``r`` and ``here`` to be filled in."""
         one = ShotBuffers(1, log, path=self.segments.shape[1] > 0)
         one.shots[0], one.seen[0] = shot, _ = self.shots[j], self.seen[j]
         one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
         return one
 
-    def shot(self, j, physics):
+    def shot(self, j: int, physics: Physics) -> Shot:
         """Shot j as a ``Shot``."""
         n = self.n_events[j]
         events = np.zeros(n, EVENT)
@@ -159,7 +191,7 @@ class ShotBuffers:
         return Shot(self.r[j].copy(), self.potted[j].copy(), self.here[j].copy(), float(self.duration[j]), events, segments, physics)
 
 
-def run(buffers, m, rules, phys):
+def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
     """Play the first m shots of the buffers until all balls are at rest; ``phys``: the packed ``rules.physics``."""
     table, (fidelity, n_steps) = rules.table, rules.fidelity
     buffers.enlarged = None
@@ -170,7 +202,7 @@ def run(buffers, m, rules, phys):
     )  # fmt: skip
 
 
-def run_again(buffers, j, k, positions, on_table, rules, phys):
+def run_again(buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats) -> ShotBuffers:
     """Shot j, on table k, whose log was full: play it once more with more room, from the table as it lies. Returns its own buffers.
 
     Raises SimulationError if that is not why it did not end.

@@ -8,13 +8,13 @@ from .._check import refuse
 from ..game.layouts import Plan, plan_of
 from ..game.opened import bank
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..physics.table import SAME_BALL, UNBOUNDED, Table
+from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike
 
 ROUNDING = 1e-9
 """Noses, jaws and falls may be off by this [m]."""
 
 
-def table_of(table):
+def table_of(table: TableLike) -> Table:
     """The ``Table`` of an environment's argument. Raises ValueError unless every place that a layout may deal is free on it.
 
     Spots, rack, D, sprinkled balls and respotted ones all lie where a ball's centre is between the noses, |x| <= 0.86275 and
@@ -32,7 +32,7 @@ def table_of(table):
     return cloth
 
 
-def _check_noses(cloth):
+def _check_noses(cloth: Table) -> None:
     for axis, half in enumerate((HALF_WIDTH, HALF_LENGTH)):
         for side in (-1, 1):
             levels = cloth.noses[(cloth.noses[:, 0] == axis) & (cloth.noses[:, 1] == side), 2]
@@ -43,7 +43,7 @@ def _check_noses(cloth):
                 raise refuse("table", cloth.name, allowed)
 
 
-def _check_pockets(cloth):
+def _check_pockets(cloth: Table) -> None:
     room = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS
     for name, circles, reach in (("jaws", cloth.jaws, cloth.jaws[:, 2] + BALL_RADIUS), ("falls", cloth.falls, cloth.falls[:, 2])):
         inside = reach - np.hypot(*np.maximum(np.abs(circles[:, :2]) - room, 0.0).T)
@@ -56,14 +56,14 @@ def _check_pockets(cloth):
             raise refuse("table", cloth.name, allowed)
 
 
-def fitted(layout, cloth) -> Plan:
+def fitted(layout: str, cloth: Table) -> Plan:
     """The ``Plan`` of a layout on a table that ``table_of`` has passed: without the opened tables that do not fit its pockets."""
     plan = plan_of(layout)
     return plan_of(layout, _unfit(cloth)) if len(plan.tables) else plan
 
 
 @lru_cache(8)
-def _unfit(cloth):
+def _unfit(cloth: Table) -> tuple[int, ...]:
     """Which tables of the bank have a ball, dealt as they are or mirrored, in a jaw or over a fall."""
     if cloth is Table.preset("match"):
         return ()  # the bank was played on it

@@ -3,12 +3,13 @@
 A step of n tables is the same whoever asks: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads.
 """
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
 from .._jit import kernel
+from .._types import Bools, Floats, Ints, Singles, Words
 from ..game.balls import N_BALLS, balls_on, mask_of_present
 from ..game.frame_columns import BALL_ON, OVER
 from ..game.philox import stream_of
@@ -61,10 +62,28 @@ def tell_nothing(k, ball_on, reals, counts):
     counts[k, I_BALL_ON], counts[k, I_FIRST] = ball_on, -1
 
 
+Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
+"""What is done for some tables, which it is given, in the buffers that it is given."""
+
+
 class StepOutput:
     """What a step or a reset of n tables returns, in fresh arrays; ``last`` only if one step both ends episodes and starts new ones."""
 
-    def __init__(self, n, size, reals, counts, *, last=False):
+    observations: Singles
+    """(n, size)"""
+    rewards: Floats
+    terminated: Bools
+    truncated: Bools
+    """(n,) each"""
+    reals: Floats
+    counts: Ints
+    """What the infos say: a column for each of ``REALS`` and ``COUNTS``."""
+    last_observations: Singles
+    last_reals: Floats
+    last_counts: Ints
+    """The same of the episodes that ended where new ones were started; without rows otherwise."""
+
+    def __init__(self, n: int, size: int, reals: Sequence[str], counts: Sequence[str], *, last: bool = False):
         self.observations = np.zeros((n, size), np.float32)
         self.rewards = np.zeros(n)
         self.terminated, self.truncated = np.zeros(n, np.bool_), np.zeros(n, np.bool_)
@@ -74,7 +93,7 @@ class StepOutput:
         self.last_reals, self.last_counts = np.zeros((m, len(reals))), np.zeros((m, len(counts)), np.int64)
 
     @property
-    def rows(self):
+    def rows(self) -> tuple[Singles, Floats, Ints, Singles, Floats, Ints]:
         """What an episode's start overwrites, and where its end is kept."""
         return self.observations, self.reals, self.counts, self.last_observations, self.last_reals, self.last_counts
 
@@ -86,22 +105,33 @@ class Crew:
     there is one, is called after each stroke on table k: it is shot j of the buffers, ``own``: the agent's, or in a match anybody's.
     """
 
+    buffers: Any
+    """``ShotBuffers``, or None of a crew that hands out its own."""
+    generators: Sequence[Any]
+    watch: Callable[[int, stroke.ShotBuffers, int, bool], None] | None
+
     def __init__(
-        self, buffers=None, generators: Sequence[Any] = (), watch: Callable[[int, stroke.ShotBuffers, int, bool], None] | None = None
+        self,
+        buffers: stroke.ShotBuffers | None = None,
+        generators: Sequence[Any] = (),
+        watch: Callable[[int, stroke.ShotBuffers, int, bool], None] | None = None,
     ):
         self.buffers, self.generators, self.watch = buffers, generators, watch
 
-    def __call__(self, which, task):
+    def __call__(self, which: Ints, task: Task) -> None:
         """Do it."""
         if len(which):
             task(which, self.buffers)
 
-    def saw(self, which, buffers, own):
+    def saw(self, which: Ints, buffers: stroke.ShotBuffers, own: bool) -> None:
         """The strokes of the tables ``which`` have just been played."""
         if self.watch is not None:
             enlarged = buffers.enlarged
             for j, k in enumerate(which.tolist()):
                 self.watch(k, enlarged or buffers, 0 if enlarged else j, own)
+
+
+_T = TypeVar("_T", bound="Tables")
 
 
 class Tables:
@@ -118,22 +148,36 @@ class Tables:
     KIND = ""
     """The task: "visit" or "frame"."""
 
-    def __init__(self, rules: Rules, n, *, limit=NEVER):
+    rules: Rules
+    n: int
+    limit: int
+    positions: Floats
+    """(n, 22, 2) [m]"""
+    on_table: Bools
+    """(n, 22)"""
+    game: Ints
+    """(n, COLUMNS): of ``game.frame_columns``."""
+    streams: Words
+    """(n, 2) key and counter of each table's random numbers."""
+    begun: Bools
+    """(n,) which tables have an episode, that has perhaps ended."""
+    packed: tuple[Floats, Floats, Floats]
+    """For the kernels: options of the action, deviations of the noise, physical parameters."""
+
+    def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         self.rules, self.n, self.limit = rules, n, limit
         self.positions, self.on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
         self.game = np.zeros((n, self.COLUMNS), np.int64)
         self.game[:, BALL_ON], self.game[:, OVER] = -1, True
         self.streams = np.zeros((n, 2), np.uint64)
         self.begun = np.zeros(n, np.bool_)
-        """Which tables have an episode, that has perhaps ended."""
         self.packed = rules.packed()
-        """For the kernels: options of the action, deviations of the noise, physical parameters."""
 
-    def seed(self, k, rng):
+    def seed(self, k: int, rng: np.random.Generator) -> None:
         """Give table k a new stream, its key drawn from a numpy Generator."""
         self.streams[k] = stream_of(rng)
 
-    def output(self, *, last=False, given=None):
+    def output(self, *, last: bool = False, given: Mapping[str, Any] | None = None) -> StepOutput:
         """Fresh arrays for what a step or reset returns, but for those that are ``given`` by their names."""
         out = StepOutput(self.n, self.SIZE, self.REALS, self.COUNTS, last=last)
         for name, array in (given or {}).items():
@@ -141,14 +185,14 @@ class Tables:
             setattr(out, name, array)
         return out
 
-    def info(self, out, k):
+    def info(self, out: StepOutput, k: int) -> dict[str, Any]:
         """The info of table k alone, as Python numbers."""
         info: dict[str, Any] = dict(zip(self.REALS, out.reals[k].tolist(), strict=True))
         info |= zip(self.COUNTS, out.counts[k].tolist(), strict=True)
         info |= {name: info[name] != 0 for name in self.FLAGS}
         return info | {"foul": info["fouls"] != 0}
 
-    def infos(self, reals, counts, there):
+    def infos(self, reals: Floats, counts: Ints, there: Bools) -> dict[str, Any]:
         """Infos as Gymnasium's vector environments give them: an array a key, and a mask of the tables that it is about."""
         infos: dict[str, Any] = {name: column * there for name, column in zip(self.REALS, reals.T, strict=True)}
         infos |= {name: column * there for name, column in zip(self.COUNTS, counts.T, strict=True)}
@@ -156,43 +200,69 @@ class Tables:
         infos["foul"] = infos["fouls"] != 0
         return infos | {f"_{name}": there.copy() for name in infos}
 
-    def on(self, k):
+    def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k."""
         return balls_on(int(self.game[k, BALL_ON]), mask_of_present(self.on_table[k]))
 
-    def action_masks(self, which=None):
+    def action_masks(self, which: Ints | None = None) -> Bools:
         """Which discrete actions there are on the tables ``which`` (all if None): bool (len(which), discrete_actions.SIZE)."""
         which = np.arange(self.n) if which is None else which
         out = np.empty((len(which), discrete_actions.SIZE), np.bool_)
         discrete_actions.masks(which, self.positions, self.on_table, self.game, out)
         return out
 
-    def ended(self):
+    def ended(self) -> Bools:
         """On which tables there is nothing more to play: bool (n,)."""
         return ~self.begun | (self.game[:, OVER] != 0)
 
-    def view(self, k):
+    def view(self: _T, k: int) -> _T:
         """Table k as tables of their own, of which there is one; they share its state."""
         one = object.__new__(type(self))
         here = slice(k, k + 1)
         one.__dict__ = {name: value[here] if name in self._columns() else value for name, value in self.__dict__.items()} | {"n": 1}
         return one
 
-    def _columns(self):
+    def _columns(self) -> tuple[str, ...]:
         """Names of the attributes that hold a row a table."""
         return ("positions", "on_table", "game", "streams", "begun")
 
-    def interrupted(self):
+    def interrupted(self) -> None:
         """A step or reset was cut short: tables whose turn it is not the agent's need a reset. In a visit there are none."""
 
-    def run(self, which, buffers):
+    def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots of the tables ``which`` that have been struck; returns rows of shots that need ``again``, as a list."""
         m = len(which)
         stroke.run(buffers, m, self.rules, self.packed[2])
         status = buffers.status[:m]
         return np.flatnonzero(status).tolist() if status.any() else []
 
-    def again(self, which, j, buffers):
+    def again(self, which: Ints, j: int, buffers: stroke.ShotBuffers) -> stroke.ShotBuffers:
         """Shot j once more with a longer log: its buffers."""
         k = which[j]
         return stroke.run_again(buffers, j, k, self.positions[k], self.on_table[k], self.rules, self.packed[2])
+
+    # what each task says for itself ------------------------------------------------------------------------------------------
+
+    def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
+        """One step of all tables: actions (n, k) float64 that were checked, results into ``out``."""
+        raise NotImplementedError
+
+    def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
+        """New episodes on the tables ``wanted`` (n,) bool; what a reset returns of all tables into ``out``."""
+        raise NotImplementedError
+
+    def get_state(self, k: int) -> dict[str, Any]:
+        """Table k as JSON types, without "rng"."""
+        raise NotImplementedError
+
+    def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> Any:
+        """The sound state that a dict describes, for ``set_state``; ValueError if it is none."""
+        raise NotImplementedError
+
+    def set_state(self, k: int, state: Any) -> None:
+        """Take over a sound state on table k."""
+        raise NotImplementedError
+
+    def text(self, k: int) -> str:
+        """One line for the pictures."""
+        raise NotImplementedError

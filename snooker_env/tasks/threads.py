@@ -3,9 +3,11 @@
 import os
 import threading
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
+from .._types import Ints
 from .stroke import ShotBuffers
-from .tables import Crew
+from .tables import Crew, Task
 
 CHUNK = 128
 """Most tables played in one go: few enough for a work space that stays in the cache, enough to make the calls from Python cheap."""
@@ -26,13 +28,13 @@ def processors() -> int:
 class Threads(Crew):
     """The crew of many tables: chunks of them, shared out among threads. It may be asked from several threads at once."""
 
-    def __init__(self, threads):
+    def __init__(self, threads: int):
         super().__init__()
         self.threads = threads
         self._pool, self._pool_process, self._desks = None, 0, []
         self._lock = threading.Lock()
 
-    def __call__(self, which, task):
+    def __call__(self, which: Ints, task: Task) -> None:
         """Share the tables out, a chunk at a time."""
         n = len(which)
         threads = max(1, min(self.threads, n // LEAST))
@@ -61,7 +63,7 @@ class Threads(Crew):
         for other in others:
             other.result()
 
-    def _desk(self, size):
+    def _desk(self, size: int) -> ShotBuffers:
         """Work space for so many shots that nobody else uses."""
         try:
             desk = self._desks.pop()
@@ -69,14 +71,14 @@ class Threads(Crew):
             return ShotBuffers(size)
         return desk if len(desk) >= size else ShotBuffers(size)
 
-    def shutdown(self):
+    def shutdown(self) -> None:
         """End the threads."""
         if self._pool is not None and self._pool_process == os.getpid():
             self._pool.shutdown()
         self._pool = None
 
-    def __getstate__(self):
+    def __getstate__(self) -> dict[str, Any]:
         return {k: v for k, v in self.__dict__.items() if k != "_lock"} | {"_pool": None, "_desks": [], "generators": ()}
 
-    def __setstate__(self, state):
+    def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _lock=threading.Lock())  # threads and locks belong to one process

@@ -4,9 +4,12 @@ A step is ``stroke.address`` and ``stroke.run``, then ``_conclude`` (the referee
 anew ``layouts.deal_tables`` and ``_begin``.
 """
 
+from typing import Any
+
 import numpy as np
 
 from .._jit import entry
+from .._types import Bools, Floats, Ints
 from ..game.apply_ruling import settle_visit
 from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
@@ -16,9 +19,9 @@ from ..geometry import BALL_RADIUS
 from ..physics.engine import Status
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
-from .states import checked
-from .stroke import DOWN, FIRST, MOVED, SPEED, TOUCHING, address, see
-from .tables import I_BREAK, Tables, keep_last, tell_nothing, tell_stroke
+from .states import State, checked
+from .stroke import DOWN, FIRST, MOVED, SPEED, TOUCHING, ShotBuffers, address, see
+from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, tell_nothing, tell_stroke
 
 _OK = int(Status.OK)
 
@@ -76,7 +79,7 @@ class Visits(Tables):
     COLUMNS = VISIT_COLUMNS
     KIND = "visit"
 
-    def step(self, actions, waiting, out, crew, *, same_step=False):
+    def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
         """One step of all tables: actions (n, k) float64 that were checked, results into ``out``.
 
         ``waiting`` (n,) bool: tables that begin a new visit instead of playing; ``same_step``: those whose visit ends begin a new one at
@@ -96,7 +99,7 @@ class Visits(Tables):
 
         crew(np.arange(self.n), play)
 
-    def _play(self, which, actions, out, buffers):
+    def _play(self, which: Ints, actions: Floats, out: StepOutput, buffers: ShotBuffers) -> None:
         (options, noise, phys), (fidelity, n_steps) = self.packed, self.rules.fidelity
         b = buffers
         address(
@@ -108,31 +111,31 @@ class Visits(Tables):
         for j in unfinished:
             self._conclude(which[j : j + 1], self.again(which, j, b), out)
 
-    def _conclude(self, which, b, out):
+    def _conclude(self, which: Ints, b: ShotBuffers, out: StepOutput) -> None:
         _conclude(
             which, self.positions, self.on_table, self.game, b.r, b.potted, b.status, b.duration, b.event_time, b.event_what, b.n_events,
             b.shots, b.seen, REWARDS.index(self.rules.reward), self.limit, out.observations, out.rewards, out.terminated, out.truncated,
             out.reals, out.counts,
         )  # fmt: skip
 
-    def _begin(self, which, out, *, fresh=True):
+    def _begin(self, which: Ints, out: StepOutput, *, fresh: bool = True) -> None:
         if len(which):
             plan = self.rules.plan
             if fresh:
                 deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
             _begin(which, fresh, plan.in_hand, self.positions, self.on_table, self.game, out.rows)
 
-    def reset(self, wanted, out, crew):
+    def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
         """New visits on the tables ``wanted`` (n,) bool; what a reset returns of all tables into ``out``."""
 
         def begin(which, buffers):
             self._begin(which[wanted[which]], out)
             self._begin(which[~wanted[which]], out, fresh=False)
 
-        self.begun |= wanted
+        self.begun[wanted] = True
         crew(np.arange(self.n), begin)
 
-    def get_state(self, k):
+    def get_state(self, k: int) -> dict[str, Any]:
         """Table k as JSON types: the parts of a ``states.State`` but "rng"."""
         ball_on, in_hand, points, over, _ = self.game[k].tolist()
         return {
@@ -140,18 +143,18 @@ class Visits(Tables):
             "points": points, "over": bool(over), "stream": self.streams[k].tolist(),
         }  # fmt: skip
 
-    def checked(self, state, generator, *, to_play=False):
+    def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> State:
         """The ``states.State`` that a dict describes; ValueError if it is not sound, or if it is ``to_play`` and there is no shot left."""
         return checked(state, self.rules.table, self.rules.physics.R, generator, to_play=to_play)
 
-    def set_state(self, k, state):
+    def set_state(self, k: int, state: State) -> None:
         """Take over a sound ``states.State`` on table k; its steps are counted from 0."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         self.game[k] = state.ball_on, state.in_hand, state.points, state.over, 0
         self.streams[k] = np.array(state.stream, np.uint64)
         self.begun[k] = True
 
-    def text(self, k):
+    def text(self, k: int) -> str:
         """One line for the pictures."""
         on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
         return f"break {self.game[k, POINTS]}   on: {on}   reds: {int(self.on_table[k, 1:16].sum())}"

@@ -8,6 +8,7 @@ from math import hypot, sqrt
 
 from ..._check import refuse
 from ..._jit import kernel
+from ..._types import Fidelity, Solver
 from ..parameters import P_E_C, P_E_KNEE, P_E_POWER, P_MU_BB_EXTRA, P_MU_BB_FADE, P_MU_BB_LEAST, P_MU_C, P_MU_S, P_R, P_SIN
 from . import euler, inertia
 from .coulomb import Law, Problem, friction_coefficient
@@ -29,7 +30,7 @@ _NO_CLOSING = 1e-60
 """A closing speed [m/s] below this is zero: the scaled slips would overflow. Nothing physical is lost."""
 
 
-def parse_fidelity(fidelity):
+def parse_fidelity(fidelity: Fidelity) -> Solver:
     """``"fast" | "standard" | "reference" | "euler:N"`` -> (code, N); N is 0 unless Euler. ValueError otherwise."""
     names = {"fast": FAST, "standard": STANDARD, "reference": REFERENCE}
     if isinstance(fidelity, str):
