@@ -35,16 +35,16 @@ with needs("train.py"):
     import torch
 
     import snooker_env
-    from agents.evaluation.training_summary import evaluate, lesson, show
+    from agents.evaluation.training_summary import conclusion, evaluate, show
     from agents.features.views import training_tables
-    from agents.learning.callback import Keeper, Stop, goal_of, rollout_of, taught
+    from agents.learning.callback import RunCallback, Stop, goal_of, imitate, rollout_of
     from agents.learning.hyperparameters import Recipe, names
-    from agents.learning.imitation import Teaching
+    from agents.learning.imitation import Imitation
     from agents.learning.models import load_weights, zipped
     from agents.learning.run_folder import claimed, go_on, kept, load_model, read_checkpoint
-    from commands.commit import commit
     from commands.files import write_atomic
-    from commands.physics_option import world
+    from commands.physics_option import physics_option
+    from commands.provenance import commit
     from snooker_env.checks import refuse
     from snooker_env.game import HELD_OUT
     from snooker_env.planning import processors
@@ -70,7 +70,7 @@ class Settings:
     noise: str = option("", "execution noise: none, professional, amateur, club, robot or olympiad [the recipe's]")
     fidelity: str = option("", "of the simulation: fast, standard, reference or euler:N [the recipe's]")
     physics: str = option("", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]")
-    imitate: int = option(-1, "positions on which it is first taught by the search; -1: as many as the recipe says")
+    imitate: int = option(-1, "positions in which it first imitates the search; -1: as many as the recipe says")
     start: str = option("", "a model of the same agent to start from, its .zip or run folder; nothing in it is run")
     set: tuple = option((), "other hyper-parameters, as gamma=0", nargs="+")
     eval_visits: int = option(500, f"held-out visits each agent plays at the end, each on a table of its own, of {HELD_OUT}")
@@ -109,8 +109,8 @@ def parse(argv):
 
 def recipe_of(settings):
     """The agent's recipe with what the settings change. Raises ValueError."""
-    told = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
-    told["physics"] = world(settings.physics) if settings.physics else ""
+    chosen = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
+    chosen["physics"] = physics_option(settings.physics) if settings.physics else ""
     numbers = {"n_timesteps": settings.steps, "n_envs": settings.envs}
     given = {key: value for key, value in numbers.items() if value}
     if settings.start:
@@ -119,9 +119,9 @@ def recipe_of(settings):
         given["imitation"] = 0
     elif settings.imitate >= 0:
         given["imitation"] = settings.imitate
-    recipe = Recipe.of(settings.agent, settings.set, {key: value for key, value in told.items() if value}, **given)
+    recipe = Recipe.of(settings.agent, settings.set, {key: value for key, value in chosen.items() if value}, **given)
     if recipe.imitation and recipe.algo != "ppo_mask":
-        raise refuse("imitate", recipe.imitation, f"must be 0 for {recipe.name}: only agents with masks can be taught by the search")
+        raise refuse("imitate", recipe.imitation, f"must be 0 for {recipe.name}: only agents with masks can imitate the search")
     return recipe
 
 
@@ -190,54 +190,54 @@ def prepared(parser, given, out, resume, ending):
 
 
 def train(out, settings, recipe, state, tables, model, progress):
-    """Teach and train to the end or to a signal: (the ``Keeper``, or None if it was stopped before, the curve of imitation, the signal)."""
+    """Imitate and train to the end or to a signal: (``RunCallback``, or None if stopped before it, the curve of imitation, the signal)."""
     threads, began, imitation = 1 if settings.parallel == "one" else processors(), time.perf_counter(), state["imitation"] if state else []
-    teaching = state["teaching"] if state else None
+    begun = state["teaching"] if state else None
     model.tensorboard_log = str(out / "tb")
     with Stop() as stop:
-        if teaching or (recipe.imitation and not state):
-            lessons = Teaching(model, tables, recipe.imitation, settings.seed, threads, teaching)
-            of_all = f"{lessons.done:,} of {lessons.states:,} positions"
-            print(f"{settings.agent} in {out}: taught by the search, {of_all}", flush=True)
-            if not taught(lessons, out, settings, model, stop, progress):
-                print(f"Saved at {lessons.done:,} of {lessons.states:,} positions. {go_on(out)}")
-                return None, lessons.curve, stop.signal
-            imitation = lessons.curve
-            seconds, curve, running = lessons.seconds, [], None
+        if begun or (recipe.imitation and not state):
+            imitated = Imitation(model, tables, recipe.imitation, settings.seed, threads, begun)
+            of_all = f"{imitated.done:,} of {imitated.states:,} positions"
+            print(f"{settings.agent} in {out}: imitating the search, {of_all}", flush=True)
+            if not imitate(imitated, out, settings, model, stop, progress):
+                print(f"Saved at {imitated.done:,} of {imitated.states:,} positions. {go_on(out)}")
+                return None, imitated.curve, stop.signal
+            imitation = imitated.curve
+            seconds, curve, running = imitated.seconds, [], None
         elif state:
             seconds, curve, running = (state[name] for name in ("seconds", "curve", "running"))
         else:
             seconds, curve, running = time.perf_counter() - began, [], None
         stop.running = f"this rollout of {rollout_of(model):,} shots"
-        keeper = Keeper(out, settings, seconds, curve, imitation, running, stop, progress)
+        callback = RunCallback(out, settings, seconds, curve, imitation, running, stop, progress)
         goal, asked = goal_of(model, settings.steps), settings.steps
         whole = f" ({asked:,} asked for; whole rollouts of {rollout_of(model):,})" if goal > asked > model.num_timesteps else ""
         print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {goal:,} shots played{whole}", flush=True)
         if model.num_timesteps >= settings.steps:
             print("Nothing is left to train.", flush=True)
         else:
-            fresh = state is None or teaching is not None
+            fresh = state is None or begun is not None
             try:
-                model.learn(settings.steps - model.num_timesteps, keeper, tb_log_name=settings.agent, reset_num_timesteps=fresh)
+                model.learn(settings.steps - model.num_timesteps, callback, tb_log_name=settings.agent, reset_num_timesteps=fresh)
             finally:
-                keeper.bar.stop()  # gives the terminal its cursor back, whatever happened
+                callback.bar.stop()  # gives the terminal its cursor back, whatever happened
         if stop.signal:
             done = "; all are played, only the judging is left" if model.num_timesteps >= settings.steps else ""
-            print(f"Saved at {keeper.saved or model.num_timesteps:,} shots{done}. {go_on(out)}")
-        return keeper, imitation, stop.signal
+            print(f"Saved at {callback.saved or model.num_timesteps:,} shots{done}. {go_on(out)}")
+        return callback, imitation, stop.signal
 
 
-def judge(out, settings, recipe, model, keeper, imitation):
+def judge(out, settings, recipe, model, callback, imitation):
     """Play held-out visits, write the model and every figure, say what was learned."""
-    steps, seconds = model.num_timesteps, keeper.seconds_before
+    steps, seconds = model.num_timesteps, callback.seconds_before
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
     write_atomic(out / "model.zip", zipped(model))
     figures = evaluate(recipe, model, settings.eval_visits)
-    learned = lesson(settings.agent, steps, model.imitated, figures, model.start)
+    learned = conclusion(settings.agent, steps, model.imitated, figures, model.start)
     results = {
         "command": command_of(settings), "settings": asdict(settings), "steps": steps, "seconds": seconds,
         "steps_per_second": steps / seconds, "start": model.start, "learned": learned,
-        "evaluation": figures, "curve": keeper.curve, "imitation": imitation, **provenance(),
+        "evaluation": figures, "curve": callback.curve, "imitation": imitation, **provenance(),
     }  # fmt: skip
     write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
     show(figures)
@@ -255,10 +255,10 @@ def main(argv=None):
         settings, recipe, state, tables, model = prepared(parser, given, out, rest.resume, ending)
         try:
             snooker_env.warmup()
-            keeper, imitation, stopped = train(out, settings, recipe, state, tables, model, not rest.no_progress)
+            callback, imitation, stopped = train(out, settings, recipe, state, tables, model, not rest.no_progress)
             if stopped:
                 return 128 + stopped
-            judge(out, settings, recipe, model, keeper, imitation)
+            judge(out, settings, recipe, model, callback, imitation)
         except KeyboardInterrupt:
             print(f"Interrupted. {kept(out)}", file=sys.stderr)
             return 130

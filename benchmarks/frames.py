@@ -1,6 +1,6 @@
 """Do whole frames end by the rules, and is every point and ball accounted for? Random and ghost-ball players, each stroke checked.
 
-    python -m benchmarks.frames [--frames 2000] [--jobs N]
+    python -m benchmarks.frames [--frames 2000] [--jobs N] [--seed 0] [--json FILE] [--out FOLDER]
 
 Checked at every stroke: the scores against a count of its own of what was potted and given, no visit above 155, no ball lost, doubled,
 overlapping or off the table; and once a frame, that the state written as JSON and read again plays on identically, bit for bit.
@@ -29,7 +29,7 @@ from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import DOWN, ShotBuffers
 from snooker_env.tasks.tables import I_BALL_ON, I_FOULS, I_PENALTY, I_POINTS, Crew
 
-from ._common.command import at_least, command, run
+from ._common.command import Command, at_least, run, save_json
 
 MOST_STROKES = 20_000
 """A frame that is longer counts as a failure."""
@@ -56,7 +56,7 @@ def check(true, what, *values):
         raise AssertionError(f"{what}: {values}")
 
 
-class Played(NamedTuple):
+class Turn(NamedTuple):
     """One stroke."""
 
     striker: int
@@ -69,7 +69,7 @@ class Played(NamedTuple):
     fouls: int
 
 
-class Table:
+class FrameTable:
     """One frame in progress, played turn by turn by the same player on both sides, the rules' own arrays behind it."""
 
     def __init__(self, miss):
@@ -93,7 +93,7 @@ class Table:
         return bool(self.tables.ended()[0])
 
     def turn(self, player):
-        """One turn: what was ``Played``, or None where the table was only handed over."""
+        """One turn: what was ``Turn``, or None where the table was only handed over."""
         striker, out = self.frame.striker, self.tables.output()
         crew = Crew(self.buffers)
 
@@ -103,7 +103,7 @@ class Table:
         if not self.tables.turn(prepare, out, crew)[0]:
             return None
         counts, potted = out.counts[0].tolist(), int((self.buffers.enlarged or self.buffers).seen[0, DOWN])
-        return Played(striker, counts[I_BALL_ON], potted, int(out.reals[0, I_POINTS]), counts[I_PENALTY], counts[I_FOULS])
+        return Turn(striker, counts[I_BALL_ON], potted, int(out.reals[0, I_POINTS]), counts[I_PENALTY], counts[I_FOULS])
 
     def as_json(self):
         """Everything that decides how the frame goes on."""
@@ -158,7 +158,7 @@ def check_table(table):
 
 def check_replay(text, wanted, player, miss):
     """The saved state, in a new table, leads to the same states."""
-    table = Table(miss)
+    table = FrameTable(miss)
     table.take(text)
     table.generator.bit_generator.state = json.loads(text)["rng"]
     for want in wanted:
@@ -177,7 +177,7 @@ def ending(before, played, frame):
 
 def play_frame(seed, kind, miss):
     """One frame from the break to its end, everything checked; returns its ``Tally``. Raises AssertionError."""
-    player, rng, tally, table = PLAYERS[kind], np.random.default_rng(seed), Tally(), Table(miss)
+    player, rng, tally, table = PLAYERS[kind], np.random.default_rng(seed), Tally(), FrameTable(miss)
     table.start(seed)
     save_at, saved, following, visit, given = int(rng.integers(5, 50)), None, [], 0, [0, 0]
     while not table.over:
@@ -216,30 +216,41 @@ def play_frame(seed, kind, miss):
     return tally
 
 
-def row(kind, miss, tallies, seconds):
-    """A line of the table."""
+def figures_of(kind, miss, tallies, seconds):
+    """A row of the table."""
     strokes, breaks = [t.strokes for t in tallies], [b for t in tallies for b in t.breaks]
-    ends, fouls = Counter(t.ending for t in tallies), 100 * sum(t.fouls for t in tallies) / sum(strokes)
+    return {
+        "player": kind, "miss": miss, "frames": len(tallies), "strokes": float(np.mean(strokes)), "most_strokes": max(strokes),
+        "fouls_percent": 100 * sum(t.fouls for t in tallies) / sum(strokes), "break": float(np.mean(breaks)), "best_break": max(breaks),
+        "seconds": seconds, "endings": dict(Counter(t.ending for t in tallies).most_common()),
+    }  # fmt: skip
+
+
+def line(row):
+    """The row in print."""
     return (
-        f"{kind:<11}{miss:<11}{len(tallies):>7}{np.mean(strokes):>9.1f}{max(strokes):>7}{fouls:>8.1f}"
-        f"{np.mean(breaks):>8.2f}{max(breaks):>6}{seconds:>8.1f}   {', '.join(f'{end} {n}' for end, n in ends.most_common())}"
+        f"{row['player']:<11}{row['miss']:<11}{row['frames']:>7}{row['strokes']:>9.1f}{row['most_strokes']:>7}{row['fouls_percent']:>8.1f}"
+        f"{row['break']:>8.2f}{row['best_break']:>6}{row['seconds']:>8.1f}   {', '.join(f'{end} {n}' for end, n in row['endings'].items())}"
     )
 
 
 def main():
     """Command line."""
-    parser = command("frames", __doc__)
+    parser = Command("frames", __doc__, seed=0)
     parser.add_argument("--frames", type=at_least(1), default=2000, help="of each kind")
     parser.add_argument("--jobs", type=at_least(1), default=os.cpu_count() or 1, help="processes")
-    args = parser.parse_args()
+    args = parser.options()
+    rows = []
     print("players    miss rule   frames  strokes   most  fouls %  break  best seconds   endings")
     quiet = {"initializer": signal.signal, "initargs": (signal.SIGINT, signal.SIG_DFL)}  # Ctrl-C ends them without a word
     with ProcessPoolExecutor(args.jobs, mp_context=get_context("spawn"), **quiet) as pool:
         for kind, miss in KINDS:
             start = time.perf_counter()
-            tallies = list(pool.map(partial(play_frame, kind=kind, miss=miss), range(args.frames), chunksize=10))
-            print(row(kind, miss, tallies, time.perf_counter() - start), flush=True)
+            tallies = list(pool.map(partial(play_frame, kind=kind, miss=miss), range(args.seed, args.seed + args.frames), chunksize=10))
+            rows.append(figures_of(kind, miss, tallies, time.perf_counter() - start))
+            print(line(rows[-1]), flush=True)
     print("every stroke checked: points, balls, breaks; every frame that lasted so long played on from its JSON identically")
+    save_json(args.json, {"seed": args.seed, "frames": rows})
 
 
 if __name__ == "__main__":

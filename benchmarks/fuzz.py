@@ -25,7 +25,7 @@ from snooker_env.physics.impact import contact
 from snooker_env.physics.table import MOUTH
 
 from ._common import invariants as invariants
-from ._common.command import at_least, command, run
+from ._common.command import Command, at_least, run, save_json
 
 R = 0.02625
 D = 2 * R
@@ -35,7 +35,7 @@ MOST_EVENTS = 100_000
 GAPS = np.array([0.0, 0.0, 1e-15, 1e-12, 1e-9, 1e-6])
 SCENES = ("scattered", "rack", "cluster", "frozen", "melee")
 FIDELITIES = ("fast", "standard", "standard", "reference", "euler:100", "euler:400", "euler:1000")
-WORLDS = ("paper", "match", "random", "extreme")
+CONSTANTS = ("paper", "match", "random", "extreme")
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Batch:
     """``BATCH`` shots of one kind."""
 
     scene: str
-    world: str
+    constants: str
     fidelity: str
     physics: sn.Physics
     table: Table
@@ -165,7 +165,7 @@ def motions(rng, scene, p):
     return v, w
 
 
-def world(rng, name):
+def physics_of(rng, name):
     """The constants of a batch."""
     if name in ("paper", "match"):
         return sn.Physics.preset(name)
@@ -186,10 +186,10 @@ def batch(seed, number):
     """Batch ``number`` of the fuzz with this seed: the same for ever."""
     rng = np.random.default_rng([seed, number])
     scene, fidelity = str(rng.choice(SCENES)), str(rng.choice(FIDELITIES))
-    name = str(rng.choice(WORLDS, p=[0.3, 0.3, 0.3, 0.1]))
+    name = str(rng.choice(CONSTANTS, p=[0.3, 0.3, 0.3, 0.1]))
     if name == "extreme" and fidelity.startswith("euler"):
         name = "random"
-    physics = world(rng, name)
+    physics = physics_of(rng, name)
     if fidelity.startswith("euler"):  # near e = 1 its last step gains energy without end, see the table of the scheme
         physics = dataclasses.replace(physics, e_b=min(physics.e_b, 0.95), e_c=min(physics.e_c, 0.98))
     table = Table.of((None, "match", "match", "match", "tight")[rng.integers(5)])
@@ -233,9 +233,9 @@ class Fuzzed:
     events: dict = field(default_factory=dict)
     """Scene -> most events of a shot."""
     drawn: Counter = field(default_factory=Counter)
-    """(scene, world, fidelity) -> shots."""
+    """(scene, constants, fidelity) -> shots."""
     failures: list = field(default_factory=list)
-    """(batch, index, what, figure, scene, world, fidelity)"""
+    """(batch, index, what, figure, scene, constants, fidelity)"""
 
 
 def compare_public(one, found, threads):
@@ -268,7 +268,7 @@ def fuzz(shots, seed, threads):
 def _take(out, number, drawn, found, threads):
     """Add a batch's findings."""
     ok = found.status == Status.OK
-    labels = drawn.scene, drawn.world, drawn.fidelity
+    labels = drawn.scene, drawn.constants, drawn.fidelity
     out.shots += len(ok)
     out.drawn[labels] += len(ok)
     worst = found.worst[ok].max(0, initial=-np.inf)
@@ -291,13 +291,21 @@ def lines(found, seed):
     for fidelity in sorted(found.worst):
         text.append(f"{fidelity:14}" + "".join(f"{'-' if x == -np.inf else f'{x:.1e}':>17}" for x in found.worst[fidelity]))
     text.append(f"{'(standard may)':14}" + "".join(f"{x:>17.0e}" for x in allowed("standard")))
-    kinds = Counter((what, world, fidelity) for _, _, what, _, _, world, fidelity in found.failures)
+    kinds = Counter((what, constants, fidelity) for _, _, what, _, _, constants, fidelity in found.failures)
     text.append(f"{len(found.failures)} failures")
     for kind, n in kinds.most_common():
         number, index, _, figure, scene, _, _ = next(f for f in found.failures if (f[2], f[5], f[6]) == kind)
-        what, world, fidelity = kind
-        text.append(f"  {n:>6} {what} ({fidelity}, physics {world}), as --replay {seed} {number} {index} ({scene}, {figure:.3g})")
+        what, constants, fidelity = kind
+        text.append(f"  {n:>6} {what} ({fidelity}, physics {constants}), as --replay {seed} {number} {index} ({scene}, {figure:.3g})")
     return text
+
+
+def figures_of(found, seed):
+    """What was found, JSON-able."""
+    worst = {fidelity: dict(zip(invariants.NAMES, x.tolist(), strict=True)) for fidelity, x in found.worst.items()}
+    return {
+        "shots": found.shots, "seconds": found.seconds, "seed": seed, "worst": worst, "events": found.events, "failures": found.failures,
+    }  # fmt: skip
 
 
 def replay(seed, number, index):
@@ -317,16 +325,16 @@ def replay(seed, number, index):
 
 def main():
     """Command line."""
-    parser = command("fuzz", __doc__)
-    parser.add_argument("--shots", type=at_least(1), default=1_000_000)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--threads", type=at_least(1), default=2)
+    parser = Command("fuzz", __doc__, seed=0)
+    parser.add_argument("--shots", type=at_least(1), default=1_000_000, help="so many [1000000]")
+    parser.add_argument("--threads", type=at_least(1), default=2, help="[2]")
     parser.add_argument("--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot again")
-    options = parser.parse_args()
+    options = parser.options()
     if options.replay:
         return int(not replay(*options.replay))
     found = fuzz(options.shots, options.seed, options.threads)
     print("\n".join(lines(found, options.seed)))
+    save_json(options.json, figures_of(found, options.seed))
     return int(bool(found.failures))
 
 

@@ -1,22 +1,20 @@
 """What do the layouts look like? One picture of them all, as the README shows it.
 
-python -m benchmarks.layouts_picture [--out FILE] [--seed N]
+python -m benchmarks.layouts_picture [--seed 4] [--json FILE] [--out FOLDER]
 """
-
-from pathlib import Path
 
 import numpy as np
 
-from snooker_env.game.balls import REDS_MASK
+from snooker_env.game.balls import NAMES, REDS_MASK
 from snooker_env.game.layouts import layout
 from snooker_env.game.pots import GHOST_X, GHOST_Y, pots
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import scene
 
-from ._common.command import command, run, save_image, writable
+from ._common.command import Command, run, save_image, save_json
 
-FILE = Path(__file__).parent / "pictures" / "layouts.png"
+FILE = "layouts.png"
 HEIGHT, COLUMNS, GAP = 330, 3, 6
 """Pixels of one table's height, tables a line, and pixels between them."""
 
@@ -45,6 +43,12 @@ def picture(name, says, seed):
     return rgb_array(scene("match", positions, on_table, text=f'layout="{name}": {says}', **overlay), HEIGHT)
 
 
+def placed(name, seed):
+    """{ball: its place (2,) [m]} of one layout."""
+    positions, on_table = layout(name, np.random.default_rng(seed))
+    return {NAMES[k]: positions[k].tolist() for k in np.flatnonzero(on_table)}
+
+
 def sight(positions, on_table):
     """{red: the two tangents from the cue ball to its edges}: lines that something bars, as (3, 2) points."""
     lines = {}
@@ -68,13 +72,10 @@ def sheet(seed):
 
 def main():
     """Command line."""
-    parser = command("layouts_picture", __doc__)
-    parser.add_argument("--out", type=Path, default=FILE)
-    parser.add_argument("--seed", type=int, default=4)
-    args = parser.parse_args()
-    writable(args.out)
-    save_image(args.out, sheet(args.seed))
-    print(args.out)
+    options = Command("layouts_picture", __doc__, files=(FILE,), seed=4).options()
+    save_json(options.json, {"seed": options.seed, "layouts": {name: placed(name, options.seed) for name in SHOWN}})
+    save_image(options.folder / FILE, sheet(options.seed))
+    print(options.folder / FILE)
 
 
 if __name__ == "__main__":

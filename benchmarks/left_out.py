@@ -1,9 +1,9 @@
 """How large is what the model leaves out? The sizes in docs/limits.md that can be computed.
 
-    python -m benchmarks.left_out
+    python -m benchmarks.left_out [--json FILE] [--out FOLDER]
 
 Each is a closed form or one impact, with its inputs in the line above its figures. What these are set beside: the rolling resistance, and a
-professional's hand whose direction errs by 0.035 deg in all: with the cue ball 0.5 m from contact the object ball's direction errs by 0.33
+professional whose direction errs by 0.035 deg in all: with the cue ball 0.5 m from contact the object ball's direction errs by 0.33
 deg, so much that whatever is below 0.03 deg there is below a tenth of it. The nap has a command of its own: ``python -m benchmarks.nap``.
 """
 
@@ -11,11 +11,11 @@ from math import asin, cos, degrees, log, pi, radians, sin, sqrt
 
 import snooker_env as sn
 
-from ._common.command import command, run
+from ._common.command import Command, run, save_json
 
-WORLD = sn.Physics()
-R, M, G = WORLD.R, WORLD.M, WORLD.g
-SLOWS = WORLD.mu_r * G
+PAPER = sn.Physics()
+R, M, G = PAPER.R, PAPER.M, PAPER.g
+SLOWS = PAPER.mu_r * G
 LENGTH = 2 * (1.7845 - R)
 """From cushion to cushion along the table [m], for a ball's centre."""
 AIR, VISCOSITY, DRAG = 1.2, 1.5e-5, 0.45
@@ -32,56 +32,71 @@ def air():
     metre, length = (f"{100 * per_metre * way:.2g} %" for way in (1.0, LENGTH))
     print(f"AIR: a drag coefficient of {DRAG} takes {metre} of the speed a metre, {length} a table length")
     print("rolling at m/s  Reynolds  drag/rolling resistance  way to rest, shorter by")
+    found = {}
     for v in (0.5, 1, 2, 4, 6):
         ratio = per_metre * v * v / SLOWS
-        print(f"{v:14g}{2 * R * v / VISCOSITY:10.0f}{ratio:25.3f}{100 * (1 - log(1 + ratio) / ratio):23.1f} %")
+        found[v] = {"drag over rolling resistance": ratio, "shorter by": 1 - log(1 + ratio) / ratio}
+        print(f"{v:14g}{2 * R * v / VISCOSITY:10.0f}{ratio:25.3f}{100 * found[v]['shorter by']:23.1f} %")
+    return found
 
 
 def level():
     """A bed that slopes: a rolling ball feels 5/7 of gravity's part along it."""
     print("\nLEVEL: a ball that rolls 1 m to rest across the slope ends to the side by")
+    found = {}
     for slope in (0.05e-3, 0.1e-3, 0.5e-3):
         push = 5 / 7 * G * slope
-        print(f"{1e3 * slope:8.2f} mm/m (as a nap of {push:.4f} m/s^2){1e3 * push / (2 * SLOWS):8.1f} mm")
+        found[slope] = push / (2 * SLOWS)
+        print(f"{1e3 * slope:8.2f} mm/m (as a nap of {push:.4f} m/s^2){1e3 * found[slope]:8.1f} mm")
+    return found
 
 
 def unequal():
     """Balls of different mass and size."""
-    e, lighter, smaller = WORLD.e_b, 0.5e-3, 0.1e-3
+    e, lighter, smaller = PAPER.e_b, 0.5e-3, 0.1e-3
     full, light = (1 + e) / 2, (1 + e) * (M - lighter) / (2 * M - lighter)
     on, back = (1 - e) / 2, (M - lighter - e * M) / (2 * M - lighter)
     print(
         f"\nUNEQUAL BALLS: cue ball {1e3 * lighter:g} g lighter, full contact: object ball {100 * (light / full - 1):+.2f} % of its speed"
     )
     print(f"cue ball keeps {back:.4f} of its speed, {on:.4f} if the balls are equal")
+    turned = {}
     for cut in (15, 30, 60):
-        turned = degrees(asin(2 * R * sin(radians(cut)) / (2 * R - smaller / 2))) - cut
-        print(f"cue ball {1e3 * smaller:g} mm smaller in diameter, cut {cut} deg: object ball turned by {turned:.3f} deg")
+        turned[cut] = degrees(asin(2 * R * sin(radians(cut)) / (2 * R - smaller / 2))) - cut
+        print(f"cue ball {1e3 * smaller:g} mm smaller in diameter, cut {cut} deg: object ball turned by {turned[cut]:.3f} deg")
+    return {"object ball faster by": light / full - 1, "cue ball keeps": back, "keeps if equal": on, "turned by cut [deg]": turned}
 
 
 def kicks():
     """A contact of far more friction than usual."""
     print("\nKICKS: object ball's throw [deg] and speed by the friction at the contact; stun at 2 m/s, constants of the preset paper")
     print("friction   cut 15  speed   cut 30  speed   cut 45  speed")
-    for mu in (WORLD.mu_bb, 0.1, 0.2, 0.5):
-        row = ""
+    found = {}
+    for mu in (PAPER.mu_bb, 0.1, 0.2, 0.5):
+        row, throws = "", []
         for cut in (15, 30, 45):
             turn = radians(cut)
             _, _, v, _ = sn.collide_balls((2, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (cos(turn), sin(turn), 0), {"mu_bb": mu})
             across, along = v[0] * sin(turn) - v[1] * cos(turn), v[0] * cos(turn) + v[1] * sin(turn)
-            row += f"{degrees(asin(across / sqrt(across**2 + along**2))):9.2f}{sqrt(across**2 + along**2):7.3f}"
+            speed = sqrt(across**2 + along**2)
+            throws.append({"cut": cut, "throw [deg]": degrees(asin(across / speed)), "speed": speed})
+            row += f"{throws[-1]['throw [deg]']:9.2f}{speed:7.3f}"
+        found[str(mu)] = throws
         print(f"{mu:8g}{row}")
+    return found
 
 
 def airborne():
     """The cue drives the ball into the bed, from where it hops."""
     print(f"\nAIRBORNE: height and length [mm] of the cue ball's first hop, by elevation of the cue; rebound from the bed {BOUNCE}")
     print("ball at m/s" + "".join(f"{e:14d} deg" for e in (2, 5, 10, 20)))
+    hops = []
     for v in (1, 2, 4, 7):
         row = ""
         for elevation in (2, 5, 10, 20):
             up, on = BOUNCE * v * sin(radians(elevation)), v * cos(radians(elevation))
-            row += f"{1e3 * up * up / (2 * G):9.2f}{2e3 * up * on / G:9.1f}"
+            hops.append({"speed": v, "elevation": elevation, "height [mm]": 1e3 * up * up / (2 * G), "length [mm]": 2e3 * up * on / G})
+            row += f"{hops[-1]['height [mm]']:9.2f}{hops[-1]['length [mm]']:9.1f}"
         print(f"{v:11g}{row}")
     most = 0.0
     for cut in range(0, 90, 5):
@@ -92,26 +107,28 @@ def airborne():
     print(f"Friction at the contact throws the upper ball up: after a ball that rolls at 2 m/s by {hop} at the most, over all cuts.")
     up = sqrt(2 * G * 2 * R)
     print(f"To clear a ball the cue ball must leave the bed at {up:.2f} m/s: struck at {up / BOUNCE:.2f} m/s downwards.")
+    return {"hops": hops, "thrown up at most": most, "speed to clear a ball": up}
 
 
 def double_hits():
     """A cue of 0.5 kg follows its ball into a ball just ahead."""
     cue, tip = 0.5, 0.73
     ball, left = (1 + tip) * cue / (cue + M), (cue - tip * M) / (cue + M)
-    after = (1 - WORLD.e_b) / 2 * ball
+    after = (1 - PAPER.e_b) / 2 * ball
     print(f"\nDOUBLE HITS: cue of {cue} kg, tip restitution {tip}: ball at {ball:.2f} of the cue's speed, cue at {left:.2f} after it")
     print("gap [mm]: how long after the ball ahead is hit full the tip arrives [ms], if nothing stops the cue, by the ball's speed [m/s]")
+    found = {}
     for gap in (2e-3, 10e-3, 50e-3):
-        row = "".join(f"{v:6d}: {1e3 * gap * (1 - left / ball) / ((left - after) * v / ball):6.2f}" for v in (1, 2, 4))
-        print(f"{1e3 * gap:8.0f}{row}")
+        found[gap] = {v: gap * (1 - left / ball) / ((left - after) * v / ball) for v in (1, 2, 4)}
+        print(f"{1e3 * gap:8.0f}" + "".join(f"{v:6d}: {1e3 * seconds:6.2f}" for v, seconds in found[gap].items()))
     print(f"In {1e3 * TIP_TIME} ms on the tip the ball goes {', '.join(f'{500 * TIP_TIME * v:.2f} mm at {v} m/s' for v in (1, 2, 4))}.")
+    return {"ball over cue": ball, "cue after": left, "seconds by gap [m] and speed": found}
 
 
 def main():
     """Command line: print the sizes."""
-    command("left_out", __doc__).parse_args()
-    for part in (air, level, unequal, kicks, airborne, double_hits):
-        part()
+    options = Command("left_out", __doc__).options()
+    save_json(options.json, {part.__name__: part() for part in (air, level, unequal, kicks, airborne, double_hits)})
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 """How were the opened tables made? Plays frames open with the project's own engine and referee and writes ``game/opened.npz``.
 
-python -m benchmarks.make_opened [--tables 10240] [--seed 0]
+python -m benchmarks.make_opened [--tables 10240] [--seed 0] [--json FILE] [--out FOLDER]
 """
 
+import io
 from math import atan2
-from pathlib import Path
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from snooker_env.physics.parameters import Physics
 from snooker_env.physics.table import Table
 from snooker_env.simulation import play
 
-from ._common.command import at_least, command, run, saved, writable
+from ._common.command import Command, at_least, run, save_bytes, save_json
 
 PHYSICS, TABLE, FIDELITY = Physics.preset("match"), Table.preset("match"), parse_fidelity("standard")
 SPREAD = 6.0  # m: mean distance of the reds from their centre of mass, times 15, that counts as opened
@@ -72,12 +72,9 @@ def opened_table(rng):
 
 def main():
     """Command line."""
-    parser = command("make_opened", __doc__)
-    parser.add_argument("--tables", type=at_least(1), default=10240)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--out", type=Path, default=FILE, help="an .npz file")
-    options = parser.parse_args()
-    writable(options.out)
+    parser = Command("make_opened", __doc__, files=(FILE.name,), folder=FILE.parent, seed=0)
+    parser.add_argument("--tables", type=at_least(1), default=10240, help="so many [10240]")
+    options = parser.options()
     rng = np.random.default_rng(options.seed)
     tables, frames = [], 0
     while len(tables) < options.tables:
@@ -85,9 +82,11 @@ def main():
         table = opened_table(rng)
         if table is not None:
             tables.append(table.astype(np.float32))  # to a tenth of a micrometre: within what the engine accepts as touching
-    with saved(options.out) as place:
-        np.savez_compressed(place, positions=np.array(tables))
-    print(f"{len(tables)} tables from {frames} frames -> {options.out}")
+    packed = io.BytesIO()
+    np.savez_compressed(packed, positions=np.array(tables))
+    save_bytes(options.folder / FILE.name, packed.getvalue())
+    save_json(options.json, {"seed": options.seed, "tables": len(tables), "frames": frames})
+    print(f"{len(tables)} tables from {frames} frames -> {options.folder / FILE.name}")
 
 
 if __name__ == "__main__":

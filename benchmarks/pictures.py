@@ -1,9 +1,7 @@
 """How is the README's picture made? One pot with side and screw on an opened table, the paths drawn.
 
-python -m benchmarks.pictures [--out FILE]
+python -m benchmarks.pictures [--seed 6] [--json FILE] [--out FOLDER]
 """
-
-from pathlib import Path
 
 import numpy as np
 
@@ -13,9 +11,9 @@ from snooker_env.game.pots import GHOST_X, GHOST_Y, POT_BALL, pots
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import ball_paths, scene
 
-from ._common.command import command, run, save_image, writable
+from ._common.command import Command, run, save_image, save_json
 
-FILE = Path(__file__).parent / "pictures" / "shot.png"
+FILE = "shot.png"
 
 
 def pot(seed):
@@ -38,16 +36,13 @@ def pot(seed):
 
 def main():
     """Command line."""
-    parser = command("pictures", __doc__)
-    parser.add_argument("--out", type=Path, default=FILE)
-    out = parser.parse_args().out
-    writable(out)
-
-    positions, ball, shot = pot(6)
+    options = Command("pictures", __doc__, files=(FILE,), seed=6).options()
+    positions, ball, shot = pot(options.seed)
     text = "a red potted with screw and right-hand side: the table before the shot, and where the two balls went"
     picture = rgb_array(scene("match", positions, paths=ball_paths(shot, balls=(0, ball)), text=text))
-    save_image(out, picture)
-    print(out)
+    save_json(options.json, {"seed": options.seed, "ball": ball, "before": positions.tolist(), "after": shot.positions.tolist()})
+    save_image(options.folder / FILE, picture)
+    print(options.folder / FILE)
 
 
 if __name__ == "__main__":

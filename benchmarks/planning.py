@@ -1,6 +1,6 @@
 """What does planning cost beside the kernels? ``Planner.play`` against the same kernel calls alone, on arrays that are there already.
 
-    python -m benchmarks.planning [--strokes 1000] [--repeats 15] [--json FILE]
+    python -m benchmarks.planning [--strokes 1000] [--repeats 15] [--seed 0] [--json FILE] [--out FOLDER]
 
 Strokes on opened 22-ball tables under professional noise, one thread. The calls that ``play`` makes of compiled kernels (address, engine,
 referee) are noted, and then repeated from the same state without anything in between. Both take turns; the overhead is the median of the
@@ -17,7 +17,7 @@ from snooker_env.physics import engine
 from snooker_env.planning import Planner, Positions
 from snooker_env.tasks import visit
 
-from ._common.command import at_least, command, run, save_json, writable
+from ._common.command import Command, at_least, run, save_json
 
 
 class Noted:
@@ -95,13 +95,10 @@ def figures(strokes, repeats, seed=0):
 
 def main():
     """Measure and print."""
-    parser = command("planning", __doc__)
+    parser = Command("planning", __doc__, seed=0)
     parser.add_argument("--strokes", type=at_least(1), default=1000, help="strokes a call [1000]")
     parser.add_argument("--repeats", type=at_least(1), default=15, help="pairs of runs [15]")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--json", help="write every figure here")
-    args = parser.parse_args()
-    writable(args.json)
+    args = parser.options()
     found = figures(args.strokes, args.repeats, args.seed)
     print(f"{args.strokes} strokes a call, one thread; us a stroke")
     for name, f in found.items():

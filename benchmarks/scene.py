@@ -1,12 +1,13 @@
 """What does a scene require? Each model left out in turn: where balls stop, whether they drop, what it costs; what runs in which scene.
 
-    python -m benchmarks.scene [--shots 600] [--repeats 5] [--physics match] [--models NAME ...] [--json FILE] [--out FILE]
+    python -m benchmarks.scene [--shots 600] [--repeats 5] [--physics match] [--models NAME ...] [--seed 0] [--json FILE]
+        [--out FOLDER]
 
 The same strokes are played at ``standard`` with every model and without one; times are taken in turn, each shot's best of the repeats.
 A shot ends otherwise if other balls drop, or if the ball aimed at is hit in one case only. The cost is that of the whole shot: a ball that
 goes another way meets other things, which counts too; a model's own cost shows best where it does nothing. The first run compiles a copy
-of the package (``_variants``). Two rows measure the measure: a professional's hand (the stroke played again with other errors) and the
-aim turned by 1e-9 rad, which shows how much of an effect is chaos.
+of the package (``_common/variants.py``). Two rows measure the measure: a professional's errors (the stroke played again with others)
+and the aim turned by 1e-9 rad, which shows how much of an effect is chaos.
 
 The hop is not modelled, so its effect is computed. Friction at an impact throws the upper ball up at v_z. In the air nothing slows it;
 where it lands the cloth stops v_z, and friction comes all at once. However often it bounces, the cloth's normal impulse falls short of the
@@ -27,17 +28,18 @@ from pathlib import Path
 import numpy as np
 
 import snooker_env as sn
+from commands import provenance
 from snooker_env import geometry, simulation
 from snooker_env.physics.engine import PART, EventKind
 from snooker_env.physics.impact import contact
 
-from ._common import machine, shot_sets, variants
-from ._common.command import at_least, command, pyplot, run, save_json, saved, writable
+from ._common import shot_sets, variants
+from ._common.command import Command, at_least, pyplot, run, save_figure, save_json
 
 STANDARD = contact.parse_fidelity("standard")[0]
-FULL, HAND, CHAOS, HOP = "everything", "a professional's hand", "aim turned by 1e-9 rad", "hop of the lifted ball"
+FULL, ERRORS, CHAOS, HOP = "everything", "a professional's errors", "aim turned by 1e-9 rad", "hop of the lifted ball"
 SHARE = 0.1
-"""A model matters in a scene if it moves balls or changes outcomes by more than this share of what a professional's hand does."""
+"""A model matters in a scene if it moves balls or changes outcomes by more than this share of what a professional's errors do."""
 VISIBLE = 1.0
 """... by more than this [mm] in the middle case ..."""
 ENOUGH = 20
@@ -45,23 +47,25 @@ ENOUGH = 20
 NOTHING = 1e-3
 """A model that moves no ball by more than this [mm] did nothing in the scene."""
 FREE = 0.05
-"""Costs within this share of 1 are not told from none on a shared machine."""
-FILE = Path(__file__).parent / "pictures" / "scene.png"
+"""Costs within this share of 1 cannot be distinguished from none on a shared machine."""
+FILE = "scene.png"
 
 
-def head_on_stun(n, w):
+def head_on_stun(n, w, seed):
     """Full-ball shots without spin at the impact, far from every cushion and jaw, played without errors."""
-    return shot_sets.head_on(n, w)
+    return shot_sets.head_on(n, w, seed)
 
 
 SCENES = {
     "head-on stun": head_on_stun,
-    "straight pots": lambda n, w: shot_sets.two_ball(n, w, cut=(0.0, 1.0), speed=(1.0, 3.0)),
-    "cut pots, soft": lambda n, w: shot_sets.two_ball(n, w, cut=(10.0, 60.0), speed=(1.0, 2.0)),
-    "cut pots, firm": lambda n, w: shot_sets.two_ball(n, w, cut=(10.0, 60.0), speed=(3.0, 5.0)),
-    "cushion first": lambda n, w: shot_sets.kicks(n, w),
-    "by the rail": lambda n, w: shot_sets.two_ball(n, w, place=shot_sets.by_the_rail, run=(0.15, 0.65), cut=(5.0, 50.0), speed=(1.0, 3.0)),
-    "full tables": lambda n, w: shot_sets.full_table(n, w),
+    "straight pots": lambda n, w, seed: shot_sets.two_ball(n, w, seed, cut=(0.0, 1.0), speed=(1.0, 3.0)),
+    "cut pots, soft": lambda n, w, seed: shot_sets.two_ball(n, w, seed, cut=(10.0, 60.0), speed=(1.0, 2.0)),
+    "cut pots, firm": lambda n, w, seed: shot_sets.two_ball(n, w, seed, cut=(10.0, 60.0), speed=(3.0, 5.0)),
+    "cushion first": lambda n, w, seed: shot_sets.kicks(n, w, seed),
+    "by the rail": lambda n, w, seed: shot_sets.two_ball(
+        n, w, seed, place=shot_sets.by_the_rail, run=(0.15, 0.65), cut=(5.0, 50.0), speed=(1.0, 3.0)
+    ),
+    "full tables": lambda n, w, seed: shot_sets.full_table(n, w, seed),
 }
 
 
@@ -89,7 +93,7 @@ def throats():
 
 
 @dataclass(frozen=True)
-class Model:
+class LeftOut:
     """One model, and what a shot is played with when it is left out."""
 
     instead: str
@@ -102,25 +106,25 @@ class Model:
 
 EVERY, ALWAYS = "snooker_env has it at standard and reference", "snooker_env has it at every fidelity"
 MODELS = {
-    "cloth in a ball-ball impact": Model("two free spheres, closed form", f"{EVERY}, not at fast", variants.FREE_BALLS),
-    "cushion: tight tolerance": Model("the loose tolerance of fast", f"{EVERY}, not at fast", variants.LOOSE_CUSHION),
-    "cushion: cloth (the ODE)": Model("a smooth cloth, closed form", ALWAYS, variants.SMOOTH_CLOTH),
-    "cushion: friction, nose, ODE": Model("a mirror with e_c", ALWAYS, variants.MIRROR),
-    "jaw arcs": Model("the throat's points", "snooker_env has them on every table", table=sharp_jaws()),
-    "jaws at all": Model(
+    "cloth in a ball-ball impact": LeftOut("two free spheres, closed form", f"{EVERY}, not at fast", variants.FREE_BALLS),
+    "cushion: tight tolerance": LeftOut("the loose tolerance of fast", f"{EVERY}, not at fast", variants.LOOSE_CUSHION),
+    "cushion: cloth (the ODE)": LeftOut("a smooth cloth, closed form", ALWAYS, variants.SMOOTH_CLOTH),
+    "cushion: friction, nose, ODE": LeftOut("a mirror with e_c", ALWAYS, variants.MIRROR),
+    "jaw arcs": LeftOut("the throat's points", "snooker_env has them on every table", table=sharp_jaws()),
+    "jaws at all": LeftOut(
         "no jaws: only noses and falls", "snooker_env has them on every table",
         table=sn.Table("no jaws", sn.Table.preset("match").noses, np.zeros((0, 6)), sn.Table.preset("match").falls),
     ),
-    "drop takes time": Model("dropped at once at the edge", ALWAYS, variants.AT_ONCE),
-    "Marlow's law": Model("mu_bb 0.05", 'snooker_env has it in "match"; "paper" keeps the paper\'s 0.05', physics={"mu_bb": 0.05}),
-    "spin decay": Model("spin about the vertical stays", "snooker_env has it everywhere", physics={"spin_decel": 0.0}),
+    "drop takes time": LeftOut("dropped at once at the edge", ALWAYS, variants.AT_ONCE),
+    "Marlow's law": LeftOut("mu_bb 0.05", 'snooker_env has it in "match"; "paper" keeps the paper\'s 0.05', physics={"mu_bb": 0.05}),
+    "spin decay": LeftOut("spin about the vertical stays", "snooker_env has it everywhere", physics={"spin_decel": 0.0}),
 }  # fmt: skip
 
 
-def played(run, start, world, cloth, code):
+def played(run, start, constants, table_, code):
     """The batch played to the end: positions, potted, on table."""
     state = [a.copy() for a in start]
-    out = run(state, world, cloth, (code, 0), 100_000, 0, 0)
+    out = run(state, constants, table_, (code, 0), 100_000, 0, 0)
     if out.status.any():
         raise RuntimeError(f"shots {np.flatnonzero(out.status)} did not come to rest")
     return state[0], out.potted, state[3]
@@ -136,11 +140,11 @@ def times(ways, start, repeats):
     """Mean over shots of each one's best time [us], by way, less the call itself; the ways take turns: all see the same machine."""
     best = {name: np.full(len(start[0]), np.inf) for name in ways}
 
-    def one(k, run, world, cloth, code, here=True):
+    def one(k, run, constants, table_, code, here=True):
         state = [a[k : k + 1].copy() for a in start]
         state[3] &= here
         t = time.perf_counter()
-        run(state, world, cloth, (code, 0), 100_000, 0, 0)
+        run(state, constants, table_, (code, 0), 100_000, 0, 0)
         return time.perf_counter() - t
 
     call = min(one(0, *next(iter(ways.values())), here=False) for _ in range(200))
@@ -164,22 +168,22 @@ def effect(end, truth, start, ball):
     return found
 
 
-def hops(shots, v, w, world):
+def hops(shots, v, w, constants):
     """Shift of the cue ball and of the ball aimed at [mm] by the hops of each shot: v v_z / g, summed over its ball-ball impacts."""
     shifts = np.zeros((len(v), 2))
     for k in range(len(v)):
-        shot = sn.simulate(shots.positions[k], v[k], w[k], physics=world)
+        shot = sn.simulate(shots.positions[k], v[k], w[k], physics=constants)
         for event in shot.events[shot.events["kind"] == EventKind.BALL_BALL]:
             balls = [event["i"], event["j"]]
             r, v0, w0 = (a[balls] for a in shot.at(max(0.0, event["time"] - 1e-9)))
             n = (r[1] - r[0]) / np.hypot(*(r[1] - r[0]))
             if (v0[0] - v0[1]) @ n <= PART:
                 continue
-            after = sn.collide_balls((*v0[0], 0.0), w0[0], (*v0[1], 0.0), w0[1], (*n, 0.0), world)
+            after = sn.collide_balls((*v0[0], 0.0), w0[0], (*v0[1], 0.0), w0[1], (*n, 0.0), constants)
             for i, u in zip(balls, after[::2], strict=True):
                 for column, of in enumerate((0, shots.ball[k])):
                     if i == of and shot.on_table[i]:
-                        shifts[k, column] += 1e3 * np.hypot(u[0], u[1]) * u[2] / world.g
+                        shifts[k, column] += 1e3 * np.hypot(u[0], u[1]) * u[2] / constants.g
     found = {name: np.quantile(shifts[:, c], [0.5, 0.95, 1.0]).tolist() for c, name in enumerate(("cue_mm", "ball_mm"))}
     return {**found, "cue_shots": len(v), "ball_shots": len(v)}
 
@@ -196,10 +200,10 @@ def counts(starts, physics, most=40):
     return json.loads(done.stdout)
 
 
-def study(make, n, repeats, physics, chosen):
+def study(make, n, repeats, physics, chosen, seed):
     """Everything about one scene, and its strokes."""
-    world, match = sn.Physics.preset(physics), sn.Table.preset("match")
-    shots = make(n, world)
+    constants, match = sn.Physics.preset(physics), sn.Table.preset("match")
+    shots = make(n, constants, seed)
     run = variants.load()._run if any(MODELS[m].code != STANDARD for m in chosen) else simulation._run
     here = np.ones(shots.positions.shape[:2], bool)
 
@@ -207,22 +211,22 @@ def study(make, n, repeats, physics, chosen):
         v, w = shots.struck(**how)
         return shots.positions, v, w, here
 
-    errors = {} if make is head_on_stun else {"seed": 1}  # with a professional's errors no shot is exactly head-on
+    errors = {} if make is head_on_stun else {"seed": seed + 1}  # with a professional's errors no shot is exactly head-on
     start = started(**errors)
-    ways = {FULL: (run, world, match, STANDARD)}
+    ways = {FULL: (run, constants, match, STANDARD)}
     for name in chosen:
         m = MODELS[name]
-        ways[name] = run, sn.Physics.preset(physics, **m.physics) if m.physics else world, m.table or match, m.code
+        ways[name] = run, sn.Physics.preset(physics, **m.physics) if m.physics else constants, m.table or match, m.code
     ends = {name: played(way[0], start, *way[1:]) for name, way in ways.items()}
     truth = ends.pop(FULL)
     rows = {name: effect(end, truth, start, shots.ball) for name, end in ends.items()}
-    for name, how in ((HAND, {"seed": 2}), (CHAOS, {**errors, "aim": 1e-9})):
-        rows[name] = effect(played(run, started(**how), world, match, STANDARD), truth, start, shots.ball)
+    for name, how in ((ERRORS, {"seed": seed + 2}), (CHAOS, {**errors, "aim": 1e-9})):
+        rows[name] = effect(played(run, started(**how), constants, match, STANDARD), truth, start, shots.ball)
     took = times(ways, start, repeats)
     for name in chosen:
         rows[name]["cost"] = took[FULL] / took[name]
-    rows[HOP] = hops(shots, start[1], start[2], world)
-    log = sn.simulate_batch(start[0], start[1], start[2], physics=world, events=True).events
+    rows[HOP] = hops(shots, start[1], start[2], constants)
+    log = sn.simulate_batch(start[0], start[1], start[2], physics=constants, events=True).events
     assert log is not None
     kinds = np.concatenate([events["kind"] for events in log])
     ran = {k.name.lower().replace("_", "-"): float((kinds == k).sum() / n) for k in EventKind}
@@ -230,13 +234,13 @@ def study(make, n, repeats, physics, chosen):
 
 
 def reasons(row, rows):
-    """In what a model moves balls or changes outcomes by more than a tenth of what the hand does, and by more than chaos."""
-    hand, chaos, found = rows[HAND], rows[CHAOS], []
+    """In what a model moves balls or changes outcomes by more than a tenth of what a professional's errors do, and by more than chaos."""
+    by_errors, chaos, found = rows[ERRORS], rows[CHAOS], []
     for ball in ("cue", "ball"):
-        most = max(SHARE * hand[f"{ball}_mm"][0], 2 * chaos[f"{ball}_mm"][0], VISIBLE)
+        most = max(SHARE * by_errors[f"{ball}_mm"][0], 2 * chaos[f"{ball}_mm"][0], VISIBLE)
         if row[f"{ball}_mm"][0] > most and row[f"{ball}_shots"] >= ENOUGH:
             found.append(ball)
-    if row.get("changed", 0.0) > max(SHARE * hand["changed"], 2 * chaos["changed"]):
+    if row.get("changed", 0.0) > max(SHARE * by_errors["changed"], 2 * chaos["changed"]):
         found.append("changed")
     return found
 
@@ -247,19 +251,19 @@ def verdict(name, scenes):
     where = [scene for scene, s in scenes.items() if reasons(rows[scene], s["rows"])]
 
     def shares(scene):
-        """Effect over the hand's, by what it is an effect on."""
-        row, hand = rows[scene], scenes[scene]["rows"][HAND]
-        balls = [b for b in ("cue", "ball") if row[f"{b}_shots"] >= ENOUGH and hand[f"{b}_mm"][0]]
-        parts = {b: row[f"{b}_mm"][0] / hand[f"{b}_mm"][0] for b in balls}
-        return {**parts, "changed": row.get("changed", 0.0) / hand["changed"] if hand["changed"] else 0.0}
+        """Effect over that of a professional's errors, by what it is an effect on."""
+        row, by_errors = rows[scene], scenes[scene]["rows"][ERRORS]
+        balls = [b for b in ("cue", "ball") if row[f"{b}_shots"] >= ENOUGH and by_errors[f"{b}_mm"][0]]
+        parts = {b: row[f"{b}_mm"][0] / by_errors[f"{b}_mm"][0] for b in balls}
+        return {**parts, "changed": row.get("changed", 0.0) / by_errors["changed"] if by_errors["changed"] else 0.0}
 
     worst = max(where or rows, key=lambda scene: max(shares(scene).values()))
-    row, hand, share = rows[worst], scenes[worst]["rows"][HAND], shares(worst)
+    row, by_errors, share = rows[worst], scenes[worst]["rows"][ERRORS], shares(worst)
     ball = "ball" if share.get("ball", 0.0) > share.get("cue", 0.0) else "cue"
     mm = row[f"{ball}_mm"]
     figures = (
         f"the {'ball aimed at' if ball == 'ball' else 'cue ball'} stops {mm[0]:.3g} mm off in the middle case, 95 % within {mm[1]:.0f}"
-        f" (hand: {hand[f'{ball}_mm'][0]:.3g})"
+        f" (a professional's errors: {by_errors[f'{ball}_mm'][0]:.3g})"
     )
     if name == HOP:
         events = scenes["full tables"]["ran"] if "full tables" in scenes else scenes[worst]["ran"]
@@ -275,7 +279,7 @@ def verdict(name, scenes):
     costs = {scene: r["cost"] for scene, r in rows.items()}
     dear = max(costs, key=lambda s: costs[s])
     cost = f"It costs at most {costs[dear]:.2f} x ({dear})" if costs[dear] > 1 + FREE else "Its cost is within the noise"
-    changed = f"{row['changed']:.1%} of shots end otherwise (hand: {hand['changed']:.1%})"
+    changed = f"{row['changed']:.1%} of shots end otherwise (by a professional's errors: {by_errors['changed']:.1%})"
     none = [s for s, r in rows.items() if max(r["cue_mm"][2], r["ball_mm"][2]) < NOTHING and not r["changed"]]
     paid = [f"{s} ({costs[s]:.2f} x)" for s in none]
     idle = f" It does nothing in: {', '.join(paid)}." if paid else ""
@@ -297,7 +301,7 @@ def draw(scenes, names, out):
     plt = pyplot()
     from matplotlib.colors import LogNorm, Normalize
 
-    mixed = [*names, HOP, HAND, CHAOS]
+    mixed = [*names, HOP, ERRORS, CHAOS]
     panels = (
         ("cue", "cue ball stops off by, median [mm]", lambda r: r["cue_mm"][0], LogNorm(0.1, 1000), "{:.3g}", "YlOrRd"),
         ("changed", "shots that end otherwise [%]", lambda r: 100 * r.get("changed", np.nan), Normalize(0, 50), "{:.1f}", "YlOrRd"),
@@ -312,7 +316,7 @@ def draw(scenes, names, out):
                 x = grid[i, j]
                 if np.isfinite(x):
                     text = "0" if x < 5e-4 else style.format(x)
-                    bold = name not in (HAND, CHAOS) and reason in reasons(s["rows"][name], s["rows"])
+                    bold = name not in (ERRORS, CHAOS) and reason in reasons(s["rows"][name], s["rows"])
                     dark = x > 0 and (norm(x) > 0.7 if colours == "YlOrRd" else abs(norm(x) - 0.5) > 0.35)
                     ax.text(j, i, text, ha="center", va="center", fontsize=9, color="white" if dark else "black",
                             fontweight="bold" if bold else "normal")  # fmt: skip
@@ -321,35 +325,29 @@ def draw(scenes, names, out):
         ax.set_xticks(range(len(scenes)), list(scenes), rotation=25, ha="right", fontsize=9)
         ax.set_yticks(range(len(mixed)), mixed, fontsize=9)
         ax.tick_params(length=0)
-    fig.suptitle(f"What a scene requires: each model left out in turn; bold where it matters.  {machine.line()}", fontsize=10)
-    with saved(out) as place:
-        fig.savefig(place, dpi=90)
+    fig.suptitle(f"What a scene requires: each model left out in turn; bold where it matters.  {provenance.line()}", fontsize=10)
+    save_figure(fig, out, dpi=90)
 
 
 def main():
     """Command line."""
-    parser = command("scene", __doc__)
+    parser = Command("scene", __doc__, pictures=(FILE,), seed=0)
     parser.add_argument("--shots", type=at_least(2), default=600, help="shots in each scene")
     parser.add_argument("--repeats", type=at_least(1), default=5, help="timed runs of every shot; the best counts")
-    parser.add_argument("--physics", default="match", help="the world with every model: match, or paper")
+    parser.add_argument("--physics", default="match", help="the constants with every model: match or paper [match]")
     parser.add_argument("--models", nargs="+", choices=list(MODELS), default=list(MODELS), help="only these")
-    parser.add_argument("--json", type=Path, help="also write every figure there")
-    parser.add_argument("--out", type=Path, default=FILE, help="the picture")
-    options = parser.parse_args()
-    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
-    writable(options.out, options.json)
-
-    print(f"{machine.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters")
+    options = parser.options()
+    print(f"{provenance.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters")
     scenes, starts = {}, []
     for scene, make in SCENES.items():
-        s, start = study(make, options.shots, options.repeats, options.physics, options.models)
+        s, start = study(make, options.shots, options.repeats, options.physics, options.models, options.seed)
         scenes[scene] = s
         starts.append(start)
         print(f"\n{scene}: {s['us']:.1f} us a shot")
         print("  without                         cue ball off by [mm]: median, 95 %   ball aimed at: the same   end otherwise   cost")
         for name, row in s["rows"].items():
             mm = "          ".join(" ".join(f"{e:9.3f}" if e < 10 else f"{e:9.0f}" for e in row[k][:2]) for k in ("cue_mm", "ball_mm"))
-            star = "*" if name not in (HAND, CHAOS) and reasons(row, s["rows"]) else " "
+            star = "*" if name not in (ERRORS, CHAOS) and reasons(row, s["rows"]) else " "
             changed = f"{row['changed']:9.1%}" if "changed" in row else f"{'-':>9s}"
             cost = f"{row['cost']:.2f} x" if "cost" in row else "-"
             print(f"{star} {name:30s}     {mm}     {changed}      {cost:>7s}")
@@ -367,10 +365,11 @@ def main():
     print("\nWhat follows")
     for sentence in lines:
         print(f"* {sentence}")
-    figures = {"machine": machine.machine(), "physics": options.physics, "shots": options.shots, "scenes": scenes, "says": lines}
+    figures = {"machine": provenance.machine(), "physics": options.physics, "shots": options.shots, "scenes": scenes, "says": lines}
     save_json(options.json, figures)
-    draw(scenes, options.models, options.out)
-    print(f"\n{options.out}")
+    if options.pictures:
+        draw(scenes, options.models, options.folder / FILE)
+        print(f"\n{options.folder / FILE}")
 
 
 if __name__ == "__main__":

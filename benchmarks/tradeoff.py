@@ -1,23 +1,23 @@
 """What does each fidelity cost and how far is it from the truth? Impacts, then whole pots; a picture; which fidelity for which use.
 
-    python -m benchmarks.tradeoff [--impacts 2000] [--shots 1000] [--repeats 3] [--physics paper] [--json FILE] [--out FILE]
+    python -m benchmarks.tradeoff [--impacts 2000] [--shots 1000] [--repeats 3] [--physics paper] [--seed 0] [--json FILE]
+        [--out FOLDER]
 
 Truth is ``reference``. Impacts: errors of direction and speed, the worse of the two balls, just after the impact and once both roll (the
 direction a player sees; where a ball is all but stopped by its own spin, its direction means little). Shots: how far from the truth the
-cue ball and the object ball stop, if they stay on the table, and how often the pot's outcome changes. The yardstick is a professional's
-hand: the same intended stroke, played twice by the truth with the errors of ``tasks.noise``.
+cue ball and the object ball stop, if they stay on the table, and how often the pot's outcome changes. The yardstick is what
+a professional's errors do: the same intended stroke, played twice by the truth with the execution errors of ``tasks.noise``.
 """
-
-from pathlib import Path
 
 import numpy as np
 
 import snooker_env as sn
+from commands import provenance
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 
-from ._common import machine, shot_sets
-from ._common.command import at_least, command, pyplot, run, save_json, saved, writable
+from ._common import shot_sets
+from ._common.command import Command, at_least, pyplot, run, save_figure, save_json
 from .speed.command import impacts, median_impact, one_by_one, results
 
 OWN = ("fast", "standard", "reference")
@@ -25,12 +25,12 @@ IMPACTS = (*OWN, *(f"euler:{n}" for n in (10, 30, 100, 200, 300, 1000, 3000, 100
 SHOTS = (*OWN, *(f"euler:{n}" for n in (100, 300, 1000, 3000, 10000)))
 SETS = {"two-ball pots": shot_sets.two_ball, "full tables": shot_sets.full_table}
 CONTACTS = ((1, 1), (2, 2), (3, 5), (6, 999))
-HAND = "a professional's hand"
+ERRORS = "a professional's errors"
 SHARE = 0.1
-"""A fidelity is good enough for play if it moves balls and changes pots at most this share of what a professional's hand does."""
+"""A fidelity is good enough for play if it moves balls and changes pots at most this share of what a professional's errors do."""
 STORED = 1e-3
 """... and for results that are kept and compared if it changes at most this share of pots."""
-FILE = Path(__file__).parent / "pictures" / "tradeoff.png"
+FILE = "tradeoff.png"
 
 
 def spread(values):
@@ -56,9 +56,9 @@ def impact_errors(found, truth):
     return dict(zip(names, map(spread, (*errors, object_angle)), strict=True))
 
 
-def play_impacts(n):
+def play_impacts(n, seed):
     """Figures of every fidelity on the set of impacts."""
-    x, normals = impacts(n)
+    x, normals = impacts(n, seed)
     phys, truth, rows = sn.Physics.preset("paper").pack(), results(x, normals, "reference"), {}
     for fidelity in IMPACTS:
         code, steps = contact.parse_fidelity(fidelity)
@@ -78,26 +78,26 @@ def compare(end, truth, ball):
     return *shifts, (end.potted[rows, ball] >= 0) != (truth.potted[rows, ball] >= 0)
 
 
-def play_shots(make, n, repeats, physics):
-    """Figures of every fidelity, and of the hand, on one set of shots."""
-    world = sn.Physics.preset(physics)
-    shots = make(n, world)
-    v, w = shots.struck(seed=1)
+def play_shots(make, n, repeats, physics, seed):
+    """Figures of every fidelity, and of the errors, on one set of shots."""
+    physics = sn.Physics.preset(physics)
+    shots = make(n, physics, seed)
+    v, w = shots.struck(seed=seed + 1)
 
     def play(state, fidelity, events=False):
-        return sn.simulate_batch(shots.positions, *state, physics=world, fidelity=fidelity, events=events)
+        return sn.simulate_batch(shots.positions, *state, physics=physics, fidelity=fidelity, events=events)
 
     truth = play((v, w), "reference", events=True)
     assert truth.events is not None
     hits = np.array([(log["kind"] == EventKind.BALL_BALL).sum() for log in truth.events])
     rows = {}
-    for name in (*SHOTS, HAND):
-        hand = name == HAND
-        end = play(shots.struck(seed=2), "reference") if hand else play((v, w), name)
+    for name in (*SHOTS, ERRORS):
+        errors = name == ERRORS
+        end = play(shots.struck(seed=seed + 2), "reference") if errors else play((v, w), name)
         cue, ball, changed = compare(end, truth, shots.ball)
         groups = [(c, (hits >= c[0]) & (hits <= c[1]) & ~np.isnan(cue)) for c in CONTACTS]
         rows[name] = {
-            "us": None if hand else float(one_by_one(shots.positions, v, w, name, repeats, world).mean()),
+            "us": None if errors else float(one_by_one(shots.positions, v, w, name, repeats, physics).mean()),
             "cue_mm": spread(cue[~np.isnan(cue)]), "ball_mm": spread(ball[~np.isnan(ball)]), "changed": float(changed.mean()),
             "by_contacts": [{"contacts": c, "shots": int(g.sum()), "cue_mm": spread(cue[g])} for c, g in groups],
         }  # fmt: skip
@@ -107,7 +107,7 @@ def play_shots(make, n, repeats, physics):
 
 def dominated(rows, name, error):
     """The fidelities that are both faster and nearer the truth than ``name``."""
-    others = [f for f in rows if f not in (name, HAND, "reference")]
+    others = [f for f in rows if f not in (name, ERRORS, "reference")]
     return [f for f in others if rows[f]["us"] < rows[name]["us"] and error(rows[f]) < error(rows[name])]
 
 
@@ -115,38 +115,38 @@ def recommendation(impact_rows, sets):
     """Sentences; every choice in them is made from the figures."""
 
     def cheapest(good):
-        fit = [f for f in SHOTS if all(good(s["rows"][f], s["rows"][HAND]) for s in sets.values())]
+        fit = [f for f in SHOTS if all(good(s["rows"][f], s["rows"][ERRORS]) for s in sets.values())]
         return min(fit, key=lambda f: sum(s["rows"][f]["us"] for s in sets.values())) if fit else None
 
     def figures(fidelity):
         parts = []
         for name, s in sets.items():
-            row, hand = s["rows"][fidelity], s["rows"][HAND]
+            row, errors = s["rows"][fidelity], s["rows"][ERRORS]
             parts.append(
-                f"{name}: {row['us']:.1f} us a shot, {100 * row['changed']:.2g} % of pots change (a professional's hand:"
-                f" {100 * hand['changed']:.2g} %), the cue ball stops {row['cue_mm'][0]:.2g} mm off in the middle case"
-                f" ({hand['cue_mm'][0]:.3g} mm)"
+                f"{name}: {row['us']:.1f} us a shot, {100 * row['changed']:.2g} % of pots change (a professional's errors:"
+                f" {100 * errors['changed']:.2g} %), the cue ball stops {row['cue_mm'][0]:.2g} mm off in the middle case"
+                f" ({errors['cue_mm'][0]:.3g} mm)"
             )
         return "; ".join(parts)
 
-    def shares(row, hand):
-        pots = row["changed"] / hand["changed"] if hand["changed"] else float(row["changed"] > 0)
-        return {"pots changed": pots, "the cue ball's middle shift": row["cue_mm"][0] / hand["cue_mm"][0]}
+    def shares(row, errors):
+        pots = row["changed"] / errors["changed"] if errors["changed"] else float(row["changed"] > 0)
+        return {"pots changed": pots, "the cue ball's middle shift": row["cue_mm"][0] / errors["cue_mm"][0]}
 
-    def for_play(row, hand):
-        return max(shares(row, hand).values()) <= SHARE
+    def for_play(row, errors):
+        return max(shares(row, errors).values()) <= SHARE
 
     says = []
-    play, kept = cheapest(for_play), cheapest(lambda row, hand: for_play(row, hand) and row["changed"] <= STORED)
-    rule = f"Learning, search, play: at most {SHARE:.0%} of what a professional's hand does, in pots changed and in the cue ball's place."
+    play, kept = cheapest(for_play), cheapest(lambda row, errors: for_play(row, errors) and row["changed"] <= STORED)
+    rule = f"Learning, search, play: at most {SHARE:.0%} of what a professional's errors do, in pots changed and in the cue ball's place."
     says.append(f"{rule} The cheapest that keeps to it: {play}. {figures(play)}." if play else f"{rule} None of these keeps to it.")
     rule = f"Results that are kept and compared: besides, at most {STORED:.1%} of pots changed."
     says.append(f"{rule} None of these keeps to it." if kept is None else f"{rule} The same: {kept}." if kept == play else
                 f"{rule} The cheapest that keeps to it: {kept}. {figures(kept)}.")  # fmt: skip
     saved = [1 - s["rows"]["fast"]["us"] / s["rows"]["standard"]["us"] for s in sets.values()]
     over = [
-        f"{what} on {name} {share:.1%} of the hand's"
-        for name, s in sets.items() for what, share in shares(s["rows"]["fast"], s["rows"][HAND]).items() if share > SHARE
+        f"{what} on {name} {share:.1%} of the errors'"
+        for name, s in sets.items() for what, share in shares(s["rows"]["fast"], s["rows"][ERRORS]).items() if share > SHARE
     ]  # fmt: skip
     fit = f"breaks the rule for play ({'; '.join(over)})" if over else "keeps to the rule for play"
     says.append(
@@ -192,10 +192,10 @@ def draw(figures, out):
     for ax, rows, key, title, error, cost in panels:
         for fidelity, row in rows.items():
             middle, high, worst = row[key]
-            if fidelity == HAND:
+            if fidelity == ERRORS:
                 ax.axhline(middle, color="tab:green", lw=1)
                 ax.axhspan(middle, high, color="tab:green", alpha=0.12, lw=0)
-                ax.annotate("a professional's hand: median to 99 %", (0.98, middle), xycoords=("axes fraction", "data"), color="tab:green",
+                ax.annotate(f"{ERRORS}: median to 99 %", (0.98, middle), xycoords=("axes fraction", "data"), color="tab:green",
                             va="bottom", ha="right", fontsize=8)  # fmt: skip
                 continue
             if fidelity == "reference":
@@ -210,7 +210,7 @@ def draw(figures, out):
             ax.plot(row["us"], worst, "^", color=colour, ms=4, mfc="none")
             label = f"N={fidelity[6:]}" if fidelity not in OWN else fidelity
             ax.annotate(label, (row["us"], middle), xytext=(0, -13), textcoords="offset points", ha="center", fontsize=8, color=colour)
-        own = [f for f in rows if f not in (HAND, "reference")]
+        own = [f for f in rows if f not in (ERRORS, "reference")]
         front = [(rows[f]["us"], rows[f][key][0]) for f in own if not dominated(rows, f, lambda r, key=key: r[key][0])]
         ax.step(*zip(*sorted(front), strict=True), where="post", color="tab:blue", lw=1, ls="--", zorder=0)
         ax.set(xscale="log", yscale="log", title=title, xlabel=cost, ylabel=error)
@@ -224,33 +224,27 @@ def draw(figures, out):
     colours = (("tab:blue", "snooker_env"), ("tab:orange", "euler:N, the paper's"))
     handles += [Line2D([], [], marker="o", ls="", color=c, label=t) for c, t in colours]
     axes[0, 1].legend(handles=handles, loc="lower right", fontsize=8)
-    fig.suptitle(f"Time against error, {machine.line()}", fontsize=10)
-    with saved(out) as place:
-        fig.savefig(place, dpi=110)
+    fig.suptitle(f"Time against error, {provenance.line()}", fontsize=10)
+    save_figure(fig, out, dpi=110)
 
 
 def main():
     """Command line."""
-    parser = command("tradeoff", __doc__)
+    parser = Command("tradeoff", __doc__, pictures=(FILE,), seed=0)
     parser.add_argument("--impacts", type=at_least(2), default=2000, help="impacts in the set")
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots in each set")
     parser.add_argument("--repeats", type=at_least(1), default=3, help="timed runs of every shot; the best counts")
-    parser.add_argument("--physics", default="paper", help="the world of the shots: paper or match")
-    parser.add_argument("--json", type=Path, help="also write every figure there")
-    parser.add_argument("--out", type=Path, default=FILE, help="the picture")
-    options = parser.parse_args()
-    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
-    writable(options.out, options.json)
-
-    print(machine.line())
-    impact_rows = play_impacts(options.impacts)
+    parser.add_argument("--physics", default="paper", help="of the shots: paper or match [paper]")
+    options = parser.options()
+    print(provenance.line())
+    impact_rows = play_impacts(options.impacts, options.seed)
     print(f"\n{options.impacts} impacts: median us; then median, 99 %, worst of: direction [deg], speed [m/s]; once both roll: the same")
     for fidelity, row in impact_rows.items():
         errors = "   ".join(" ".join(f"{e:7.1e}" for e in row[k]) for k in list(row)[1:5])
         print(f"  {fidelity:12s} {row['us']:8.3f}   {errors}")
     sets = {}
     for name, make in SETS.items():
-        s = sets[name] = play_shots(make, options.shots, options.repeats, options.physics)
+        s = sets[name] = play_shots(make, options.shots, options.repeats, options.physics, options.seed)
         print(f'\n{options.shots} {name}, physics "{options.physics}": {s["potted"]:.0%} potted, {s["contacts"]:.1f} ball-ball hits a shot')
         print("                          us a shot   pots changed   cue ball off by [mm]: median, 99 %, worst   object ball: the same")
         for fidelity, row in s["rows"].items():
@@ -269,10 +263,11 @@ def main():
     print("\nWhich fidelity for which use")
     for sentence in says:
         print(f"* {sentence}")
-    figures = {"machine": machine.machine(), "physics": options.physics, "impacts": impact_rows, "shots": sets, "recommendation": says}
+    figures = {"machine": provenance.machine(), "physics": options.physics, "impacts": impact_rows, "shots": sets, "recommendation": says}
     save_json(options.json, figures)
-    draw(figures, options.out)
-    print(f"\n{options.out}")
+    if options.pictures:
+        draw(figures, options.folder / FILE)
+        print(f"\n{options.folder / FILE}")
 
 
 if __name__ == "__main__":

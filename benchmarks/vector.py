@@ -1,6 +1,6 @@
 """How fast are whole steps, and what are they spent on? The vector environment on one and two threads, single tables, and PPO's split.
 
-    python -m benchmarks.vector [--seconds 2] [--repeats 5] [--tables 1024] [--json FILE]
+    python -m benchmarks.vector [--seconds 2] [--repeats 5] [--tables 1024] [--seed 0] [--json FILE] [--out FOLDER]
 
 Random actions on opened 22-ball tables; a step is one shot with everything around it (SAME_STEP: a visit that ends is followed by a new
 one within the step, so every step holds a shot). Steps a second are medians over ``--repeats`` rounds in which the kinds take turns, so
@@ -24,7 +24,7 @@ from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.tasks import stroke
 from snooker_env.tasks.stroke import ShotBuffers
 
-from ._common.command import at_least, command, run, save_json, writable
+from ._common.command import Command, at_least, run, save_json
 
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)
 
@@ -63,7 +63,7 @@ def rate(step, tables, seconds):
             return k * tables / took
 
 
-def stepper(env, seed=0):
+def stepper(env, seed):
     """``step(k)`` of a vector environment with random actions, drawn beforehand."""
     env.reset(seed=seed)
     actions = np.random.default_rng(seed).uniform(-1.0, 1.0, (16, *env.action_space.shape)).astype(np.float32)
@@ -71,7 +71,7 @@ def stepper(env, seed=0):
     return lambda k: env.step(actions[k % 16])
 
 
-def single(seed=0):
+def single(seed):
     """``step(k)`` of one ``SnookerEnv``, with a reset after each end."""
     env = SnookerEnv()
     env.reset(seed=seed)
@@ -90,13 +90,13 @@ def native(n, threads):
     return SnookerVectorEnv(n, threads=threads, autoreset_mode=AutoresetMode.SAME_STEP)
 
 
-def rates(tables, seconds, repeats):
+def rates(tables, seconds, repeats, seed):
     """Medians of steps a second of every kind, the kinds taking turns."""
     mode = {"autoreset_mode": AutoresetMode.SAME_STEP}
     sync = gymnasium.make_vec("Snooker-v0", 16, vectorization_mode="sync", vector_kwargs=mode)
     kinds = {
-        "one thread": (stepper(native(tables, 1)), tables), "two threads": (stepper(native(tables, 2)), tables),
-        "SyncVectorEnv, 16 tables": (stepper(sync), 16), "single table": (single(), 1),
+        "one thread": (stepper(native(tables, 1), seed), tables), "two threads": (stepper(native(tables, 2), seed), tables),
+        "SyncVectorEnv, 16 tables": (stepper(sync, seed), 16), "single table": (single(seed), 1),
     }  # fmt: skip
     rounds = [{name: rate(step, n, seconds) for name, (step, n) in kinds.items()} | {"control": control()} for _ in range(repeats)]
     out = {name: float(np.median([r[name] for r in rounds])) for name in rounds[0]}
@@ -122,10 +122,10 @@ class Recorded:
         setattr(stroke, "run", self.original)  # noqa: B010
 
 
-def outside(tables, repeats):
+def outside(tables, repeats, seed):
     """Microseconds of a step, of the same shots by the engine alone, and the share outside it; medians of neighbouring timings."""
     env = native(tables, 1)
-    step, pairs = stepper(env), []
+    step, pairs = stepper(env, seed), []
     for k in range(1, repeats + 1):
         visits = env.tables
         before = [a.copy() for a in (visits.positions, visits.on_table, visits.game, visits.streams)]
@@ -149,12 +149,12 @@ def outside(tables, repeats):
     return {"step [us]": step_us, "engine alone [us]": engine_us, "outside the engine": share}
 
 
-def sizes(seconds):
+def sizes(seconds, seed):
     """Steps a second on one thread by number of tables."""
-    return {n: rate(stepper(native(n, 1)), n, seconds) for n in SIZES}
+    return {n: rate(stepper(native(n, 1), seed), n, seconds) for n in SIZES}
 
 
-def ppo(steps, envs):
+def ppo(steps, envs, seed):
     """Seconds that PPO spends in the environment, in its updates and in the rest, for ``steps`` shots; None without SB3."""
     try:
         import torch
@@ -180,7 +180,7 @@ def ppo(steps, envs):
             spent["update"] += time.perf_counter() - start
 
     tables = Timed(envs, aim="target", threads=1)
-    model = TimedPPO("MlpPolicy", tables, n_steps=max(8, 2048 // envs), batch_size=256, n_epochs=10, seed=0, device="cpu")
+    model = TimedPPO("MlpPolicy", tables, n_steps=max(8, 2048 // envs), batch_size=256, n_epochs=10, seed=seed, device="cpu")
     start = time.perf_counter()
     model.learn(steps)
     spent["whole"] = time.perf_counter() - start
@@ -206,19 +206,18 @@ def show(found):
 
 def main():
     """Command line."""
-    parser = command("vector", __doc__)
+    parser = Command("vector", __doc__, seed=0)
     parser.add_argument("--seconds", type=float, default=2.0, help="of each timing")
     parser.add_argument("--repeats", type=at_least(1), default=5)
     parser.add_argument("--tables", type=at_least(1), default=1024)
     parser.add_argument("--ppo-steps", type=at_least(1), default=16384)
-    parser.add_argument("--json", help="also write every figure there")
-    args = parser.parse_args()
-    writable(args.json)
+    args = parser.options()
     snooker_env.warmup()
     found = {
         "machine": platform.platform(), "processors": os.cpu_count(), "tables": args.tables,
-        "rates": rates(args.tables, args.seconds, args.repeats), "outside": outside(args.tables, 4 * args.repeats),
-        "sizes": sizes(args.seconds), "ppo": [p for p in (ppo(args.ppo_steps, n) for n in (16, 64)) if p],
+        "rates": rates(args.tables, args.seconds, args.repeats, args.seed),
+        "outside": outside(args.tables, 4 * args.repeats, args.seed),
+        "sizes": sizes(args.seconds, args.seed), "ppo": [p for p in (ppo(args.ppo_steps, n, args.seed) for n in (16, 64)) if p],
     }  # fmt: skip
     show(found)
     save_json(args.json, found)

@@ -5,8 +5,6 @@ import os
 import tempfile
 from pathlib import Path
 
-from snooker_env.checks import refuse
-
 
 def write_atomic(path, data):
     """Write bytes so that ``path`` holds either the old or the new content, whole, whenever the process or the machine dies.
@@ -35,6 +33,8 @@ def writable(name, file):
     """Make the folders of an output, and raise ValueError if it could not be written there. Asked by trying: access bits lie for root."""
     if file is None:
         return
+    from snooker_env.checks import refuse  # here: a command names a library that is missing only after this module is loaded
+
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         with file.open("a") if file.exists() else tempfile.TemporaryFile(dir=file.parent):

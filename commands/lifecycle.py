@@ -1,6 +1,6 @@
-"""How does a command of this project begin and end? It can write to any terminal, and what stops it from outside is told in one line.
+"""How does a command of this project begin and end? It can write to any terminal, and what stops it from outside is said in one line.
 
-Only the standard library is imported here: what is missing must be told before it is needed.
+Only the standard library is imported here: what is missing must be said before it is needed.
 """
 
 import errno
@@ -17,15 +17,14 @@ DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 """What the system says of a disk that takes no more."""
 
 
-def missing(name, error):
-    """The end of the command ``name`` for an ``ImportError``. A name that is not in a module of our own is no missing package."""
+def what_is_missing(error):
+    """What an ``ImportError`` means, in words. Raised again if it is a module of this repository that lacks a name."""
     if not error.name:  # it says itself what is missing
-        return SystemExit(f"{name}: {error}")
+        return str(error)
     package = error.name.partition(".")[0]
     if package in OUR_OWN:
         raise error
-    extra = EXTRAS.get(package, "train")
-    return SystemExit(f'{name}: {package} is missing; in a clone of the repository:  pip install -e ".[{extra}]"')
+    return f'{package} is missing; in a clone of the repository:  pip install -e ".[{EXTRAS.get(package, "train")}]"'
 
 
 class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import torch
@@ -39,7 +38,7 @@ class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import tor
 
     def __exit__(self, kind, error, trace) -> None:
         if isinstance(error, ImportError):
-            raise missing(self._name, error) from None
+            raise SystemExit(f"{self._name}: {what_is_missing(error)}") from None
         if isinstance(error, KeyboardInterrupt):
             raise SystemExit(130) from None
 
@@ -75,7 +74,7 @@ def command(name):
             try:
                 return main(argv)
             except ImportError as error:
-                raise missing(name, error) from None
+                raise SystemExit(f"{name}: {what_is_missing(error)}") from None
             except BrokenPipeError:  # nobody reads on: train.py | head
                 os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
                 return 1

@@ -5,7 +5,7 @@ from snooker_env.checks import refuse
 from snooker_env.geometry import BALL_RADIUS
 
 
-def world(text):
+def physics_option(text):
     """The environment's option ``physics`` for this text, a dict. Raises ValueError."""
     preset, *changes = text.split(",")
     fields = {"preset": preset}
@@ -24,7 +24,7 @@ def world(text):
     return fields
 
 
-def text_of(physics):
-    """The text that means this option of the environment: a preset's name or a dict as ``world`` makes it."""
+def physics_text(physics):
+    """The text that means this option of the environment: a preset's name or a dict as ``physics_option`` makes it."""
     fields = dict(physics) if isinstance(physics, dict) else {"preset": physics}
     return ",".join([fields.pop("preset", "paper"), *(f"{name}={value}" for name, value in fields.items())])

@@ -7,17 +7,18 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from commands.physics_option import text_of
+from commands.physics_option import physics_text
 from snooker_env import Options, SnookerVectorEnv
 from snooker_env.checks import number, refuse
 
-from ..learning.hyperparameters import READ, value_of
-from ..learning.models import PRETRAINED, file_of, load_any, pretrained
-from ..players.built_in import NAMES, is_player, player_of
+from ..learning.hyperparameters import ACTION_OPTIONS, value_of
+from ..learning.models import PRETRAINED, file_of, pretrained
+from ..players.by_name import NAMES, is_player, player_of
+from ..players.trained import load_any
 
 
 @dataclass(frozen=True)
-class Agent:
+class Entrant:
     """What is compared: a player, or the models of one way to train, one for each seed."""
 
     label: str
@@ -26,7 +27,7 @@ class Agent:
     trust: bool = False
     """May code in its files run? Models of Stable-Baselines3 that train.py did not make need it."""
     options: tuple = ()
-    """How the actions of such models are read: (key, value) of ``recipes.READ``."""
+    """How the actions of such models are read: (key, value) of ``hyperparameters.ACTION_OPTIONS``."""
 
     @classmethod
     def of(cls, text, trust=False, options=()):
@@ -74,25 +75,25 @@ class Agent:
         model, path = _model(run, self.trust, self.options).model, Path(run)
         card, results = path.with_suffix(".json"), (path if path.is_dir() else path.parent) / "results.json"
         if path.is_file() and card.is_file():
-            seconds, imitated = _told(card, "hours"), _told(card, "imitated")
+            seconds, imitated = _number_in(card, "hours"), _number_in(card, "imitated")
             seconds = None if seconds is None else 3600.0 * seconds
         else:
-            seconds, imitated = _told(results, "seconds"), model.imitated
+            seconds, imitated = _number_in(results, "seconds"), model.imitated
         usual = {"layout": Options().layout, "noise": "none", "fidelity": "standard"}
         return {
             "recipe": model.recipe, "shots": model.num_timesteps, "imitated": imitated, "seconds": seconds, "seed": model.seed,
             "gamma": model.gamma, **{key: model.env_options.get(key, value) for key, value in usual.items()},
-            "physics": text_of(model.env_options.get("physics", "paper")),
+            "physics": physics_text(model.env_options.get("physics", "paper")),
         }  # fmt: skip
 
 
 def options_of(changes):
-    """What the "key=value" of --options say, as ``Agent.options``. Raises ValueError."""
+    """What the "key=value" of --options say, as ``Entrant.options``. Raises ValueError."""
     found = {}
     for change in changes:
         key, equals, value = change.partition("=")
-        if not equals or key not in READ or key in found:
-            raise refuse("options", change, f"must be KEY=VALUE, KEY once each of {', '.join(READ)}")
+        if not equals or key not in ACTION_OPTIONS or key in found:
+            raise refuse("options", change, f"must be KEY=VALUE, KEY once each of {', '.join(ACTION_OPTIONS)}")
         found[key] = value_of(value)
     SnookerVectorEnv(1, **found)  # makes sure of the values
     return tuple(found.items())
@@ -105,12 +106,12 @@ def _model(path, trust, options):
     return load_any(Path(path), trust, dict(options))
 
 
-def _told(file, name):
+def _number_in(file, name):
     """The number of this name that a JSON file holds; None if it holds none. Raises ValueError."""
     try:
-        told = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+        found = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
     except ValueError as error:
         raise refuse("agent", str(file), f"must be JSON ({error})") from None
-    if not isinstance(told, dict):
+    if not isinstance(found, dict):
         raise refuse("agent", str(file), f"must hold {name} in an object")
-    return None if told.get(name) is None else number(f"{file}: {name}", told[name], 0)
+    return None if found.get(name) is None else number(f"{file}: {name}", found[name], 0)

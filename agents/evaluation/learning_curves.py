@@ -23,7 +23,7 @@ with needs("agents.curves"):
     from snooker_env.checks import choice, refuse
 
     from .destinations import formats
-    from .entrants import Agent
+    from .entrants import Entrant
 
     mpl.use("Agg")
     import matplotlib.pyplot as plt
@@ -42,10 +42,10 @@ def run_of(path):
         raise refuse("run", str(path), "must be the folder of a finished run: it holds results.json")
     try:
         run = json.loads(file.read_text(encoding="utf-8"))
-        taught = run["imitation"][-1]["seconds"] if run["imitation"] else 0.0
+        imitating = run["imitation"][-1]["seconds"] if run["imitation"] else 0.0
         shots = np.array([at["steps"] for at in run["curve"]], float)
         points = np.array([at["points"] for at in run["curve"]], float)
-        minutes = (taught + (run["seconds"] - taught) * shots / run["steps"]) / 60.0
+        minutes = (imitating + (run["seconds"] - imitating) * shots / run["steps"]) / 60.0
         ends = {name: run["evaluation"][name] for name in LEVELS}
         levels = {name: (float(end["points_a_visit"]), float(end["points_a_visit_se"])) for name, end in ends.items()}
         return {"shots": shots, "minutes": minutes, "points": points, "end": (run["steps"], run["seconds"] / 60.0), "levels": levels}
@@ -95,7 +95,7 @@ def main(argv=None):
     args = p.parse_args(argv)
     try:
         choice("out", args.out.suffix, formats())
-        agents = {agent.label: [run_of(run) for run in agent.runs] for agent in map(Agent.of, args.agents)}
+        agents = {agent.label: [run_of(run) for run in agent.runs] for agent in map(Entrant.of, args.agents)}
         if len(agents) < len(args.agents):
             raise refuse("agents", " ".join(args.agents), "must have another label each")
         judged = {run["levels"]["ghost_ball"] for runs in agents.values() for run in runs}

@@ -7,7 +7,7 @@ import numpy as np
 
 from snooker_env.game import POT_WINDOWS, BallOn
 
-from .entrants import Agent
+from .entrants import Entrant
 from .rollouts import CENTURY, MAXIMUM, Strokes
 from .statistics import Resamples, interval, iqm
 
@@ -66,10 +66,10 @@ def _quotient(above, below):
 
 
 @dataclass
-class Played:
+class EntrantMetrics:
     """What one agent did under one condition: the counts of every run and visit, name -> (runs, visits)."""
 
-    agent: Agent
+    agent: Entrant
     counted: dict
     strokes: list
     """The ``Strokes`` of every run."""

@@ -9,9 +9,9 @@
 Every agent plays the same tables with the same errors of execution (as far as it plays as many strokes): 2,000 opened tables that no
 training sees, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every agent plays under every value given to
 --noise, --fidelity and --physics: agents that were trained under A and B, played under A and B, make the table of A against B. (The aim
-of a discrete choice is solved in the world that is played.)
+of a discrete choice is solved with the physics that is played.)
 
-Agents are named as ``NAME`` (a player of agents/players/built_in.py, a model of agents/pretrained), as a model's .zip or run folder, as
+Agents are named as ``NAME`` (a player of agents/players, a model of agents/pretrained), as a model's .zip or run folder, as
 LABEL=PATH,PATH,... for one that was trained with several seeds (a PATH may be a pattern), or as MODULE:CLASS for a player of your own,
 whose module is imported and so run. Models of train.py and agents/pretrained are read as plain data. Any other model of
 Stable-Baselines3 or sb3-contrib, trained on a visit by what the environment shows, holds pickled Python code, which runs when it is
@@ -35,18 +35,18 @@ with needs("agents.evaluate"):
     import numpy as np
 
     import snooker_env
-    from commands.commit import commit
     from commands.files import writable, write_atomic
-    from commands.physics_option import world
+    from commands.physics_option import physics_option
+    from commands.provenance import commit, processor
     from snooker_env import __version__
     from snooker_env.checks import choice, integer, parse_fidelity, refuse
     from snooker_env.game import plan_of
     from snooker_env.tasks import Noise
 
     from ..learning.models import pretrained
-    from ..players.built_in import NAMES
-    from .entrants import Agent, options_of
-    from .metrics import Played, counts
+    from ..players.by_name import NAMES
+    from .entrants import Entrant, options_of
+    from .metrics import EntrantMetrics, counts
     from .report import AXES, main_condition, markdown, show
     from .rollouts import HELD_OUT_SEED, play, tables_of
     from .statistics import RESAMPLES
@@ -59,19 +59,17 @@ PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
 
 
 def play_agent(agent, condition, seeds, budget, resamples):
-    """``Played`` by every run of the agent on the tables with these seeds."""
+    """``EntrantMetrics`` by every run of the agent on the tables with these seeds."""
     options = {"layout": condition["layout"], "noise": condition["noise"], "fidelity": condition["fidelity"]}
-    physics = world(condition["physics"])
+    physics = physics_option(condition["physics"])
     runs = [play(agent.player(k, budget), len(seeds), first_seed=seeds, physics=physics, **options) for k in range(len(agent.runs))]
     each = [counts(strokes) for strokes in runs]
-    return Played(agent, {name: np.stack([one[name] for one in each]) for name in each[0]}, runs, resamples)
+    return EntrantMetrics(agent, {name: np.stack([one[name] for one in each]) for name in each[0]}, runs, resamples)
 
 
 def provenance():
     """What computed these figures: version, commit and machine."""
-    cpuinfo = Path("/proc/cpuinfo")
-    cpus = [line.split(":", 1)[1].strip() for line in cpuinfo.read_text().splitlines() if "model name" in line] if cpuinfo.exists() else []
-    machine = f"{cpus[0] if cpus else platform.processor() or 'unknown'}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
+    machine = f"{processor()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
     where = {"version": __version__, "commit": commit() or "unknown", "machine": machine}
     return where | {"python": platform.python_version(), "numpy": np.__version__}
 
@@ -91,7 +89,7 @@ def parser():
     p.add_argument("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=f"agents to compare the others with [{REFERENCE}]")
     usual = [f"{name}={n}" for name, n in PROTOCOL.items()]
     p.add_argument("--layouts", nargs="+", default=usual, metavar="LAYOUT", help=f"LAYOUT=VISITS [{' '.join(usual)}]")
-    p.add_argument("--visits", type=int, help="so many on every layout, for a quick look or a slow player")
+    p.add_argument("--visits", type=int, help="so many on every layout, for a quick trial or a slow player")
     p.add_argument("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
     p.add_argument("--fidelity", nargs="+", default=["standard"], help="fast, standard, reference or euler:N [standard]")
     p.add_argument("--physics", nargs="+", default=["paper"], help="paper, match or with changes as paper,mu_bb=marlow [paper]")
@@ -112,11 +110,11 @@ def parser():
 def checked(args):
     """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError before anything is played."""
     options = options_of(args.options)
-    agents = [Agent.of(text, args.trust, options) for text in args.agent]
+    agents = [Entrant.of(text, args.trust, options) for text in args.agent]
     labels = [agent.label for agent in agents]
     for label in args.against:
         if label == REFERENCE and label not in labels:
-            agents.append(Agent(REFERENCE, (REFERENCE,)))
+            agents.append(Entrant(REFERENCE, (REFERENCE,)))
         elif label not in labels:
             raise refuse("against", label, f"must be one of {', '.join(labels)}, {REFERENCE}")
     for label in labels:
@@ -135,7 +133,7 @@ def checked(args):
     for fidelity in args.fidelity:
         parse_fidelity(fidelity)
     for physics in args.physics:
-        world(physics)
+        physics_option(physics)
     integer("budget", args.budget, 2, 2**31)
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
@@ -177,7 +175,7 @@ def spared(file):
 
 @command("agents.evaluate")
 def main(argv=None):
-    """Check, play, tell. Exit code 0; 130 if it was interrupted: what was complete is kept."""
+    """Check, play, report. Exit code 0; 130 if it was interrupted: what was complete is kept."""
     p = parser()
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_args(argv)
@@ -220,12 +218,12 @@ def main(argv=None):
         print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
         if not report["results"]:
             return 130
-    tell(report, shown, args)
+    write(report, shown, args)
     return 130 if "incomplete" in report else 0
 
 
-def tell(report, shown, args):
-    """Print the tables and write what was asked for. A file that cannot be written is told at the end: none loses the others."""
+def write(report, shown, args):
+    """Print the tables and write what was asked for. A file that cannot be written is named at the end, and the others are there."""
     files, failed = {name: getattr(args, name) for name in ("json", "markdown", "picture")}, []
     if "incomplete" in report:
         files = {name: spared(file) for name, file in files.items()}
@@ -241,10 +239,10 @@ def tell(report, shown, args):
 
         draw(report, shown, file)
 
-    def written(name, write):
+    def written(name, writer):
         try:
             if files[name]:
-                write(files[name])
+                writer(files[name])
         except OSError as error:
             failed.append(of_disk(error, files[name]))
             files[name] = None

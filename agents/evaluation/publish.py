@@ -19,7 +19,7 @@ with needs("agents.publish"):
 
     from ..learning.model_files import packed
     from ..learning.models import PRETRAINED, load_trained
-    from ..players.built_in import NAMES
+    from ..players.by_name import NAMES
 
 AS_IT_STANDS = {"layout": [""], "noise": [""], "fidelity": ["", "standard"], "physics": [""], "start": [""], "set": [[]]}
 """What these settings may be in a run of its recipe as it stands."""
@@ -37,7 +37,7 @@ def results_of(run):
 
 
 def card_of(found, limits):
-    """What is told of the model of a run with these results."""
+    """The card of the model of a run with these results: where it comes from, and how well it plays."""
     imitated = found["imitation"][-1]["states"] if found["imitation"] else 0
     return {
         "command": found["command"], "seed": found["settings"]["seed"], "commit": found["git_commit"],

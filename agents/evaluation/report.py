@@ -1,4 +1,4 @@
-"""How is an evaluation told? Its tables and sentences, for a terminal and as Markdown; every word follows from the figures.
+"""How is an evaluation reported? Its tables and sentences, for a terminal and as Markdown; every word follows from the figures.
 
 ``report`` is what agents/evaluation/protocol.py writes as JSON. The Markdown is made again from it, without playing, by
 
@@ -24,7 +24,7 @@ with needs("agents.report"):
 
     from .rollouts import CENTURY, MAXIMUM
     from .statistics import unseen
-    from .text_tables import Table, say
+    from .text_tables import TextTable, say
 
 SEEDS = 5
 """Fewer training seeds than that are pointed out."""
@@ -133,8 +133,8 @@ def agents_tables(report):
         long.append([label, str(_seeds(runs)), *numbers, _between(rates)])
     header = ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
     return [
-        Table("The agents", header, trained, 1, 5),
-        Table("How long they were trained", ["agent", "seeds", "taught", "shots", "seconds", "shots/s"], long, 1, 1),
+        TextTable("The agents", header, trained, 1, 5),
+        TextTable("How long they were trained", ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"], long, 1, 1),
     ]
 
 
@@ -143,7 +143,7 @@ def _seeds(runs):
     return len({run["seed"] for run in runs})
 
 
-GIVEN = (("imitated", "positions taught", 0.0), ("shots", "shots", 0.0), ("seconds", "seconds of training", SAME))
+GIVEN = (("imitated", "positions imitated", 0.0), ("shots", "shots", 0.0), ("seconds", "seconds of training", SAME))
 """What agents are given: how it is kept, how it is called, and by what share it may differ to be called equal."""
 
 
@@ -174,13 +174,13 @@ def fairness(report):
 
 def comparison(report):
     """Sentences: each agent against those it is compared with."""
-    at, said, told = main_condition(report), [], set()
+    at, said, done = main_condition(report), [], set()
     rows = {r["agent"]: r for r in _picked(report, **at)}
     for name, row in rows.items():
         for other, ratios in row["ratios"].items():
-            if (other, name) in told:  # the other way round
+            if (other, name) in done:  # the other way round
                 continue
-            told.add((name, other))
+            done.add((name, other))
             ratio, mine, its = ratios["points_a_visit"], row["figures"], rows[other]["figures"]
             if ratio["value"] is None or ratio["low"] is None:
                 continue
@@ -215,12 +215,12 @@ def crossed(report):
                 rows.append([agent["label"], made, *(_pm(some[0]["figures"]["points_a_visit"]) if some else "" for some in found)])
             under = ", ".join(f"{key} {value}" for key, value in rest.items() if key != "layout")
             title = f"{layout}: points a visit, played under {axis} ..., {under}"
-            tables.append(Table(title, ["agent", "trained under", *p[axis]], rows, 2, 2))
+            tables.append(TextTable(title, ["agent", "trained under", *p[axis]], rows, 2, 2))
     return tables
 
 
 def conditions(report):
-    """Tables of every layout and world: what was scored, and how the cue ball was placed."""
+    """Tables of every layout and condition: what was scored, and how the cue ball was placed."""
     p, tables = report["protocol"], []
     for layout, visits in p["layouts"].items():
         most = most_points(layout)
@@ -230,7 +230,7 @@ def conditions(report):
                 where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}"
                 for name, columns in _columns(p["against"], most).items():
                     cells = [[r["noise"], r["agent"], *(cell(r) for cell in columns.values())] for r in rows]
-                    tables.append(Table(f"{where}: {name}", ["noise", "agent", *columns], cells, 2, 2, True))
+                    tables.append(TextTable(f"{where}: {name}", ["noise", "agent", *columns], cells, 2, 2, True))
     return tables
 
 
@@ -279,11 +279,11 @@ LEGEND = (
 
 
 def parts(report):
-    """Everything in order: ``Table`` (none wider than ``WIDTH``) or str."""
-    told = [*agents_tables(report), *fairness(report), *comparison(report), *crossed(report), *conditions(report), LEGEND]
+    """Everything in order: ``TextTable`` (none wider than ``WIDTH``) or str."""
+    all_parts = [*agents_tables(report), *fairness(report), *comparison(report), *crossed(report), *conditions(report), LEGEND]
     if "incomplete" in report:
-        told.insert(0, f"INCOMPLETE: {report['incomplete']}.")
-    for part in told:
+        all_parts.insert(0, f"INCOMPLETE: {report['incomplete']}.")
+    for part in all_parts:
         yield from [part] if isinstance(part, str) else part.tidy().narrow()
 
 

@@ -1,4 +1,4 @@
-"""How is a table of words and numbers told, on a terminal and in Markdown? No wider than a terminal is."""
+"""How is a table of words and numbers written, on a terminal and in Markdown? No wider than a terminal is."""
 
 from dataclasses import dataclass, replace
 
@@ -7,7 +7,7 @@ WIDTH = 100
 
 
 @dataclass
-class Table:
+class TextTable:
     """Cells as text; the first ``keys`` columns say what a row is about, the first ``left`` are words, the others numbers."""
 
     title: str

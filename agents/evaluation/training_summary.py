@@ -8,29 +8,30 @@ import rich.console
 import rich.table
 
 from ..features.views import view_of
-from ..learning.hyperparameters import WORLD
-from ..learning.models import Model, player_options
+from ..learning.hyperparameters import SHOT_OPTIONS
 from ..players.built_in import GhostBall, Random
+from ..players.trained import ModelPlayer, player_options
 from .rollouts import play, summary, tables_of
 
 
 def evaluate(recipe, model, visits):
-    """Figures of held-out visits in the world trained in, the same tables for each: the agent, the plain geometric player, random play.
+    """Figures of held-out visits under the noise and physics of the training, the same tables for each: the agent, the plain geometric
+    player, random play.
 
     They are the first tables of ``agents.evaluate``, and "random" is its player of that name whatever the agent: a stroke drawn from the
     discrete choices, so at a pot that is there. Raises ValueError if there are not so many tables.
     """
     options = player_options(recipe.env_kwargs)
-    players = {"trained": Model(model, options, view_of(recipe.view)), "ghost_ball": GhostBall(), "random": Random()}
-    told: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in WORLD}
+    players = {"trained": ModelPlayer(model, options, view_of(recipe.view)), "ghost_ball": GhostBall(), "random": Random()}
+    shared: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS}
     seeds = tables_of("held_out", visits)
-    return {name: summary(play(player, visits, first_seed=seeds, **told)) for name, player in players.items()}
+    return {name: summary(play(player, visits, first_seed=seeds, **shared)) for name, player in players.items()}
 
 
-def lesson(agent, steps, taught, figures, start=None):
+def conclusion(agent, steps, imitated, figures, start=None):
     """What was learned, in one sentence that follows from the figures: a difference counts from two standard errors on.
 
-    ``taught``: positions imitated first; ``start``: what the agent began from, as ``models.load_weights`` tells it, or None.
+    ``imitated``: positions in which it imitated the search first; ``start``: what it began from, see ``models.load_weights``, or None.
     """
     trained, ghost, random = (figures[name] for name in ("trained", "ghost_ball", "random"))
 
@@ -40,7 +41,7 @@ def lesson(agent, steps, taught, figures, start=None):
     def made(player):
         return f"{player['pots_a_visit']:.2f} pots and {player['points_a_visit']:.2f} points a visit"
 
-    begun = f" after imitating the search in {taught:,} positions" if taught else ""
+    begun = f" after imitating the search in {imitated:,} positions" if imitated else ""
     if start:
         begun = f", on top of what {start['model']} had learned in {start['shots']:,},"
     said, widest = f"In {steps:,} shots{begun} {agent} learned", "the widest pot played softly every time"

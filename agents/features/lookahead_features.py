@@ -1,10 +1,11 @@
-"""Where would the cue ball go? Some strokes at the two widest pots, played a few times in the mind: the view of an agent that looks ahead.
+"""Where would the cue ball go? Some strokes at the two widest pots, simulated a few times: what an agent sees that looks one shot ahead.
 
-Behind ``view.with_pots`` come ``STROKES_SEEN`` rows, one for each stroke at each of these pots, with what it would lead to: means over the
-errors of ``looks.LOOKS``, scaled by the execution noise of the tables (one look if there is none). The agent may play these strokes and no
-others. Looking costs 120 simulated shots a decision: the agent is slower than one that only sees the table, far quicker than ``search``.
+Behind ``pot_features.with_pots`` come ``STROKES_SEEN`` rows, one for each stroke at each of these pots, with what it would lead to: means
+over the errors of ``NOISE_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play these
+strokes and no others. That costs 120 simulated shots a decision: the agent is slower than one that only sees the table, far quicker than
+``search``.
 
-Two pots and a few strokes, with several looks at each: what an error does to the next pot cannot be told from one outcome.
+Two pots and a few strokes, with several noise samples of each: one outcome does not show what errors do to the next pot.
 """
 
 import numpy as np
@@ -15,7 +16,7 @@ from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning import Planner, Positions
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
-from .noise_samples import LOOKS
+from .noise_samples import NOISE_SAMPLES
 from .pot_features import SHOWN, with_pots
 from .prospects import BY_HAND, prospects_of, spread_of
 
@@ -23,12 +24,12 @@ POTS_SEEN = 2
 SEEN_SPEEDS, SEEN_TOPS = (1, 3, 5, 7), (0, 2, 4)
 """Places in ``SPEEDS`` and ``TOPS``; without side."""
 PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(POTS_SEEN) for s in SEEN_SPEEDS for t in SEEN_TOPS])
-"""The choices looked at."""
+"""The choices that are simulated."""
 STROKES_SEEN = len(PICKS)
 (THERE, CHANCE, SCORED, GOES_ON, POINTS, CUE_X, CUE_Y, FIRST, SECOND, THIRD, VALUE, SPREAD, SPEED, TOP, RED_ON) = range(15)
-"""Places in a row: 1 if there is such a pot, its chance by its width; share of looks that score, that go on; mean points / 7; of those that
-go on: where the cue ball stops (x, y), chances of the three likeliest next pots; mean value by hand of what is left / 25 (0 for a visit
-that ended), its standard deviation; speed / 6.3, top / 0.4, 1 if a red was on."""
+"""Places in a row: 1 if there is such a pot, its chance by its width; share of samples that score, that go on; mean points / 7; of those
+that go on: where the cue ball stops (x, y), chances of the three likeliest next pots; mean value by hand of what is left / 25 (0 for a
+visit that ended), its standard deviation; speed / 6.3, top / 0.4, 1 if a red was on."""
 ENTRIES = RED_ON + 1
 SPACE = spaces.Box(-10.0, 10.0, (SHOWN + STROKES_SEEN * ENTRIES,), np.float32)
 _CHOSEN = np.zeros(CHOICES, bool)
@@ -37,7 +38,7 @@ _SPEEDS = np.array(SPEEDS)[PICKS % STROKES // (len(SIDES) * len(TOPS))] / SPEEDS
 _TOPS = np.array(TOPS)[PICKS % len(TOPS)] / TOPS[-1]
 
 
-class Foresight:
+class ForesightView:
     """Looks ahead on the tables of a ``SnookerVectorEnv``."""
 
     space = SPACE
@@ -52,16 +53,16 @@ class Foresight:
         return np.concatenate([with_pots(observations), ahead.reshape(len(rows), -1)], 1)
 
     def ahead(self, tables, at, masks):
-        """The rows (n, STROKES_SEEN, ENTRIES) of ``Positions``, in the world of the ``tables``; all 0 where ``masks`` (n, STROKES_SEEN)
-        says that there is no such pot."""
+        """The rows (n, STROKES_SEEN, ENTRIES) of ``Positions``, under the rules and noise of the ``tables``; all 0 where ``masks``
+        (n, STROKES_SEEN) says that there is no such pot."""
         if self._tables is not tables:
             self._tables, self._planner = tables, Planner(tables, threads=self._threads)
             noise = self._planner.noise
-            self._looks = np.array(LOOKS[:1] if noise.silent else LOOKS, np.uint64)
+            self._samples = np.array(NOISE_SAMPLES[:1] if noise.silent else NOISE_SAMPLES, np.uint64)
             self._spread = spread_of(noise, self._planner.physics)
         table, stroke = np.nonzero(masks)
-        k, m = len(self._looks), len(table)
-        points, goes_on, left, _ = self._planner.play(at, np.tile(table, k), np.tile(PICKS[stroke], k), np.repeat(self._looks, m))
+        k, m = len(self._samples), len(table)
+        points, goes_on, left, _ = self._planner.play(at, np.tile(table, k), np.tile(PICKS[stroke], k), np.repeat(self._samples, m))
         values, chances = prospects_of(left, self._spread, most=8, threads=self._planner.threads)
         values, points, goes_on = (goes_on * values).reshape(k, m), points.reshape(k, m), goes_on.reshape(k, m)
         share = (goes_on / np.maximum(1, goes_on.sum(0)))[:, :, None]

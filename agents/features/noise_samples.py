@@ -1,10 +1,10 @@
-"""Which errors should a look ahead try? Five sets of them that together are like all: ``python -m agents.noise_samples`` finds them again.
+"""Which noise samples does a look ahead try? Five that stand for all; ``python -m agents.noise_samples`` finds them again.
 
 Where a shot under execution noise leads is a mean over five numbers (errors of speed, side, top, aim, elevation). A mean over a few draws
-is poor when they happen to lie on one side. ``LOOKS`` are keys of streams (``game.philox``) whose errors have been chosen: of each kind
-they are nearly the five values that are equally likely (-1.28, -0.52, 0, 0.52, 1.28 standard deviations), and one kind says little of
-another. They are the same for all positions and strokes, so strokes differ by their merits.
-Errors of variance 1 would lie further out and, five being few, see more misses than there are.
+is poor when they happen to lie on one side. ``NOISE_SAMPLES`` are keys of streams (``game.philox``) whose errors have been chosen: of each
+kind they are nearly the five values that are equally likely (-1.28, -0.52, 0, 0.52, 1.28 standard deviations), and one kind says little of
+another. They are the same for all positions and strokes, so strokes differ by their merits. Errors of variance 1 would lie further out
+and, five being few, see more misses than there are.
 """
 
 import argparse
@@ -18,7 +18,7 @@ with needs("agents.noise_samples"):
     from snooker_env.kernels import entry, executed
     from snooker_env.tasks import Noise
 
-LOOKS = (354, 1840, 979, 2326, 3875)
+NOISE_SAMPLES = (354, 1840, 979, 2326, 3875)
 """Keys of the streams."""
 WEIGHTS = np.array([1.0, 0.5, 0.5, 1.0, 0.1])
 """How much it matters that the errors of speed, side, top, aim and elevation are spread well."""
@@ -76,7 +76,7 @@ def main(argv=None):
     argparse.ArgumentParser(
         "python -m agents.noise_samples", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     ).parse_args(argv)
-    best, least, median = find(len(LOOKS))
-    print(f"LOOKS = {tuple(map(int, best))}: unevenness {least:.3f}, of a set drawn at random {median:.2f} (median)")
+    best, least, median = find(len(NOISE_SAMPLES))
+    print(f"NOISE_SAMPLES = {tuple(map(int, best))}: unevenness {least:.3f}, of a set drawn at random {median:.2f} (median)")
     print(errors_of(best).round(2))
     return 0

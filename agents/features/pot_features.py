@@ -72,7 +72,7 @@ VIEW_SPACE = spaces.Box(-1.0, 1.0, (SHOWN,), np.float32)
 """What the agent sees."""
 
 
-class Pots:
+class PotsView:
     """The view of an agent that sees the table and its pots: ``with_pots``."""
 
     space = VIEW_SPACE
@@ -86,7 +86,7 @@ class Pots:
         return tables.action_masks()
 
 
-class Plain:
+class PlainView:
     """The view of a model that was not made here: the observation of that ``kind`` as the environment shows it."""
 
     def __init__(self, kind):

@@ -1,18 +1,18 @@
-"""How are tables shown to an agent? By a view: its pots, or a look one shot ahead too; for training, as an SB3 ``VecEnv``."""
+"""How are tables shown to an agent? By a view: its pots, or what strokes at them lead to as well; for training, as an SB3 ``VecEnv``."""
 
 import numpy as np
 
 from snooker_env.checks import choice
 
-from .lookahead_features import Foresight
-from .pot_features import SHOWN, Pots, with_pots
+from .lookahead_features import ForesightView
+from .pot_features import SHOWN, PotsView, with_pots
 
 VIEWS = ("pots", "foresight")
 
 
 def view_of(name, threads=None):
     """The view of that name."""
-    return Foresight(threads) if choice("view", name, VIEWS) == "foresight" else Pots()
+    return ForesightView(threads) if choice("view", name, VIEWS) == "foresight" else PotsView()
 
 
 def training_tables(n, threads=None, view="pots", **options):
@@ -21,23 +21,23 @@ def training_tables(n, threads=None, view="pots", **options):
 
     from snooker_env.sb3 import SnookerVecEnv
 
-    look, base = view_of(view, threads), SnookerVecEnv(n, threads=threads, **options)
+    shown, base = view_of(view, threads), SnookerVecEnv(n, threads=threads, **options)
 
     class Viewed(VecEnvWrapper):
         """All tables in one go. What is seen of a visit that ended holds the pots only: nothing is learned from what comes after it."""
 
         def reset(self):
-            return look(base.tables, self.venv.reset())
+            return shown(base.tables, self.venv.reset())
 
         def step_wait(self):
             observations, rewards, done, infos = self.venv.step_wait()
             ended = [info for info in infos if "terminal_observation" in info]
             if ended:
-                last = np.zeros((len(ended), *look.space.shape), np.float32)
+                last = np.zeros((len(ended), *shown.space.shape), np.float32)
                 last[:, :SHOWN] = with_pots(np.stack([info["terminal_observation"] for info in ended]))
                 for info, row in zip(ended, last, strict=True):
                     info["terminal_observation"] = row
-            return look(base.tables, observations), rewards, done, infos
+            return shown(base.tables, observations), rewards, done, infos
 
         @property
         def running(self):
@@ -50,7 +50,7 @@ def training_tables(n, threads=None, view="pots", **options):
 
         def env_method(self, method_name, *arguments, indices=None, **more):
             if method_name == "action_masks":
-                return list(look.masks(base.tables)[np.array(self._get_indices(indices))])
+                return list(shown.masks(base.tables)[np.array(self._get_indices(indices))])
             return self.venv.env_method(method_name, *arguments, indices=indices, **more)
 
-    return Viewed(base, look.space)
+    return Viewed(base, shown.space)

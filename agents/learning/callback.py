@@ -1,4 +1,4 @@
-"""What is kept of a run while it goes on? Checkpoints, the learning curve, and an orderly stop; ``Keeper`` is SB3's callback for it."""
+"""What is kept of a run while it goes on? Checkpoints, the learning curve and an orderly stop, by a callback of SB3."""
 
 import signal
 import time
@@ -50,7 +50,7 @@ def goal_of(model, steps):
     return model.num_timesteps + rollout_of(model) * -(-max(0, steps - model.num_timesteps) // rollout_of(model))
 
 
-class Keeper(BaseCallback):
+class RunCallback(BaseCallback):
     """Keeps the run: progress bar, learning curve, checkpoints, and an orderly stop."""
 
     def __init__(self, out, settings, seconds, curve, imitation, running, stop, progress):
@@ -105,28 +105,28 @@ class Keeper(BaseCallback):
 
 
 LEAST, SHARE = 30.0, 0.01
-"""Seconds of teaching that a kill may lose, and what share of its time saves may take: where they are slow they come less often.
+"""Seconds of imitation that a kill may lose, and what share of its time saves may take: where they are slow they come less often.
 
-Of every position taught 3.3 kB are kept (of agents that look ahead): the default's 10,000 make a checkpoint of 35 MB, written in half a
-second; ``imitate.KEPT`` positions, the most, 170 MB.
+Of every imitated position 3.3 kB are kept (of agents that look ahead): the default's 10,000 make a checkpoint of 35 MB, written in half a
+second; ``imitation.KEPT`` positions, the most, 170 MB.
 """
 
 
-def taught(teaching, out, settings, model, stop, progress):
-    """Teach the agent to the end and keep what is done in between; whether it came to the end."""
+def imitate(imitation, out, settings, model, stop, progress):
+    """Let the agent imitate the search to the end, with checkpoints in between; whether it came to the end."""
     bar = rich.progress.Progress(disable=not progress)
-    task = bar.add_task(f"{settings.agent} learns from the search", total=teaching.states, completed=teaching.done)
+    task = bar.add_task(f"{settings.agent} learns from the search", total=imitation.states, completed=imitation.done)
     last, cost = time.perf_counter(), 0.0
     with bar:
-        while teaching.done < teaching.states:
-            teaching.round()
-            bar.update(task, completed=teaching.done)
+        while imitation.done < imitation.states:
+            imitation.round()
+            bar.update(task, completed=imitation.done)
             now = time.perf_counter()
             if stop.signal is not None or now - last > max(LEAST, cost / SHARE):
-                save_checkpoint(out, settings, model, teaching.seconds, [], teaching.curve, teaching.get_state())
+                save_checkpoint(out, settings, model, imitation.seconds, [], imitation.curve, imitation.get_state())
                 last = time.perf_counter()
                 cost = last - now
             if stop.signal is not None:
                 return False
-    model.imitated = teaching.curve[-1]["states"]
+    model.imitated = imitation.curve[-1]["states"]
     return True

@@ -1,8 +1,8 @@
 """How is an agent made? By its hyper-parameters (``hyperparams/NAME.yml``, as RL Baselines3 Zoo writes them), with Stable-Baselines3.
 
 To the Zoo's keys come ``algo`` (a file's name says which agent it is, not which algorithm), ``view`` (what it sees: pots or foresight),
-``imitation`` (positions on which it is taught by the search first) and
-``first_aim_std`` (exploration of the aim at the start). ``learning_rate: lin_X`` falls linearly from X to nearly 0.
+``imitation`` (positions in which it imitates the search first) and ``first_aim_std`` (exploration of the aim at the start).
+``learning_rate: lin_X`` falls linearly from X to nearly 0.
 """
 
 import ast
@@ -16,11 +16,11 @@ from snooker_env.checks import choice, integer, number, refuse
 
 FOLDER = Path(__file__).parents[1] / "hyperparams"
 ENV_ID = "Snooker-v0"
-READ = {"action": "box", "aim": "absolute", "elevation": False, "placement": False}
+ACTION_OPTIONS = {"action": "box", "aim": "absolute", "elevation": False, "placement": False}
 """Options of the environment that say how actions are read, with its defaults: they belong to the agent."""
-WORLD = ("noise", "physics", "table", "fidelity")
+SHOT_OPTIONS = ("noise", "physics", "table", "fidelity")
 """Those that say how a shot goes: the same in training and at the end."""
-TRAINING = ("layout", "reward")
+TRAINING_OPTIONS = ("layout", "reward")
 """Those of training alone."""
 BY_OPTION = ("n_timesteps", "n_envs", "imitation")
 """Keys with an option of train.py of their own: --steps, --envs, --imitate."""
@@ -94,19 +94,19 @@ class Recipe:
             settings["learning_rate"] = LinearSchedule(float(rate[4:]), 1e-5, 1.0)
         if "n_steps" in settings:  # few tables make small rollouts
             settings["batch_size"] = min(settings["batch_size"], settings["n_steps"] * tables.num_envs)
-        model = algorithm(self.algo)(policy(self.policy), tables, seed=seed, device="cpu", stats_window_size=1000, **settings)
+        model = algorithm_class(self.algo)(policy(self.policy), tables, seed=seed, device="cpu", stats_window_size=1000, **settings)
         if self.first_aim_std is not None:
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
         # SB3 saves and restores what it does not know, too
         model.recipe, model.env_options, model.view = self.name, dict(self.env_kwargs), self.view
-        model.start, model.imitated = None, 0  # where its weights came from: see ``models.load_weights``; positions it was taught on
+        model.start, model.imitated = None, 0  # where its weights came from: see ``models.load_weights``; positions it imitated in
         return model
 
     def new_network(self, observation_space, action_space):
         """The untrained network (an SB3 policy) of ``new_model`` alone, for weights that are there already."""
         network = policy(self.policy)
         if isinstance(network, str):
-            network = algorithm(self.algo).policy_aliases[network]
+            network = algorithm_class(self.algo).policy_aliases[network]
         return network(observation_space, action_space, lambda _: 0.0, **self.settings.get("policy_kwargs", {}))
 
 
@@ -135,21 +135,21 @@ def _changes(changes, keys):
 def _options(options, more, usual, policy):
     """The environment's options and ``more`` of them; where ``policy`` needs it, actions must be read as ``usual``. Their values are
     checked by the environment itself."""
-    known = (*READ, *WORLD, *TRAINING)
+    known = (*ACTION_OPTIONS, *SHOT_OPTIONS, *TRAINING_OPTIONS)
     if not isinstance(options, dict):
         raise refuse("env_kwargs", options, f"must be a dict with keys of {', '.join(known)}")
     for key in options:
         choice("key of env_kwargs", key, known)
     options = options | more
-    for key in ("action",) if policy == "MlpPolicy" else READ:
-        if options.get(key, READ[key]) != usual.get(key, READ[key]):
-            raise refuse(key, options.get(key, READ[key]), f"must be {usual.get(key, READ[key])!r} for this agent")
+    for key in ("action",) if policy == "MlpPolicy" else ACTION_OPTIONS:
+        if options.get(key, ACTION_OPTIONS[key]) != usual.get(key, ACTION_OPTIONS[key]):
+            raise refuse(key, options.get(key, ACTION_OPTIONS[key]), f"must be {usual.get(key, ACTION_OPTIONS[key])!r} for this agent")
     if options.get("layout") == "held_out":
-        raise refuse("layout", "held_out", "must be another for training: the held-out tables are kept for judging")
+        raise refuse("layout", "held_out", "must be another for training: the held-out tables are kept for evaluation")
     return options
 
 
-def algorithm(name):
+def algorithm_class(name):
     """The SB3 class of that name."""
     import sb3_contrib
     import stable_baselines3

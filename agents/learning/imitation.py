@@ -1,12 +1,12 @@
-"""Can an agent start from what the search knows? Teach a masked policy what the search finds one shot deep; PPO goes on from there.
+"""Can an agent start from what the search knows? A masked policy imitates what the search finds one shot deep; PPO goes on from there.
 
 ``train.py`` does it for the recipes that say so (``imitation``), or with ``--imitate POSITIONS``.
 
-The teacher: in positions of real visits some of the choices are played on copies of the table under execution noise, once each. A choice
+The expert: in positions of real visits some of the choices are played on copies of the table under execution noise, once each. A choice
 is worth its points and, if the visit goes on, the value by hand of the position it leaves (``prospects_of``), the search's own
-measure. The pupil: state value + TEMPERATURE * (log-probability - its mean) is fitted to these worths by least squares, all tries of a
+measure. The learner: state value + TEMPERATURE * (log-probability - its mean) is fitted to these worths by least squares, all tries of a
 position at once. So the policy becomes the softmax of what its choices are worth, and the critic their mean under it. The visits are
-played by the pupil, so it is taught where it will be (DAgger, Ross et al. 2011), and half of the tries are its own best.
+played by the learner, so it learns where it will be (DAgger, Ross et al. 2011), and half of the tries are its own best.
 """
 
 import time
@@ -20,7 +20,7 @@ from snooker_env.planning import Planner
 from ..features.prospects import prospects_of, spread_of
 
 TRIES = 48
-"""Choices tried in each position: half of them the pupil's best, half at random. Where there are no more than half of them, each is tried
+"""Choices tried in each position: half of them the learner's best, half at random. Where there are no more than half of them, each is tried
 twice."""
 TEMPERATURE = 1.0
 """Points that make a choice e times as likely."""
@@ -31,7 +31,7 @@ BATCH, PER_UPDATE = 512, 8
 RATE = 3e-3
 
 
-class Teacher:
+class Expert:
     """Says what choices are worth on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the position left."""
 
     def __init__(self, tables, threads, rng, ahead=True):
@@ -63,15 +63,15 @@ def to_try(scores, masks, rng):
     return picks, np.take_along_axis(masks, picks, axis=1)
 
 
-class Teaching:
-    """``model.policy`` being taught on that many ``states``, positions of visits that it plays itself; with gamma 0 only points count.
+class Imitation:
+    """The imitation in that many ``states``, positions of visits that ``model.policy`` plays itself; with gamma 0 only points count.
 
     ``before``: of ``get_state``, when the model and its tables are as they were then: it goes on bit for bit as if it had not stopped.
     """
 
     def __init__(self, model, venv, states, seed, threads, before=None):
         self._model, self._venv, self.states, self._rng = model, venv, states, np.random.default_rng(seed)
-        self._teacher = Teacher(venv.unwrapped.tables, threads, self._rng, ahead=model.gamma > 0)
+        self._expert = Expert(venv.unwrapped.tables, threads, self._rng, ahead=model.gamma > 0)
         self._optimizer = torch.optim.Adam(model.policy.parameters(), RATE)
         self.done, self.curve, self._kept, self._losses, self._seconds = 0, [], [], deque(maxlen=200), 0.0
         if before is None:
@@ -86,11 +86,11 @@ class Teaching:
 
     @property
     def seconds(self):
-        """Time of teaching so far."""
+        """Time of imitation so far."""
         return self._seconds + time.perf_counter() - self._began
 
     def get_state(self):
-        """What teaching depends on, beside the model, its tables and its random generators; the positions kept are most of it."""
+        """What the rest depends on, beside the model, its tables and its random generators; the positions kept are most of it."""
         return {
             "done": self.done, "curve": self.curve, "kept": self._kept, "losses": list(self._losses), "seconds": self.seconds,
             "rng": self._rng.bit_generator.state, "optimizer": self._optimizer.state_dict(),
@@ -105,7 +105,7 @@ class Teaching:
         with torch.no_grad():
             scores = policy.get_distribution(torch.as_tensor(self._seen), masks).distribution.logits.numpy()
         picks, there = to_try(scores, masks, self._rng)
-        self._kept.append((self._seen, masks, picks, there, self._teacher.worth(picks, there)))
+        self._kept.append((self._seen, masks, picks, there, self._expert.worth(picks, there)))
         del self._kept[: -max(1, KEPT // n)]
         for _ in range(max(1, n // PER_UPDATE)):
             rounds = self._rng.integers(len(self._kept), size=max(1, BATCH // n))

@@ -20,7 +20,7 @@ class Lock:
 
     The system's lock (flock) on the file ``train.lock`` counts, not that the file is there: one that kill -9 left is no obstacle. Where
     there is no flock (Windows) the file itself is the lock: after a kill it has to be deleted, as the error says. A file system that
-    knows no locks is told of and not locked.
+    knows no locks is reported and not locked.
     """
 
     def __init__(self, folder):

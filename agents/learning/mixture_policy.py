@@ -111,7 +111,7 @@ class Throw(nn.Module):
         return turn * lines[:, :, OFFERED]
 
 
-class StrokeHead(nn.Module):
+class MixtureHead(nn.Module):
     """What ``LineReader`` gives -> the parameters of a ``StrokeMixture``, but for the deviations."""
 
     def __init__(self):
@@ -145,10 +145,10 @@ class StrokeMixture(Distribution):
 
     def proba_distribution_net(self, log_std_init=0.0):
         """The head and the deviations."""
-        return StrokeHead(), nn.Parameter(torch.full((4,), float(log_std_init)))
+        return MixtureHead(), nn.Parameter(torch.full((4,), float(log_std_init)))
 
     def proba_distribution(self, log_weights, means, lines, aims_of, log_std):
-        """Set the parameters: what ``StrokeHead`` gives, and the deviations."""
+        """Set the parameters: what ``MixtureHead`` gives, and the deviations."""
         self.log_weights, self.means, self.aims_of = log_weights, means, aims_of
         self.stds, self.aim_stds = log_std[:3].exp(), lines[:, :, TOLERANCE] / pi * log_std[3].exp()
         return self

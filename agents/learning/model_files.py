@@ -16,14 +16,14 @@ from snooker_env.checks import choice, integer, number, refuse
 from snooker_env.tasks.saved_models import PLAIN, by_train, entries, part
 
 from ..features.views import VIEWS, view_of
-from .hyperparameters import READ, TRAINING, WORLD, Recipe, names
+from .hyperparameters import ACTION_OPTIONS, SHOT_OPTIONS, TRAINING_OPTIONS, Recipe, names
 
 WEIGHTS = "policy.pth"
 
 
 @dataclass
 class Trained:
-    """A trained agent as a file tells of it; the names are those that train.py gives to SB3's own models."""
+    """A trained agent as a file describes it; the names are those that train.py gives to SB3's own models."""
 
     policy: Any
     """Its network, an SB3 policy."""
@@ -35,7 +35,7 @@ class Trained:
     gamma: float
     seed: int | None
     imitated: int | None
-    """Positions in which it was taught by the search; None: not known."""
+    """Positions in which it imitated the search; None: not known."""
     start: dict | None
     """Where its weights came from, see ``models.load_weights``."""
 
@@ -47,7 +47,7 @@ class Trained:
 
 def _options(field, value):
     for key in _dict(field, value):
-        choice(f"key of {field}", key, (*READ, *WORLD, *TRAINING))
+        choice(f"key of {field}", key, (*ACTION_OPTIONS, *SHOT_OPTIONS, *TRAINING_OPTIONS))
     return value
 
 
@@ -85,16 +85,16 @@ def read(path, field):
         found = entries(path)
         if not by_train(found):
             return None
-        told: dict[str, Any] = {
+        described: dict[str, Any] = {
             key: None if found.get(key) is None and key in MAY_BE_NONE else check(key, found.get(key)) for key, check in KEPT.items()
         }  # fmt: skip
         seen = found["seen"] if "seen" in found else found["observation_space"]["_shape"][0]
     except Exception as error:  # whatever zip and JSON make of a file that is something else
         raise refuse(field, str(path), f"must be a model that train.py saved ({str(error)[:300]})") from None
     try:
-        return Trained(_network(path, told, seen), **told)
+        return Trained(_network(path, described, seen), **described)
     except _MismatchError:
-        raise refuse(field, str(path), f"must be a model of today's {told['recipe']}: this one is older, train it again") from None
+        raise refuse(field, str(path), f"must be a model of today's {described['recipe']}: this one is older, train it again") from None
     except ImportError:
         raise
     except Exception as error:  # whatever zip and torch make of weights that are something else
@@ -102,15 +102,15 @@ def read(path, field):
         raise refuse(field, str(path), f"must be a model that train.py saved ({why})") from None
 
 
-def _network(path, told, seen):
+def _network(path, described, seen):
     """Today's network with the weights of a file."""
     import torch
 
     try:
-        recipe = Recipe.of(told["recipe"], env_kwargs=told["env_options"])
-        tables = SnookerVectorEnv(1, **told["env_options"])
+        recipe = Recipe.of(described["recipe"], env_kwargs=described["env_options"])
+        tables = SnookerVectorEnv(1, **described["env_options"])
         with torch.random.fork_rng(devices=[]):  # the first weights are drawn, and forgotten
-            network = recipe.new_network(view_of(told["view"]).space, tables.single_action_space)
+            network = recipe.new_network(view_of(described["view"]).space, tables.single_action_space)
     except ImportError:
         raise
     except Exception:  # options or parts that are no more
@@ -150,10 +150,10 @@ def packed(trained):
     """A ``Trained`` agent as the bytes of a zip that holds ``model.json`` and ``policy.pth`` alone; the same each time."""
     import torch
 
-    told = {key: getattr(trained, key) for key in KEPT} | {"seen": trained.policy.observation_space.shape[0]}
+    described = {key: getattr(trained, key) for key in KEPT} | {"seen": trained.policy.observation_space.shape[0]}
     weights, file = io.BytesIO(), io.BytesIO()
     torch.save(dict(trained.policy.state_dict()), weights)
     with zipfile.ZipFile(file, "w") as made:  # ZipInfo: without the time of day
-        made.writestr(zipfile.ZipInfo(PLAIN), json.dumps(told, indent=1) + "\n")
+        made.writestr(zipfile.ZipInfo(PLAIN), json.dumps(described, indent=1) + "\n")
         made.writestr(zipfile.ZipInfo(WEIGHTS), weights.getvalue())
     return file.getvalue()

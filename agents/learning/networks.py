@@ -4,7 +4,7 @@ The order of balls or pots must not matter: each ball's row goes through one net
 Zaheer et al. 2017). Masked sums of the balls' codes, of the pots' codes and the game's state make the context. The score of a
 stroke at a pot comes from that pot's code and the context, by the same weights for every pot. A table is nearly the same in a mirror: it
 is read with the cue ball on the right, and the choice of side spin is turned back.
-(Yellow and green have sides: it is told which half it was.)
+(Yellow and green have sides: a flag says which half it was.)
 """
 
 from itertools import pairwise
@@ -158,6 +158,6 @@ class TablePolicy(_Policy):
 
 
 class ForesightPolicy(_Policy):
-    """Sees what ``foresight`` shows, scores the strokes that it looked at."""
+    """Sees what ``foresight`` shows, scores the strokes that were simulated."""
 
     reader, head = ForesightReader, OutcomeHead

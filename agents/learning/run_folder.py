@@ -12,7 +12,7 @@ import torch
 from commands.files import write_atomic
 from snooker_env.checks import refuse
 
-from .hyperparameters import algorithm
+from .hyperparameters import algorithm_class
 from .lock import NAME as LOCK
 from .lock import Lock
 from .models import CHECKPOINT, zipped
@@ -67,7 +67,7 @@ def kept(out):
 def save_checkpoint(out, settings, model, seconds, curve, imitation, teaching=None):
     """All that training and its curve depend on, tables and random generators included: a resumed run equals an uninterrupted one.
 
-    ``teaching``: of ``Teaching.get_state`` while the agent is being taught, else None.
+    ``teaching``: of ``Imitation.get_state`` while the agent imitates the search, else None.
     """
     state = {
         "settings": asdict(settings), "seconds": seconds, "curve": curve, "imitation": imitation, "teaching": teaching,
@@ -99,7 +99,7 @@ def read_checkpoint(out, settings):
 def load_model(out, state, algo, envs):
     """The agent of a checkpoint, its tables and random generators as they were. Raises ValueError."""
     try:
-        model = algorithm(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu", seed=None)  # it would seed the tables anew
+        model = algorithm_class(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu", seed=None)  # it would seed the tables anew
         model.seed = state["settings"]["seed"]
         if state["replay"] is not None:
             model.replay_buffer = state["replay"]

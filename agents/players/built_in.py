@@ -1,28 +1,18 @@
-"""Who plays? Random play, the widest pot, the search, or a trained model, all behind one method.
+"""How do the built-in players play? At random, the widest pot, one shot ahead, or any pot that geometry finds; all behind one method.
 
 A player says with ``options`` how it wants its tables (``SnookerEnv`` arguments), and ``act(tables, observations, going)`` gives an action
 for each of the n tables of a ``SnookerVectorEnv`` with flat observations. Only the tables ``going`` (n,) bool matter; the others get any.
-Any class of such players, made without arguments, can be named as MODULE:CLASS: the module is imported and so runs, it is the user's own
-code; of the environment it may choose how its actions are read (``recipes.READ``), the world is given.
 """
 
-import importlib
-import re
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from snooker_env import SnookerVectorEnv
-from snooker_env.checks import choice, refuse
 from snooker_env.planning import Positions
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, TOPS, choice_of
 
-from ..features.lookahead_features import PICKS, Foresight, worth_by_hand
-from ..learning.hyperparameters import READ
-from ..learning.models import PRETRAINED, load_player, pretrained
+from ..features.lookahead_features import PICKS, ForesightView, worth_by_hand
 from .aim_search import Aimer
-from .search import Search
 
 DISCRETE = {"action": "discrete"}
 ABSOLUTE = {"aim": "absolute"}
@@ -57,12 +47,12 @@ class GhostBall:
 
 
 class Lookahead:
-    """What ``ppo_foresight`` sees, judged by hand instead of by a network: the mean of points and the value of what is left."""
+    """What ``ppo_foresight`` sees, rated by a rule of thumb instead of a network: the mean of points and the value of what is left."""
 
     options = DISCRETE
 
     def __init__(self):
-        self._foresight = Foresight()
+        self._foresight = ForesightView()
 
     def act(self, tables, observations, going):
         """The stroke that promises most at each table going."""
@@ -73,7 +63,7 @@ class Lookahead:
 
 
 class Geometric:
-    """Pots found by geometry, their aims by the simulator without errors: direct, else banks, plants and cannons, see ``indirect``."""
+    """Pots found by geometry, their aims by the simulator without errors: direct, else banks, plants and cannons, see ``indirect_pots``."""
 
     options = ABSOLUTE
 
@@ -89,49 +79,3 @@ class Geometric:
         actions = np.zeros((len(going), 4), np.float32)
         actions[going] = self._aimer.actions(Positions.of(tables)[going])
         return actions
-
-
-NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "lookahead", "search")
-
-
-def is_player(name):
-    """Whether that is the name of a player, built in or MODULE:CLASS, and not of a model."""
-    own = re.fullmatch(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*", name) and not Path(name).exists()
-    return name in NAMES or bool(own)
-
-
-def _own(name):
-    """The player MODULE:CLASS."""
-    module, _, maker = name.partition(":")
-    try:
-        player = getattr(importlib.import_module(module), maker)()
-        for key in player.options:
-            choice("key of options", key, READ)
-        SnookerVectorEnv(1, **player.options).close()
-        if not callable(player.act):
-            raise TypeError("act cannot be called")
-    except Exception as error:  # it is the user's code
-        raise refuse("agent", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
-    return player
-
-
-def player_of(name, *, budget=2000, seed=0):
-    """The player or pre-trained model of that name, the model in that file or run folder, or MODULE:CLASS. ValueError if there is none."""
-    makers = {
-        "random": lambda: Random(seed=seed),
-        "random_absolute": lambda: Random(ABSOLUTE, seed),
-        "ghost_ball": GhostBall,
-        "geometric": Geometric,
-        "lookahead": Lookahead,
-        "search": lambda: Search(budget, seed=seed),
-    }
-    if name in makers:
-        return makers[name]()
-    if is_player(name):
-        return _own(name)
-    if name in pretrained():
-        return load_player(PRETRAINED / f"{name}.zip")
-    if not Path(name).exists():
-        known = ", ".join((*NAMES, *pretrained()))
-        raise refuse("agent", name, f"must be {known}, a model's .zip or a folder that holds model.zip")
-    return load_player(Path(name))

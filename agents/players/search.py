@@ -30,9 +30,9 @@ NEXT_SHOTS = 16
 
 
 class Search:
-    """Looks for the best shot with ``budget`` simulated shots a decision, at least two.
+    """Searches the best shot with ``budget`` simulated shots a decision, at least two.
 
-    ``value``: worth [points] of flat observations with pots (``view.with_pots``), (m, n) -> (m,), in place of the value by hand;
+    ``value``: worth [points] of flat observations with pots (``pot_features.with_pots``), (m, n) -> (m,), in place of the value by hand;
     ``threads``: tables thought about at once, with the same shots found for any number.
     """
 
@@ -111,7 +111,7 @@ class _Mind:
         return candidates[np.argmax(scores)]
 
     def _exactly(self, at, rng):
-        """The same without errors: every try tells all, so each candidate is played once and many go into the second shot."""
+        """The same without errors: one try says everything, so each candidate is played once and many go into the second shot."""
         candidates = self._candidates(at, max(1, self.budget // 2), self.budget, rng)
         n = len(candidates)
         points, goes_on, left, seen = self.exact.play(at, np.zeros(n, np.int64), candidates)

@@ -1,4 +1,4 @@
-"""What do the commands of this folder share? How they start, stop and fail, what they need, and where their files go."""
+"""What do the commands of this folder share? Their options, how they start, stop and fail, and how their files are written."""
 
 import argparse
 import contextlib
@@ -7,20 +7,58 @@ import json
 import os
 import signal
 import sys
-import tempfile
 import traceback
 from pathlib import Path
 
+from commands import files
+from commands.lifecycle import any_terminal, what_is_missing
+
 STOPPED = 130
 """Exit code after Ctrl-C, as shells have it."""
+PICTURES = Path(__file__).parents[1] / "pictures"
 _written = []
+_transcripts = []
+"""The file for what is printed, once a command has been given ``--out``."""
 
 
-def command(name, doc):
-    """The parser of ``python -m benchmarks.NAME``; ``doc``: of its module."""
-    return argparse.ArgumentParser(
-        prog=f"python -m benchmarks.{name}", description=doc, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+class Command(argparse.ArgumentParser):
+    """The parser of ``python -m benchmarks.NAME``, with the options that all of them take.
+
+    ``doc``: of its module. ``pictures``: names of the pictures it draws with matplotlib; ``files``: of others that it always writes, both
+    into ``folder`` unless ``--out`` names another. ``seed``: the usual one, if anything is drawn at random.
+    """
+
+    def __init__(self, name, doc, *, pictures=(), files=(), folder=PICTURES, seed=None):
+        super().__init__(f"python -m benchmarks.{name}", description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+        self._name, self._pictures, self._files, self._folder = name, pictures, files, folder
+        made = " and ".join((*pictures, *files))
+        root = PICTURES.parents[1]
+        usual = f"{made} [{folder.relative_to(root) if folder.is_relative_to(root) else folder}] and " if made else ""
+        self.add_argument("--out", type=Path, metavar="FOLDER", help=f"write {usual}what is printed, as {name}.txt, into this folder")
+        self.add_argument("--json", type=Path, metavar="FILE", help="write every figure into this file")
+        if pictures:
+            self.add_argument("--no-pictures", action="store_true", help="draw nothing")
+        if seed is not None:
+            self.add_argument("--seed", type=at_least(0), default=seed, metavar="N", help=f"of what is drawn at random [{seed}]")
+
+    def options(self, argv=None):
+        """The options, once it is certain that the files can be written. ``folder``: where they go; ``pictures``: whether any are drawn."""
+        found = self.parse_args(argv)
+        found.folder = found.out or self._folder
+        found.pictures = bool(self._pictures) and not found.no_pictures
+        written = [found.folder / name for name in (*(self._pictures if found.pictures else ()), *self._files)]
+        if found.out is not None:
+            _transcripts[:] = [found.out / f"{self._name}.txt"]
+            written += _transcripts
+        try:
+            files.writable("json", found.json)
+            for file in written:
+                files.writable("out", file)
+        except ValueError as error:
+            self.error(str(error))
+        if found.pictures:
+            pyplot()  # if matplotlib is missing, this is said before the work
+        return found
 
 
 def at_least(least):
@@ -35,15 +73,33 @@ def at_least(least):
     return count
 
 
+class _Copied(io.StringIO):
+    """Passes on what is printed and keeps it."""
+
+    def __init__(self, terminal):
+        super().__init__()
+        self._terminal = terminal
+
+    def write(self, text):
+        self._terminal.write(text)
+        return super().write(text)
+
+    def flush(self):
+        self._terminal.flush()
+
+
 def run(main):
     """Run a command's ``main`` and exit with what it returns. Ctrl-C and a library that is missing are said in one line."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal without UTF-8 shows "?" for what it cannot show
+    any_terminal()
     before = signal.signal(signal.SIGINT, _interrupt)
+    printed = _Copied(sys.stdout)
+    _transcripts.clear()
     try:
-        code = main()
+        with contextlib.redirect_stdout(printed):
+            code = main()
         sys.stdout.flush()
+        for file in _transcripts:
+            save_text(file, printed.getvalue())
     except (KeyboardInterrupt, ImportError) as error:
         _alarm(0.0)
         code = _explained(error)
@@ -80,57 +136,49 @@ def in_one_line(kind, error, trace):
 def _explained(error):
     """Say in one line what stopped the command; its exit code."""
     if isinstance(error, KeyboardInterrupt):
-        files = f"written: {', '.join(map(str, _written))}" if _written else "no file was written"
-        print(f"\nstopped by Ctrl-C: what is printed so far stands, the rest was not measured; {files}", file=sys.stderr)
+        so_far = f"written: {', '.join(map(str, _written))}" if _written else "no file was written"
+        print(f"\nstopped by Ctrl-C: what is printed so far stands, the rest was not measured; {so_far}", file=sys.stderr)
         return STOPPED
-    library = (error.name or "").partition(".")[0]
-    if not library:  # it says itself what is missing
-        print(error, file=sys.stderr)
-    elif library in ("snooker_env", "benchmarks", "commands", "agents"):
+    try:
+        print(what_is_missing(error), file=sys.stderr)
+    except ImportError:  # a mistake in a module of this repository
         traceback.print_exception(error)
-    else:
-        print(f'{library} is missing; in a clone of the repository:  pip install -e ".[test]"', file=sys.stderr)
     return 1
 
 
-def writable(*files):
-    """SystemExit before the work, not after it, where one of these files cannot be written; None is no file."""
-    for file in filter(None, map(_path, files)):
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            if file.is_dir():
-                raise IsADirectoryError(0, "is a folder")
-            if _in_place(file):
-                open(file, "ab").close()
-            else:
-                tempfile.TemporaryFile(dir=file.parent).close()
-        except OSError as error:
-            raise SystemExit(f"{file} cannot be written: {error.strerror}") from None
-
-
 @contextlib.contextmanager
-def saved(file):
-    """For writing a file whole or not at all: gives the path to write to. SystemExit in one line where that fails, nothing left behind."""
-    file = Path(file)
-    place = file if _in_place(file) else file.with_name(f".{file.stem}.{os.getpid()}{file.suffix}")
+def _writing(file):
+    """Around the writing of a file: SystemExit in one line where it fails."""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        yield place
-        if place is not file:
-            os.replace(place, file)
+        yield
     except OSError as error:
         raise SystemExit(f"{file} could not be written: {error.strerror or error}") from None
-    finally:
-        if place is not file:
-            place.unlink(missing_ok=True)
     _written.append(file)
+
+
+def save_bytes(file, data):
+    """Write a file whole or not at all."""
+    with _writing(file):
+        files.write_atomic(file, data)
+
+
+def save_text(file, text):
+    """The same of text, in UTF-8."""
+    save_bytes(file, text.encode())
 
 
 def save_json(file, figures):
     """Write every figure into ``file``; nothing if that is None."""
     if file is not None:
-        with saved(file) as place:
-            place.write_text(json.dumps(figures, indent=1) + "\n")
+        save_text(file, json.dumps(figures, indent=1) + "\n")
+
+
+def save_figure(figure, file, **options):
+    """Write a matplotlib figure, in the format of the file's suffix, and close it."""
+    with _writing(file):
+        files.save_figure(figure, file, **options)
+    pyplot().close(figure)
 
 
 def save_image(file, pixels):
@@ -139,28 +187,14 @@ def save_image(file, pixels):
 
     drawn = io.BytesIO()
     pygame.image.save(pygame.surfarray.make_surface(pixels.swapaxes(0, 1)), drawn, file.name)
-    with saved(file) as place:
-        place.write_bytes(drawn.getvalue())
+    save_bytes(file, drawn.getvalue())
 
 
-def _path(file):
-    return None if file is None else Path(file)
-
-
-def _in_place(file):
-    """Is it a link or a device, to be written into as it is?"""
-    return file.is_symlink() or (file.exists() and not file.is_file())
-
-
-def pyplot(picture=None):
-    """``matplotlib.pyplot`` drawing into files; SystemExit if the file ``picture`` has a suffix that it cannot draw."""
+def pyplot():
+    """``matplotlib.pyplot`` drawing into files."""
     import matplotlib
 
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
-    from matplotlib.backend_bases import FigureCanvasBase
 
-    kinds = FigureCanvasBase.get_supported_filetypes()
-    if picture is not None and Path(picture).suffix[1:].lower() not in kinds:
-        raise SystemExit(f"{picture} cannot be drawn: the suffix must be one of {', '.join(sorted(kinds))}")
     return plt

@@ -25,8 +25,8 @@ OF_BALLS, OF_CUSHION = contact.collide_balls.__code__, contact.collide_cushion._
 
 def counted(positions, velocities, spins, physics):
     """Counts per shot."""
-    table, world, code = sn.Table.preset("match"), sn.Physics.preset(physics), contact.parse_fidelity("standard")
-    jaws = set((table.jaws[:, 2] + world.R).tolist())
+    table, physics, code = sn.Table.preset("match"), sn.Physics.preset(physics), contact.parse_fidelity("standard")
+    jaws = set((table.jaws[:, 2] + physics.R).tolist())
     counts = Counter({"ball-ball integrations": 0, "cushion integrations": 0, "jaw arcs tested": 0, "jaw arcs solved": 0})
 
     def watch(frame, event, _):
@@ -44,7 +44,7 @@ def counted(positions, velocities, spins, physics):
 
     state = positions, velocities, spins, np.ones(positions.shape[:2], bool)
     sys.setprofile(watch)
-    _run(state, world, table, code, 100_000, 0, 0)
+    _run(state, physics, table, code, 100_000, 0, 0)
     sys.setprofile(None)
     return {name: count / len(positions) for name, count in counts.items()}
 

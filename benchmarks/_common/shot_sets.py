@@ -34,17 +34,17 @@ class Shots:
     """(n, 4) as intended: speed [m/s], aim [rad], side and top offset over R."""
     ball: np.ndarray
     """(n,) the ball to be potted or hit."""
-    world: sn.Physics
+    physics: sn.Physics
 
-    def struck(self, seed=None, aim=0.0, hand: str | Noise = "professional"):
-        """Velocities (n, b, 2) and spins (n, b, 3) just after the strokes, each turned by ``aim`` [rad]; with the errors of ``hand``, any
-        ``noise``, if seeded."""
+    def struck(self, seed=None, aim=0.0, errors: str | Noise = "professional"):
+        """Velocities (n, b, 2) and spins (n, b, 3) just after the strokes, each turned by ``aim`` [rad]; if seeded, with execution
+        errors: any ``noise``."""
         n, b = self.positions.shape[:2]
         v, w = np.zeros((n, b, 2)), np.zeros((n, b, 3))
-        noise, rng = Noise.of("none" if seed is None else hand), np.random.default_rng(seed)
+        noise, rng = Noise.of("none" if seed is None else errors), np.random.default_rng(seed)
         for k, (speed, line, side, top) in enumerate(self.stroke):
             speed, side, top, line, elevation = noise.draw(rng, speed, side, top, line, 0.0, R)
-            v3, w[k, 0] = sn.strike(speed, line + aim, side, top, elevation, self.world)
+            v3, w[k, 0] = sn.strike(speed, line + aim, side, top, elevation, self.physics)
             v[k, 0] = v3[:2]
         return v, w
 
@@ -60,7 +60,7 @@ def _turned(d, angle):
     return np.array([c * d[0] - s * d[1], s * d[0] + c * d[1]])
 
 
-def _settled(positions, stroke, ball, target, world):
+def _settled(positions, stroke, ball, target, physics):
     """Turn the aims until each object ball leaves towards its target; the shots that did."""
     pair = np.stack([positions[:, 0], positions[np.arange(len(ball)), ball]], 1)
     line = target - pair[:, 1]
@@ -70,18 +70,18 @@ def _settled(positions, stroke, ball, target, world):
     gain = 2 * R * np.cos(stroke[:, 1] - bearing) / far  # aim per angle of the object ball's path
     error = np.full(len(ball), np.pi)
     for _ in range(8):
-        shots = Shots(pair, stroke, ball, world)
-        free = sn.simulate_batch(pair, *shots.struck(), table=UNBOUNDED, physics=world)  # pyright: ignore[reportArgumentType]
+        shots = Shots(pair, stroke, ball, physics)
+        free = sn.simulate_batch(pair, *shots.struck(), table=UNBOUNDED, physics=physics)  # pyright: ignore[reportArgumentType]
         end = free.positions[:, 1] - pair[:, 1]
         error = (np.arctan2(*end.T[::-1]) - bearing + np.pi) % (2 * np.pi) - np.pi
         stroke[:, 1] += gain * error
     good = np.abs(error) < AIM_ERROR
-    return Shots(positions[good], stroke[good], ball[good], world)
+    return Shots(positions[good], stroke[good], ball[good], physics)
 
 
 def _joined(parts, n):
     positions, stroke, ball = (np.concatenate([getattr(p, a) for p in parts])[:n] for a in ("positions", "stroke", "ball"))
-    return Shots(positions, stroke, ball, parts[0].world)
+    return Shots(positions, stroke, ball, parts[0].physics)
 
 
 def _strokes(rng, n, speed, spin):
@@ -100,7 +100,7 @@ def by_the_rail(rng):
     return corner * rng.choice([-1.0, 1.0], 2)
 
 
-def two_ball(n, world, seed=0, *, cut=(0.0, 65.0), speed=(1.0, 4.5), run=(0.2, 1.5), spin=1.0, place=_anywhere):
+def two_ball(n, physics, seed=0, *, cut=(0.0, 65.0), speed=(1.0, 4.5), run=(0.2, 1.5), spin=1.0, place=_anywhere):
     """n pots with cuts [deg], speeds [m/s] and distances to the pocket [m] in these ranges; the object ball where ``place`` puts it."""
     rng, parts = np.random.default_rng(seed), []
     on_table = np.arange(22) < 2
@@ -122,11 +122,11 @@ def two_ball(n, world, seed=0, *, cut=(0.0, 65.0), speed=(1.0, 4.5), run=(0.2, 1
             if (possible[possible[:, 1] == k, 5] >= TOLERANCE).any():
                 found.append(layout[:2])
                 targets.append(POCKET_AIMS[k, :2])
-        parts.append(_settled(np.array(found), _strokes(rng, n, speed, spin), np.ones(n, int), np.array(targets), world))
+        parts.append(_settled(np.array(found), _strokes(rng, n, speed, spin), np.ones(n, int), np.array(targets), physics))
     return _joined(parts, n)
 
 
-def full_table(n, world, seed=0, *, speed=(1.0, 4.5)):
+def full_table(n, physics, seed=0, *, speed=(1.0, 4.5)):
     """n pots, each one of the five widest of an opened table with all 22 balls (the held-out tables)."""
     rng, parts = np.random.default_rng(seed), []
     while sum(len(p.ball) for p in parts) < n:
@@ -140,11 +140,11 @@ def full_table(n, world, seed=0, *, speed=(1.0, 4.5)):
                 found.append(layout)
                 balls.append(int(row[0]))
                 targets.append(POCKET_AIMS[int(row[1]), :2])
-        parts.append(_settled(np.array(found), _strokes(rng, n, speed, 1.0), np.array(balls), np.array(targets), world))
+        parts.append(_settled(np.array(found), _strokes(rng, n, speed, 1.0), np.array(balls), np.array(targets), physics))
     return _joined(parts, n)
 
 
-def kicks(n, world, seed=0, *, speed=(1.5, 4.0)):
+def kicks(n, physics, seed=0, *, speed=(1.5, 4.0)):
     """n shots that meet one cushion and then the object ball: of a fan of aims, the middle one of those that do."""
     rng, found, strokes = np.random.default_rng(seed), [], []
     while len(found) < n:
@@ -156,14 +156,14 @@ def kicks(n, world, seed=0, *, speed=(1.5, 4.0)):
         image[axis] = 2 * side * (np.array([HALF_WIDTH, HALF_LENGTH])[axis] - R) - image[axis]
         fan = np.repeat(_strokes(rng, 1, speed, 0.6), 41, 0)
         fan[:, 1] = np.arctan2(*(image - p[0])[::-1]) + np.radians(np.linspace(-6, 6, 41))
-        shots = Shots(np.repeat(p[None], 41, 0), fan, np.ones(41, int), world)
-        logs = sn.simulate_batch(shots.positions, *shots.struck(), physics=world, events=True, threads=1).events
+        shots = Shots(np.repeat(p[None], 41, 0), fan, np.ones(41, int), physics)
+        logs = sn.simulate_batch(shots.positions, *shots.struck(), physics=physics, events=True, threads=1).events
         assert logs is not None
         good = [k for k, log in enumerate(logs) if _kick(log["kind"])]
         if good:
             found.append(p)
             strokes.append(fan[good[len(good) // 2]])
-    return Shots(np.array(found), np.array(strokes), np.ones(n, int), world)
+    return Shots(np.array(found), np.array(strokes), np.ones(n, int), physics)
 
 
 def _kick(kinds):
@@ -171,14 +171,14 @@ def _kick(kinds):
     return kinds[kinds < EventKind.ROLL][:2].tolist() == [EventKind.CUSHION, EventKind.BALL_BALL]
 
 
-def head_on(n, world, seed=0):
+def head_on(n, physics, seed=0):
     """n full-ball shots far from every cushion at which the cue ball arrives without any spin."""
     rng = np.random.default_rng(seed)
     gap, arrives = rng.uniform(0.05, 0.12, n), rng.uniform(0.5, 0.7, n)
-    leaves = np.sqrt(arrives**2 + 2 * world.mu_s * world.g * gap)
+    leaves = np.sqrt(arrives**2 + 2 * physics.mu_s * physics.g * gap)
     aim = np.pi / 2 + rng.uniform(-0.3, 0.3, n)
     p = np.zeros((n, 2, 2))
     p[:, 1] = rng.uniform([-0.3, -0.3], [0.3, 0.3], (n, 2))
     p[:, 0] = p[:, 1] - (2 * R + gap)[:, None] * np.column_stack([np.cos(aim), np.sin(aim)])
     # sliding adds spin (5/2) (leaves - arrives) / R; the strike gives (5/2) leaves top / R
-    return Shots(p, np.column_stack([leaves, aim, np.zeros(n), -(leaves - arrives) / leaves]), np.ones(n, int), world)
+    return Shots(p, np.column_stack([leaves, aim, np.zeros(n), -(leaves - arrives) / leaves]), np.ones(n, int), physics)

@@ -1,6 +1,6 @@
 """Where do the cushion constants of ``physics="match"`` come from? Fits e(v) to the measured rebounds of Mathavan 2010, Fig. 7a.
 
-    python -m benchmarks.fit_cushion
+    python -m benchmarks.fit_cushion [--seed 0] [--json FILE] [--out FOLDER]
 
 The model is this project's own cushion impact for a rolling ball at right angles, with e(v) = e_c up to a knee and
 e_c (v / knee)^(-power) above it. e_c stays at the authors' own 0.98 (their fit below 1.5 m/s): left free it runs into its bound at 1, a
@@ -18,7 +18,7 @@ from scipy.stats import f as f_distribution
 
 import snooker_env as sn
 
-from .._common.command import command
+from .._common.command import Command, save_json
 from .lengths import print_lengths
 
 DATA = Path(__file__).parents[1] / "data" / "cushion_rebound.csv"
@@ -62,8 +62,8 @@ class Ratios(NamedTuple):
     @classmethod
     def measured(cls):
         """By the package's impact."""
-        worlds = [sn.Physics.preset("match", e_c=float(e), e_c_power=0.0) for e in SHARES]
-        return cls(*(np.array([impact(1.0, physics, rolling) for physics in worlds]) for rolling in (True, False)))
+        constants = [sn.Physics.preset("match", e_c=float(e), e_c_power=0.0) for e in SHARES]
+        return cls(*(np.array([impact(1.0, physics, rolling) for physics in constants]) for rolling in (True, False)))
 
 
 class Interval(NamedTuple):
@@ -144,7 +144,7 @@ def print_rebounds(ratios, old, preset):
 
 def main():
     """Command line: fit, print the tables."""
-    command("fit_cushion", __doc__).parse_args()
+    options = Command("fit_cushion", __doc__, seed=0).options()
     speed, measured = np.loadtxt(DATA, delimiter=",", skiprows=2).T
     ratios, preset = Ratios.measured(), sn.Physics.preset("match")
 
@@ -158,7 +158,10 @@ def main():
     shipped = np.array([impact(float(s), preset) for s in speed]) - measured
     print_fits(fits, residuals, shipped, preset)
     print_points(speed, measured, shipped)
-    found = interval(residuals, len(speed))
+    found = interval(residuals, len(speed), seed=options.seed)
     print_interval(found, speed.max())
     print_rebounds(ratios, old, preset)
-    print_lengths(found.ends)
+    travelled = print_lengths(found.ends)
+    laws = {name: [float(value) for value in x] for name, _, x in fits}
+    left_open = {name: np.asarray(value).tolist() for name, value in found._asdict().items()}
+    save_json(options.json, {"seed": options.seed, "laws": laws, "interval": left_open, "lengths": travelled})

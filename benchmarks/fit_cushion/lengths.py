@@ -1,4 +1,4 @@
-"""How many lengths of the table does a stroke travel? The cue ball alone, up and down the long axis, in several worlds.
+"""How many lengths of the table does a stroke travel? The cue ball alone, up and down the long axis, with several sets of constants.
 
 Measured: I. Stevenage, The Amateur Billiard Player, October 1996 (https://www.eaba.co.uk/?p=4149), on full-size tables. A ball thrown from
 the baulk end as hard as possible goes 4.25 to 4.75 lengths on nine tables, 4.75 on a heated one with new cloth and steel-block cushions;
@@ -43,9 +43,12 @@ def past_pink(physics, start):
 
 
 def print_lengths(ends):
-    """The table of lengths; ends: (knee, power) at the two ends of the interval of the power."""
+    """Print the table of lengths and give it, {speed: {constants: lengths}}.
+
+    ends: (knee, power) at the two ends of the interval of the power.
+    """
     match, (livelier, deader) = sn.Physics.preset("match"), ({"e_c_knee": knee, "e_c_power": power} for knee, power in ends)
-    worlds = {
+    laws = {
         "paper": sn.Physics(),
         "match": match,
         f"power {livelier['e_c_power']:.2f}": sn.Physics.preset("match", **livelier),
@@ -54,8 +57,8 @@ def print_lengths(ends):
         "both livelier": sn.Physics.preset("match", mu_r=QUICK, **livelier),
     }
     print(f"\nlengths of the table travelled ({LENGTH} m each), struck at the middle from the baulk cushion along the long axis")
-    print("m/s   " + "".join(f"{name:>15s}" for name in worlds))
-    table = {speed: {name: lengths(speed, physics) for name, physics in worlds.items()} for speed in SPEEDS}
+    print("m/s   " + "".join(f"{name:>15s}" for name in laws))
+    table = {speed: {name: lengths(speed, physics) for name, physics in laws.items()} for speed in SPEEDS}
     for speed, row in table.items():
         print(f"{speed:4.0f}  " + "".join(f"{value:15.2f}" for value in row.values()))
     print(f"\nball off a 3.5 inch ramp ({RAMP:.2f} m/s, rolling): where it stops past the pink's spot; measured 0.15 m, on new cloth")
@@ -63,11 +66,11 @@ def print_lengths(ends):
         far, near = (past_pink(sn.Physics.preset("match", mu_r=mu_r), start) for start in (0.05, 0.35))
         print(f"  mu_r {mu_r:.4f}: {far:+.2f} m from the baulk cushion, {near:+.2f} m where the ramp ends 0.3 m further up the table")
 
-    def between(world, soft, hard):
-        return f"{table[soft][world]:.1f} to {table[hard][world]:.1f}"
+    def between(law, soft, hard):
+        return f"{table[soft][law]:.1f} to {table[hard][law]:.1f}"
 
     shipped, quick, both, paper = (
-        (between(world, 7.0, 9.0), between(world, 10.0, 13.0)) for world in ("match", f"mu_r {QUICK:.3f}", "both livelier", "paper")
+        (between(law, 7.0, 9.0), between(law, 10.0, 13.0)) for law in ("match", f"mu_r {QUICK:.3f}", "both livelier", "paper")
     )
     print(f"""
 Players say about 5 lengths for the hardest stroke; a ball thrown as hard as possible was measured to go 4.25 to 4.75 (Stevenage 1996).
@@ -76,3 +79,4 @@ cushion the ramp asks for a rolling resistance of about {QUICK:g}, which gives {
 power's interval as well it is {both[0]} and {both[1]}: the measured lengths, if balls were thrown at 10 to 13 m/s. "paper" has
 {paper[0]} and {paper[1]}, by a restitution that does not fall, which the rebounds above 2.5 m/s contradict.
 The constants are not bent to these lengths.""")
+    return table

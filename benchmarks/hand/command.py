@@ -1,6 +1,7 @@
-"""How good are the hands of ``noise``? Pot rates by distance and cut, direction errors, placement, play, beside what is published.
+"""How well do the levels of ``noise`` play? Pot rates by distance and cut, direction errors, placement, play, beside what is published.
 
-    python -m benchmarks.hand [--levels professional robot ...] [--strokes 4000] [--visits 100] [--json FILE]
+    python -m benchmarks.hand [--levels professional robot ...] [--strokes 4000] [--visits 100] [--seed 0]
+        [--json FILE] [--out FOLDER]
     python -m benchmarks.hand --fit
 
 Every pot is aimed at the middle of all the aims that pot it without errors, and struck many times with the errors of a level: made is what
@@ -26,19 +27,19 @@ from snooker_env.game.layouts import POT_WINDOWS
 from snooker_env.physics.parameters import Physics
 from snooker_env.tasks.noise import LEVELS, Noise
 
-from .._common.command import at_least, command, save_json, writable
-from . import published as published
+from .._common.command import Command, at_least, save_json
+from . import published
 from .in_play import first_pots, in_play
 from .pot_shots import DERIVED, FIRM, LONG, MODERATE, POTS, aimed, directions, rolls, wilson
 
-HANDS = tuple(name for name in LEVELS if name != "none")
+SKILLS = tuple(name for name in LEVELS if name != "none")
 
 
-def measured(level, shots, strokes, world, table):
+def measured(level, shots, strokes, seed, physics, table):
     """Figures of a level at every pot, as played and firm."""
     rows = []
     for k, shot in enumerate(shots):
-        found = rolls(shot, level, strokes, 1000 + k, world, table)
+        found = rolls(shot, level, strokes, seed + 1000 + k, physics, table)
         rows.append({
             "pot": shot.pot.name, "speed": float(shot.stroke[0]), "half_window_deg": float(np.degrees(shot.half)), "rate": found.rate,
             "interval": wilson(found.rate, strokes), "published": published.of_pot(shot.pot, level),
@@ -105,35 +106,33 @@ def share(made):
 
 def main():
     """Command line."""
-    parser = command("hand", __doc__)
-    parser.add_argument("--levels", nargs="+", choices=HANDS, default=list(HANDS), help="levels of noise [all]")
+    parser = Command("hand", __doc__, seed=0)
+    parser.add_argument("--levels", nargs="+", choices=SKILLS, default=list(SKILLS), help="levels of noise [all]")
     parser.add_argument("--strokes", type=at_least(10), default=4000, help="strokes at each pot [4000]")
     parser.add_argument("--visits", type=at_least(1), default=100, help="visits of each level in play [100]")
     parser.add_argument("--physics", choices=("paper", "match"), default="paper", help="[paper]")
     parser.add_argument("--table", choices=("match", "tight"), default="match", help="[match]")
     parser.add_argument("--fit", action="store_true", help="search the errors that meet the published figures, and no more")
-    parser.add_argument("--json", help="write every figure here")
-    options = parser.parse_args()
-    writable(options.json)
-    world, table = Physics.preset(options.physics), options.table
+    options = parser.options()
+    physics, table = Physics.preset(options.physics), options.table
     if options.fit:
-        found = published.fitted(options.strokes, world, table)
+        found = published.fitted(options.strokes, physics, table)
         for what, values in found:
             print(f"{what:94s}" + "  ".join(f"{value:.4f}" for value in values))
         save_json(options.json, {"fit": found})
         return
-    shots = [aimed(pot, world, table, speed) for pot in POTS for speed in (None, FIRM)]
-    rows = {level: measured(level, shots, options.strokes, world, table) for level in options.levels}
+    shots = [aimed(pot, physics, table, speed) for pot in POTS for speed in (None, FIRM)]
+    rows = {level: measured(level, shots, options.strokes, options.seed, physics, table) for level in options.levels}
     show_pots(rows, options.levels)
     print("\ndirection [deg], standard deviations: of aim, squirt, swerve, all; closed form of aim and squirt")
     turned = {}
     for level in options.levels:
-        turned[level] = directions(level, options.strokes, 7, world) | {"closed": Noise.of(level).direction_deg(world)}
+        turned[level] = directions(level, options.strokes, options.seed + 7, physics) | {"closed": Noise.of(level).direction_deg(physics)}
         print(f"{level:14s}" + "".join(f"{value:9.4f}" for value in turned[level].values()))
     print(f"\n{'in play, scored':14s}{'of all strokes':>40s}{'where the chance was half or more':>40s}")
     plays = {}
     for level in options.levels:
-        made, expected = in_play(level, options.visits, 3, physics=options.physics, table=table)
+        made, expected = in_play(level, options.visits, options.seed + 3, physics=options.physics, table=table)
         print(f"{level:15s}" + f"{share(made):>40s}{share(made[expected >= published.LIKELY]):>40s}")
         compared = against(level, rows[level], made, expected)
         plays[level] = {"made": int(made.sum()), "strokes": len(made), "expected": float(expected.mean()), "against": compared}

@@ -51,14 +51,14 @@ class Likeliest:
         return (points > 0).reshape(-1, n).mean(axis=1)
 
 
-def in_play(hand, visits, seed, **options):
+def in_play(level, visits, seed, **options):
     """(made (m,), expected (m,)): of every stroke of so many visits from held-out tables whether it scored, and the chance it was given."""
     player = Likeliest(seed)
-    strokes = play(player, visits, noise=hand, **options)
+    strokes = play(player, visits, noise=level, **options)
     return strokes.made, np.concatenate(player.chances)
 
 
-def first_pots(hand, layout, visits, **options):
+def first_pots(level, layout, visits, **options):
     """Whether the first stroke of each of so many visits scored: at the widest pot, aim solved, 2.3 m/s."""
-    strokes = play(GhostBall(), visits, noise=hand, layout=layout, **options)
+    strokes = play(GhostBall(), visits, noise=level, layout=layout, **options)
     return strokes.made[strokes.number == 0]

@@ -1,4 +1,4 @@
-"""Which pots tell how good a hand is, how often does it make them, and where does the cue ball stop? Two balls, Monte Carlo."""
+"""Which pots show how well a level of ``noise`` plays, how often is each made, and where does the cue ball stop? Two balls, Monte Carlo."""
 
 from dataclasses import dataclass, replace
 from math import degrees, erf, hypot, radians, sqrt
@@ -123,30 +123,30 @@ class Rolls:
         return sqrt(squares.sum()), *np.sqrt(squares).tolist()
 
 
-def played(pot, stroke, n, world, table, *, aims: float | np.ndarray = 0.0, hand: str | Noise = "none", seed=0,
+def played(pot, stroke, n, physics, table, *, aims: float | np.ndarray = 0.0, level: str | Noise = "none", seed=0,
            in_off=False):  # fmt: skip
-    """(made (n,), where the cue ball stops (n, 2)) of n strokes at a pot, turned by ``aims`` [rad], with the errors of ``hand``."""
+    """(made (n,), where the cue ball stops (n, 2)) of n strokes at a pot, turned by ``aims`` [rad], with the errors of a ``level``."""
     strokes = np.repeat(stroke[None], n, 0)
     strokes[:, 1] += aims
-    shots = Shots(np.repeat(pot.positions[None], n, 0), strokes, np.ones(n, int), world)
-    state = shots.struck(seed, hand=hand)
-    end = sn.simulate_batch(shots.positions, *state, table=table, physics=world)
+    shots = Shots(np.repeat(pot.positions[None], n, 0), strokes, np.ones(n, int), physics)
+    state = shots.struck(seed, errors=level)
+    end = sn.simulate_batch(shots.positions, *state, table=table, physics=physics)
     cue = np.where(end.on_table[:, :1], end.positions[:, 0], np.nan)
     return (end.potted[:, 1] == pot.pocket) & (end.on_table[:, 0] | in_off), cue
 
 
-def aimed(pot, world, table, speed=None, in_off=False):
+def aimed(pot, physics, table, speed=None, in_off=False):
     """The pot with its stroke: no spin, ``speed`` [m/s] or as played."""
     start, aim_point = pot.positions, POCKET_AIMS[pot.pocket, :2]
     stroke = np.array([pot.speed if speed is None else speed, 0.0, 0.0, 0.0])
-    settled = _settled(start[None], stroke[None].copy(), np.ones(1, int), aim_point[None], world)
+    settled = _settled(start[None], stroke[None].copy(), np.ones(1, int), aim_point[None], physics)
     if len(settled.ball) == 0:
         raise RuntimeError(f"no aim sends the ball of {pot.name!r} to its pocket")
     stroke, fan = settled.stroke[0], np.linspace(-REACH, REACH, FAN)
-    made, _ = played(pot, stroke, FAN, world, table, aims=fan, in_off=in_off)
+    made, _ = played(pot, stroke, FAN, physics, table, aims=fan, in_off=in_off)
     first, last = _widest(made)
     stroke[1] += 0.5 * (fan[first] + fan[last])
-    _, stops = played(pot, stroke, 1, world, table)
+    _, stops = played(pot, stroke, 1, physics, table)
     way = aim_point - start[1]
     return Aimed(pot, stroke, 0.5 * (fan[last] - fan[first] + fan[1] - fan[0]), stops[0], start[1] - 2 * R * way / hypot(*way), in_off)
 
@@ -161,27 +161,27 @@ def _widest(made):
     return starts[k], ends[k] - 1
 
 
-def rolls(shot, hand, n, seed, world, table):
-    """The ``Rolls`` of n strokes by a hand (any ``noise``)."""
-    made, cue = played(shot.pot, shot.stroke, n, world, table, hand=hand, seed=seed, in_off=shot.in_off)
+def rolls(shot, level, n, seed, physics, table):
+    """The ``Rolls`` of n strokes with the errors of a level (any ``noise``)."""
+    made, cue = played(shot.pot, shot.stroke, n, physics, table, level=level, seed=seed, in_off=shot.in_off)
     way = shot.stops - shot.meets
     way = way / max(hypot(*way), 1e-12)
     shift = (cue - shot.stops)[made]
     return Rolls(made, np.column_stack([shift @ way, shift @ _turned(way, np.pi / 2)]))
 
 
-def directions(hand, n, seed, world, speed=2.0):
+def directions(level, n, seed, physics, speed=2.0):
     """Standard deviations [deg] of the cue ball's direction at a level stroke without spin: of aim, of squirt, of swerve, of all together.
 
     Squirt is seen where the ball leaves, swerve where it rolls: as the ball alone ends on unbounded cloth.
     """
-    errors = Noise.of(hand)
+    errors = Noise.of(level)
     aim, tip = Noise(aim_deg=errors.aim_deg), Noise(offset_mm=errors.offset_mm, elevation_deg=errors.elevation_deg)
-    shots = Shots(np.zeros((n, 1, 2)), np.tile([speed, 0.0, 0.0, 0.0], (n, 1)), np.zeros(n, int), world)
+    shots = Shots(np.zeros((n, 1, 2)), np.tile([speed, 0.0, 0.0, 0.0], (n, 1)), np.zeros(n, int), physics)
 
     def angles(noise):
-        v, w = shots.struck(seed, hand=noise)
-        end = sn.simulate_batch(shots.positions, v, w, table=UNBOUNDED, physics=world)  # pyright: ignore[reportArgumentType]
+        v, w = shots.struck(seed, errors=noise)
+        end = sn.simulate_batch(shots.positions, v, w, table=UNBOUNDED, physics=physics)  # pyright: ignore[reportArgumentType]
         return [np.degrees(np.arctan2(*way[:, 0].T[::-1])) for way in (v, end.positions)]
 
     squirt, bent = angles(tip)
@@ -196,7 +196,7 @@ def wilson(share, n):
     return (middle - reach) / (1 + z * z / n), (middle + reach) / (1 + z * z / n)
 
 
-def of_direction(deg, like, world):
+def of_direction(deg, like, physics):
     """The ``Noise`` ``like`` with a total direction error of ``deg``: half of its variance is aim, half the squirt of the tip error."""
-    each, slope = deg / sqrt(2.0), 2.5 / (3.5 + world.end_mass_ratio)
-    return replace(Noise.of(like), aim_deg=each, offset_mm=1e3 * world.R * radians(each) / slope)
+    each, slope = deg / sqrt(2.0), 2.5 / (3.5 + physics.end_mass_ratio)
+    return replace(Noise.of(like), aim_deg=each, offset_mm=1e3 * physics.R * radians(each) / slope)

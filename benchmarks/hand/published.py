@@ -32,14 +32,14 @@ def of_pot(pot, level):
     return by_derivation(level, (pot,)) if level in AIM and pot.pocket == 3 else None
 
 
-def mean_rate(shots, hand, strokes, world, table):
-    """Mean share made of these shots; the errors are the same for every hand."""
-    return float(np.mean([rolls(shot, hand, strokes, k, world, table).rate for k, shot in enumerate(shots)]))
+def mean_rate(shots, level, strokes, physics, table):
+    """Mean share made of these shots; the errors are the same for every level."""
+    return float(np.mean([rolls(shot, level, strokes, k, physics, table).rate for k, shot in enumerate(shots)]))
 
 
-def mean_place(shots, hand, strokes, world, table):
+def mean_place(shots, level, strokes, physics, table):
     """Mean over these shots of the root mean square distance [m] from where the cue ball would stop without errors."""
-    return float(np.mean([rolls(shot, hand, strokes, k, world, table).placement[0] for k, shot in enumerate(shots)]))
+    return float(np.mean([rolls(shot, level, strokes, k, physics, table).placement[0] for k, shot in enumerate(shots)]))
 
 
 def _where(function, target, steps=14):
@@ -52,35 +52,35 @@ def _where(function, target, steps=14):
     return (low * high) ** 0.5
 
 
-def _directions(pots, targets, like, strokes, world, table, in_off=False):
+def _directions(pots, targets, like, strokes, physics, table, in_off=False):
     """The total direction errors [deg] with which these shares are made."""
-    shots = [aimed(pot, world, table, in_off=in_off) for pot in pots]
+    shots = [aimed(pot, physics, table, in_off=in_off) for pot in pots]
 
     def rate(deg):
-        return mean_rate(shots, of_direction(deg, like, world), strokes, world, table)
+        return mean_rate(shots, of_direction(deg, like, physics), strokes, physics, table)
 
     return [_where(rate, target) for target in targets]
 
 
-def fitted(strokes, world, table):
+def fitted(strokes, physics, table):
     """Rows (what, values): the total direction errors [deg] that meet the published figures, in the middle and at both ends."""
     rows, wanted = [], [("professional", LONG, *LONG_POTS, "the long pots")]
     wanted += [(level, DERIVED, *by_derivation(level), "black, red, blue, long 2.4 m") for level in AIM]
     for level, pots, low, high, what in wanted:
         for in_off in (False, True):
-            found = _directions(pots, ((low + high) / 2, high, low), level, strokes, world, table, in_off)
+            found = _directions(pots, ((low + high) / 2, high, low), level, strokes, physics, table, in_off)
             end = ", in-offs counted as made" if in_off else ""
             rows.append((f"{level}: {(low + high) / 2:.1%} [{high:.1%}, {low:.1%}] of {what}{end}", found))
-    shots, robot, wanted = [aimed(pot, world, table) for pot in MODERATE], Noise.of("robot"), sum(ROBOT_PLACES) / 2
+    shots, robot, wanted = [aimed(pot, physics, table) for pot in MODERATE], Noise.of("robot"), sum(ROBOT_PLACES) / 2
     speeds = []
     for _ in range(2):  # the speed hardly changes the pots, and the direction hardly the place
-        robot = of_direction(_directions(MODERATE, (ROBOT_POTS,), robot, strokes, world, table)[0], robot, world)
+        robot = of_direction(_directions(MODERATE, (ROBOT_POTS,), robot, strokes, physics, table)[0], robot, physics)
 
         def place(share, robot=robot):
-            return mean_place(shots, replace(robot, speed_rel=share), strokes, world, table)
+            return mean_place(shots, replace(robot, speed_rel=share), strokes, physics, table)
 
         speeds = [_where(place, distance) for distance in (wanted, *ROBOT_PLACES)]
         robot = replace(robot, speed_rel=speeds[0])
-    rows.append((f"robot: {ROBOT_POTS:.0%} of the pots of moderate difficulty", [robot.direction_deg(world)]))
+    rows.append((f"robot: {ROBOT_POTS:.0%} of the pots of moderate difficulty", [robot.direction_deg(physics)]))
     rows.append((f"robot, share of the speed: {wanted:.2f} [{ROBOT_PLACES[0]}, {ROBOT_PLACES[1]}] m from where it was wanted", speeds))
     return rows

@@ -1,6 +1,6 @@
 """Does the package give the paper's numbers, and who follows the measurements? The paper reproduced, other models, other data.
 
-    python -m benchmarks.paper [--json FILE] [--pictures FOLDER | --no-pictures]
+    python -m benchmarks.paper [--json FILE] [--out FOLDER] [--no-pictures]
 
 Paper: Mathavan, Jackson & Parkin (2014). Tables 1 and 2; the error of each collision model per shot (Figs. 7 and 8); full hits (Fig. 4);
 the curved object ball (Fig. 6); one pot with different spins (Fig. 1); throw and cushion rebound against other data. The models are
@@ -8,15 +8,12 @@ stated in ``paper_shots.py`` and ``other_data.py``. Takes a few seconds; the pic
 which ``pip install -e ".[test]"`` brings.
 """
 
-from pathlib import Path
-
 import numpy as np
 
-from .._common.command import command, pyplot, save_json, writable
+from .._common.command import Command, save_json
 from . import other_data, paper_shots
 from .paper_shots import MEASURED_TO, QUANTITIES
 
-PICTURES = Path(__file__).parents[1] / "pictures"
 FILES = ("paper.png", "paper_data.png")
 LABELS = dict(zip(QUANTITIES, ("cue ball's speed", "object ball's speed", "cue ball's angle", "object ball's angle"), strict=True))
 
@@ -177,15 +174,7 @@ def draw(folder, figures, shots, curves):
 
 def main(argv=None):
     """Command line."""
-    parser = command("paper", __doc__)
-    parser.add_argument("--json", type=Path, help="also write every figure there")
-    parser.add_argument("--pictures", type=Path, default=PICTURES, help="folder of the pictures")
-    parser.add_argument("--no-pictures", action="store_true")
-    options = parser.parse_args(argv)
-    writable(options.json)
-    if not options.no_pictures:
-        pyplot()  # before the work: can the pictures be drawn, and their files written?
-        writable(*(options.pictures / name for name in FILES))
+    options = Command("paper", __doc__, pictures=FILES).options(argv)
     figures, shots, curves = measure()
     print_tables(figures["tables"])
     print_models(figures["models"])
@@ -193,5 +182,5 @@ def main(argv=None):
     print_throw(figures["throw_a14"], figures["throw_domenech"])
     print_cushion(figures["cushion"])
     save_json(options.json, figures)
-    if not options.no_pictures:
-        draw(options.pictures, figures, shots, curves)
+    if options.pictures:
+        draw(options.folder, figures, shots, curves)

@@ -8,7 +8,7 @@ from matplotlib.patches import Circle, Patch
 import snooker_env as sn
 from snooker_env.render.scene import outline
 
-from .._common.command import pyplot, saved
+from .._common.command import pyplot, save_figure
 from .other_data import A14_SHOTS, CUSHIONS, a14_throw, domenech_throw
 from .paper_shots import CURVED, HEAD_ON, MEASURED_TO, POT, QUANTITIES, SIDES, TOPS, R
 
@@ -117,9 +117,7 @@ def paper(path, figures, shots, curves):
         names = [name + (" (the paper's equations)" if name == "reference" else "") for name in BARS]
         handles = [Patch(color=colour) for colour in BARS.values()]
         figure.legend(handles, names, loc="outside lower center", ncol=3, fontsize=9)
-        with saved(path) as place:
-            figure.savefig(place, dpi=110)
-        plt.close(figure)
+        save_figure(figure, path, dpi=110)
 
 
 def _a14_panel(ax, a14):
@@ -173,6 +171,4 @@ def data(path, figures):
         _a14_panel(axes[0, 0], figures["throw_a14"])
         _domenech_panels(axes[0, 1], axes[1, 1], figures["throw_domenech"])
         _cushion_panel(axes[1, 0], figures["cushion"])
-        with saved(path) as place:
-            figure.savefig(place, dpi=110)
-        plt.close(figure)
+        save_figure(figure, path, dpi=110)

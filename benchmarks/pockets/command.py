@@ -1,23 +1,21 @@
 """How wide is each pocket's window? Against speed, angle and distance; down the rails; with other jaws and edges; beside pool's.
 
-    python -m benchmarks.pockets [--quick] [--json FILE] [--out FILE]
+    python -m benchmarks.pockets [--quick] [--json FILE] [--out FOLDER]
 
 One ball, physics "match". The window is the whole range of paths into the pocket aimed at, as an angle of the path (turned about the
 start) and as its shift sideways; * where it is in pieces: a firm ball that just touches a jaw may rattle out between paths that drop.
 "rolling": the ball rolls at the start; "struck": it starts without spin, as an object ball leaves an impact, and rolls only if it is soft
 or comes from far. Speeds are those at the start, distances those to the aim point (where the fall meets the pocket's axis). A ball that
 comes out again has missed. "before": the ball drops at once where its centre crosses the edge, as it did up to version 0.1; the first run
-compiles a copy of the package for that (``_variants``).
+compiles a copy of the package for that (``_common/variants.py``).
 """
-
-from pathlib import Path
 
 import numpy as np
 
 import snooker_env as sn
 
 from .._common import variants
-from .._common.command import command, pyplot, save_json, writable
+from .._common.command import Command, save_json
 from . import openings, picture, pool_tables, rail_paths
 from .windows import CORNER, MIDDLE, Engine, alone, windows
 
@@ -30,7 +28,7 @@ PLACES = (("match", "corner"), ("match", "middle"), ("tight", "corner"))
 """The middle pockets of both tables are the same."""
 BALLS, MEASURES = ("rolling", "struck"), {"mm": 1e3, "deg": float(np.degrees(1.0))}
 CLEAN_SPEEDS = (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0)
-FILE = Path(__file__).parents[1] / "pictures" / "pockets.png"
+FILE = "pockets.png"
 
 
 def shown(x):
@@ -150,7 +148,7 @@ def print_sizes(found):
               f" no jaw in the log up to +-{low:.2f} (firm) .. {high:.2f} (soft), before +-{before:.2f}")  # fmt: skip
 
 
-def worlds(physics):
+def variants_of(physics):
     """Variants of jaws and slate: name -> how it is played, (physics, table's changes)."""
     fixed = {"the preset": (physics, {})}
     for e in (0.85, 0.72):  # the second is a rail's at 6 m/s
@@ -165,12 +163,12 @@ def worlds(physics):
 def sensitivity(physics, engine):
     """Lateral windows [mm] of a rolling ball from 0.3 m, at 1 and 6 m/s, by variant and pocket."""
     found = {}
-    for name, (world, change) in worlds(physics).items():
+    for name, (constants, change) in variants_of(physics).items():
         table = openings.moved(sn.Table.preset("match"), **change)
         found[name] = {}
         for pocket, index in INDEX.items():
             angles = np.radians(ANGLES[pocket])[:, None]
-            w = windows(alone(table, index), angles, 0.3, np.array([1.0, 6.0]), True, False, world, engine)
+            w = windows(alone(table, index), angles, 0.3, np.array([1.0, 6.0]), True, False, constants, engine)
             found[name] |= {f"{pocket} {a}": 1e3 * w.width[k] for k, a in enumerate(ANGLES[pocket])}
     return found
 
@@ -225,14 +223,9 @@ def says(figures):
 
 def main():
     """Command line."""
-    parser = command("pockets", __doc__)
+    parser = Command("pockets", __doc__, pictures=(FILE,))
     parser.add_argument("--quick", action="store_true", help="fewer speeds and distances, for a test")
-    parser.add_argument("--json", type=Path, help="also write every figure there")
-    parser.add_argument("--out", type=Path, default=FILE, help="the picture")
-    options = parser.parse_args()
-    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
-    writable(options.out, options.json)
-
+    options = parser.options()
     physics = sn.Physics.preset("match")
     engines = {"before": Engine(variants.load()._run, variants.AT_ONCE), "after": Engine()}
     speeds, distances = (QUICK_SPEEDS, QUICK_DISTANCES) if options.quick else (SPEEDS, DISTANCES)
@@ -252,8 +245,9 @@ def main():
     for line in lines:
         print(f"* {line}")
     save_json(options.json, plain(figures | {"says": lines}))
-    picture.draw(figures, options.out)
-    print(f"\n{options.out}")
+    if options.pictures:
+        picture.draw(figures, options.folder / FILE)
+        print(f"\n{options.folder / FILE}")
 
 
 def plain(x):

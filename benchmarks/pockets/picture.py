@@ -1,6 +1,6 @@
 """What do the pockets look like in one picture? Draws ``pockets.png`` from the figures of ``python -m benchmarks.pockets``."""
 
-from .._common.command import pyplot, saved
+from .._common.command import pyplot, save_figure
 from .pool_tables import ANGLES, INCH, SPEEDS
 
 AFTER, BEFORE = "the drop takes time", "at once at the edge"
@@ -91,5 +91,4 @@ def draw(figures, out):
     for ax in axes[0]:
         ax.set_ylim(0, 70)
     fig.suptitle(f"How wide the pockets are, by angle off the axis. Solid: {AFTER}; dotted: {BEFORE}", fontsize=12)
-    with saved(out) as place:
-        fig.savefig(place, dpi=100)
+    save_figure(fig, out, dpi=100)

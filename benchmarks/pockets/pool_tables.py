@@ -158,14 +158,14 @@ def sizes(kind, engines):
     """
     here, angles = pocket(kind), np.radians(ANGLES[kind])
     found = {"Alciatore": np.array([published(kind, a) * INCH for a in ANGLES[kind]])}
-    world = sn.Physics(**MIRROR)
-    found["his assumptions"] = windows(here, angles, DISTANCE, 0.5, False, False, world, engines["before"]).width
-    world = sn.Physics(R=PHYSICS["R"], e_c=1.0, mu_c=0.0)
-    found["his, but it rolls"] = windows(here, angles, DISTANCE, 0.5, True, False, world, engines["before"]).width
-    world = sn.Physics.preset("match", **PHYSICS)
+    physics = sn.Physics(**MIRROR)
+    found["his assumptions"] = windows(here, angles, DISTANCE, 0.5, False, False, physics, engines["before"]).width
+    physics = sn.Physics(R=PHYSICS["R"], e_c=1.0, mu_c=0.0)
+    found["his, but it rolls"] = windows(here, angles, DISTANCE, 0.5, True, False, physics, engines["before"]).width
+    physics = sn.Physics.preset("match", **PHYSICS)
     for rule, engine in engines.items():
         for name, speed in SPEEDS.items():
-            found[f"{name} {rule}"] = windows(here, angles, DISTANCE, speed, True, False, world, engine).width
+            found[f"{name} {rule}"] = windows(here, angles, DISTANCE, speed, True, False, physics, engine).width
     return found
 
 

@@ -1,6 +1,7 @@
 """Is a touching rack resolved rightly by pairwise impacts in sequence? Breaks by three models of the touching balls, compared.
 
-    python -m benchmarks.rack [--shots 100] [--orders 100] [--racks 30] [--physics paper] [--json FILE] [--out PNG]
+    python -m benchmarks.rack [--shots 100] [--orders 100] [--racks 30] [--physics paper] [--seed 0]
+        [--json FILE] [--out FOLDER]
 
 * **Sequence**: this engine. Touching balls collide two by two at one instant, ties in the order of ball ids.
 * **Simultaneous**: one linear complementarity problem over all touching contacts, no friction, solved by projected Gauss-Seidel: the
@@ -23,7 +24,6 @@ import os
 import time
 from concurrent.futures import ThreadPoolExecutor
 from math import sqrt
-from pathlib import Path
 
 import numpy as np
 
@@ -31,7 +31,7 @@ import snooker_env as sn
 from snooker_env.game.balls import SPOTS
 from snooker_env.physics.engine import EventKind
 
-from .._common.command import at_least, command, pyplot, save_json, writable
+from .._common.command import Command, at_least, save_json
 from .breaks import apex_break, break_off
 from .checks import checks
 from .compliant import LAWS, STEP, R, compliant
@@ -39,7 +39,7 @@ from .models import Models, misplaced, sharers, shares
 from .picture import picture
 from .simultaneous import contacts, gauss_seidel, simultaneous
 
-FILE = Path(__file__).parents[1] / "pictures" / "rack.png"
+FILE = "rack.png"
 CORNERS = (11, 15)
 MIRRORED = np.array([0, *(1 + k for row in range(5) for k in range(row * (row + 1) // 2 + row, row * (row + 1) // 2 - 1, -1))])
 """Which ball is the mirror image of ball i in the rack."""
@@ -304,17 +304,12 @@ def verdict(models, figures):
 
 def main():
     """Command line."""
-    parser = command("rack", __doc__)
+    parser = Command("rack", __doc__, pictures=(FILE,), seed=0)
     parser.add_argument("--shots", type=at_least(1), default=100, help="whole shots of each kind")
     parser.add_argument("--orders", type=at_least(1), default=100, help="numberings of the rack")
     parser.add_argument("--racks", type=at_least(1), default=30, help="loose racks for each gap")
     parser.add_argument("--physics", choices=("paper", "match"), default="paper", help="restitution and friction")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--json", type=Path, help="also write every figure there")
-    parser.add_argument("--out", type=Path, default=FILE, help="the picture")
-    options = parser.parse_args()
-    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
-    writable(options.out, options.json)
+    options = parser.options()
     models = Models(sn.Physics.preset(options.physics))
     rng = np.random.default_rng(options.seed)
     figures: dict = {"physics": options.physics, "seed": options.seed, "checks": checks(models), "cradle": cradle(models)}
@@ -327,4 +322,5 @@ def main():
     figures["cost"] = cost(models)
     figures["verdict"] = verdict(models, figures)
     save_json(options.json, figures)
-    picture(options.out, states, figures, samples)
+    if options.pictures:
+        picture(options.folder / FILE, states, figures, samples)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .._common.command import pyplot, saved
+from .._common.command import pyplot, save_figure
 from .breaks import apex_break
 from .compliant import R
 
@@ -49,7 +49,5 @@ def picture(file, states, figures, samples):
         ax.set(xlabel="reds' mean distance from the rack's centre, at rest [m]", ylabel="share of shots below", ylim=(0, 1))
         ax.set_title({"apex, touching": "whole shots: apex of a touching rack"}.get(kind, f"whole shots: {kind}"), fontsize=10)
         ax.legend(fontsize=8)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with saved(file) as place:
-        fig.savefig(place, dpi=110)
+    save_figure(fig, file, dpi=110)
     print(file)

@@ -54,19 +54,19 @@ def environment():
     return python
 
 
-def _constants(world):
+def _constants(physics):
     """The constants of our physics by pooltool's names; its spinning friction decays spin at (5/2) u_sp g / R."""
     return {
-        "m": world.M, "R": world.R, "g": world.g, "u_s": world.mu_s, "u_r": world.mu_r, "u_b": world.mu_bb, "e_b": world.e_b,
-        "e_c": world.e_c, "f_c": world.mu_c, "u_sp_proportionality": world.spin_decel / (2.5 * world.g),
+        "m": physics.M, "R": physics.R, "g": physics.g, "u_s": physics.mu_s, "u_r": physics.mu_r, "u_b": physics.mu_bb, "e_b": physics.e_b,
+        "e_c": physics.e_c, "f_c": physics.mu_c, "u_sp_proportionality": physics.spin_decel / (2.5 * physics.g),
     }  # fmt: skip
 
 
-def play(file, world):
+def play(file, physics):
     """Play the shots of an npz file (kind_p, kind_v, kind_w for each kind) with pooltool and our constants: the child's JSON."""
     python = environment()
     with tempfile.TemporaryDirectory() as home:  # pooltool reads its models from the home folder: in an empty one it has its defaults
-        command = [str(python), str(Path(__file__).resolve()), str(file), json.dumps(_constants(world))]
+        command = [str(python), str(Path(__file__).resolve()), str(file), json.dumps(_constants(physics))]
         try:
             done = subprocess.run(
                 command, capture_output=True, text=True, timeout=_CHILD_SECONDS, env=os.environ | {"HOME": home}, cwd=home

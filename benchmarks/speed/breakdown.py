@@ -23,7 +23,7 @@ from .clock import kernel_arguments, ns_per_tick, ticks, time_shots
 
 PIECES = (
     ("run", "set-up, event loop, final state", "bookkeeping"),
-    ("next event", "selection of the next event", "bookkeeping"),
+    ("_next_event", "selection of the next event", "bookkeeping"),
     ("clear_box", "box without boundaries", "bookkeeping"),
     ("cloth.begin", "cloth: a phase begins", "bookkeeping"),
     ("cloth.next_phase", "cloth: a phase ends", "bookkeeping"),
@@ -110,10 +110,6 @@ class _Instrument(ast.NodeTransformer):
     def visit_FunctionDef(self, node):
         if not _is_kernel(node):
             return node
-        if node.name == "run":  # its event loop begins with a loop over the balls that selects the next event
-            loop = next(child for child in node.body if isinstance(child, ast.While))
-            at = next(k for k, child in enumerate(loop.body) if isinstance(child, ast.For))
-            loop.body[at : at + 1] = self.around(loop.body[at], "next event")
         self.generic_visit(node)
         node.args.args.insert(0, ast.arg("tally"))
         return node
@@ -152,8 +148,8 @@ def instrumented(texts):
         text = ast.unparse(ast.fix_missing_locations(change.visit(tree)))
         out[name] = text + "\nfrom benchmarks.speed.breakdown import enter, leave\n"
         read += change.read
-    if read != calls + 1:
-        raise RuntimeError(f"{calls} calls of the pieces in the engine, {read - 1} of them in plain statements: mend PIECES")
+    if read != calls:
+        raise RuntimeError(f"{calls} calls of the pieces in the engine, {read} of them in plain statements: mend PIECES")
     return out
 
 
@@ -188,14 +184,14 @@ def profile(p, v, w, fidelity="standard", passes=3):
     The untouched kernel plays the same shots between these passes; ``kernel_us`` is its quickest.
     """
     engine, simulation = load()
-    world, (inside, outside) = snooker_env.Physics.preset("paper"), _reading_cost()
+    physics, (inside, outside) = snooker_env.Physics.preset("paper"), _reading_cost()
     untouched, tallies = [], []
     for _ in range(passes + 1):
         tally = np.zeros(2 * _N * _N + 2, np.int64)
-        arguments = kernel_arguments(p, v, w, world, fidelity, engine, simulation._run)
+        arguments = kernel_arguments(p, v, w, physics, fidelity, engine, simulation._run)
         engine.run_batch(tally.ctypes.data, *arguments, 0, len(p))
         tallies.append(tally[:_NOW].reshape(2, _N, _N).astype(float))
-        untouched.append(time_shots(p, v, w, fidelity, 1, world).mean())
+        untouched.append(time_shots(p, v, w, fidelity, 1, physics).mean())
     time, calls = min(tallies[1:], key=lambda tally: tally[0].sum())  # the first compiles
     own = time - calls * inside  # own[piece, caller]
     share = calls / np.maximum(calls.sum(1, keepdims=True), 1)  # a piece's calls of others are laid on its own callers by their share

@@ -108,8 +108,8 @@ def _passes(work, n, passes):
 
 def time_shots(p, v, w, fidelity="standard", passes=1, physics=None):
     """Kernel time of every shot [us], (passes, shots): in a pass each shot is played once, one after the other."""
-    world = sn.Physics.of(physics)
-    return _passes(lambda cost, idle: _each_shot(cost, idle, kernel_arguments(p, v, w, world, fidelity)), len(p), passes)
+    physics = sn.Physics.of(physics)
+    return _passes(lambda cost, idle: _each_shot(cost, idle, kernel_arguments(p, v, w, physics, fidelity)), len(p), passes)
 
 
 def time_impacts(x, normals, phys, fidelity, passes=1):

@@ -1,6 +1,7 @@
 """How fast is it? Time of an impact, a two-ball pot, a random 22-ball shot and a break-off; where it goes; how it grows; the start.
 
-    python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots breakdown start growth] [--json FILE] [--out FILE]
+    python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots breakdown start growth] [--seed 0]
+        [--json FILE] [--out FOLDER]
     python -m benchmarks.speed --profile
     python -m benchmarks.speed --against pooltool [--peer-shots 100]
 
@@ -16,11 +17,13 @@ call's own cost taken off. An event is one entry of the shot's log. Errors are a
 
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 import snooker_env as sn
+from commands import provenance
 from snooker_env._jit import entry
 from snooker_env.game.balls import SPOTS
 from snooker_env.physics.engine import EventKind
@@ -30,8 +33,7 @@ from snooker_env.physics.parameters import P_E_B
 from snooker_env.physics.table import Table
 from snooker_env.simulation import _run
 
-from .._common import machine
-from .._common.command import at_least, command, pyplot, save_json, writable
+from .._common.command import Command, at_least, save_json
 from . import against_pooltool, breakdown, clock, first_shot, growth
 
 R = 0.02625
@@ -42,7 +44,7 @@ GOALS = {"impact": (1.0, 0.5), "two-ball pot": (6.0, 4.0), "random 22 balls": (2
 """Microseconds at ``standard``: what must be reached and what is aimed at."""
 PEER_GOAL = (500, 1500)
 PARTS = ("impacts", "shots", "breakdown", "start", "growth")
-FILE = Path(__file__).parents[1] / "pictures" / "speed.png"
+FILE = "speed.png"
 
 
 @entry(what="the benchmark of an impact", uses=(contact.collide_balls,))
@@ -165,10 +167,10 @@ def print_goals(name, us):
     print(f"  {'':16s} must {must:g}, aim {aim:g}: {us / must:.2f} of what must be reached")
 
 
-def measure_impacts(n, repeats):
+def measure_impacts(n, repeats, seed=0):
     """Table of impacts."""
     phys = sn.Physics.preset("paper").pack()
-    x, normals = impacts(n)
+    x, normals = impacts(n, seed)
     truth, found = results(x, normals, "reference"), {}
     print(f"\n{n} impacts, us: median (lowest, highest of {repeats} passes), 5 %, 95 %, set; error: median, 99 %, worst")
     for fidelity in IMPACT_FIDELITIES:
@@ -188,14 +190,14 @@ def measure_impacts(n, repeats):
     return found
 
 
-def measure_shots(n, repeats):
+def measure_shots(n, repeats, seed=0):
     """Table of shots."""
     found = {}
     print(f"\n{n} shots, us a shot: median (lowest, highest of {repeats} passes), percentiles, mean; a shot: events, ball-ball impacts;")
     print("ns an event: mean time over mean events; 1 and 2 threads: mean us a shot of the set as one batch, quickest")
     print(f"  {'':27s}  median {'':20s} 5 %     25 %     75 %     95 %     99 %     mean  events  hits ns/event  1 thread 2 threads")
     for kind in KINDS:
-        shots_ = shots(kind, n)
+        shots_ = shots(kind, n, seed)
         for fidelity in SHOT_FIDELITIES:
             row = summary(kernel_times(*shots_, fidelity, repeats))
             batch = sn.simulate_batch(*shots_, fidelity=fidelity, threads=1, events=True)
@@ -216,7 +218,7 @@ def measure_shots(n, repeats):
     return found
 
 
-def measure_breakdown(n, repeats, detailed):
+def measure_breakdown(n, repeats, detailed, seed=0):
     """Where the time of a mean shot goes."""
     found: dict[str, dict] = {}
     print(
@@ -224,7 +226,7 @@ def measure_breakdown(n, repeats, detailed):
         + ("" if detailed else " (--profile: each function)")
     )
     for kind in KINDS:
-        shots_ = shots(kind, n)
+        shots_ = shots(kind, n, seed)
         of = breakdown.profile(*shots_, passes=repeats)
         whole, pieces = of["kernel_us"], sum(row["us"] for row in of["rows"])
         found[kind] = of | {"pieces_us": pieces, "remainder_us": whole - pieces}
@@ -249,9 +251,9 @@ def measure_start():
     return found
 
 
-def measure_against(n, repeats):
+def measure_against(n, repeats, seed=0):
     """The same shots with pooltool, in its own process."""
-    sets = {kind: shots(kind, n) for kind in KINDS}
+    sets = {kind: shots(kind, n, seed) for kind in KINDS}
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "shots.npz"
         np.savez(file, allow_pickle=False, **{f"{kind}_{part}": a for kind, of in sets.items() for part, a in zip("pvw", of, strict=True)})
@@ -284,7 +286,7 @@ def _simulate_seconds(p, v, w):
 
 def main():
     """Command line."""
-    parser = command("speed", __doc__)
+    parser = Command("speed", __doc__, pictures=(FILE,), seed=0)
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots (and impacts) in a set")
     parser.add_argument("--repeats", type=at_least(1), default=7, help="passes over a set")
     parser.add_argument("--parts", nargs="+", choices=PARTS, help="only these")
@@ -292,21 +294,17 @@ def main():
     parser.add_argument("--against", choices=["pooltool"], help="play the same shots with this peer, in a venv of its own")
     parser.add_argument("--peer-shots", type=at_least(1), default=100, help="shots of each kind for the peer")
     parser.add_argument("--largest-batch", type=at_least(1), default=65_536)
-    parser.add_argument("--json", type=Path, help="also write every figure there")
-    parser.add_argument("--out", type=Path, default=FILE, help="the picture of the growth")
-    options = parser.parse_args()
-    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
-    writable(options.out, options.json)
+    options = parser.options()
     parts = options.parts or (() if options.profile or options.against else PARTS)
-    figures: dict[str, object] = {"machine": machine.machine()}
-    print(machine.line() + ("" if clock.HAS_COUNTER else "; no cycle counter: best of the calls"))
+    figures: dict[str, object] = {"machine": provenance.machine()}
+    print(provenance.line() + ("" if clock.HAS_COUNTER else "; no cycle counter: best of the calls"))
     if "impacts" in parts:
-        figures["impacts"] = measure_impacts(options.shots, options.repeats)
+        figures["impacts"] = measure_impacts(options.shots, options.repeats, options.seed)
     if "shots" in parts:
-        figures["shots"] = measure_shots(options.shots, options.repeats)
+        figures["shots"] = measure_shots(options.shots, options.repeats, options.seed)
     if "breakdown" in parts or options.profile:
         if clock.HAS_COUNTER:
-            figures["breakdown"] = measure_breakdown(options.shots, options.repeats, options.profile)
+            figures["breakdown"] = measure_breakdown(options.shots, options.repeats, options.profile, options.seed)
         else:
             print("\nNo breakdown: it needs the cycle counter of x86")
     if "start" in parts:
@@ -316,15 +314,16 @@ def main():
         def middle(p, v, w):
             return np.median(kernel_times(p, v, w, "standard", options.repeats), axis=0)
 
-        found = growth.growth(shots, middle, min(options.shots, 300), options.largest_batch, options.repeats)
+        found = growth.growth(partial(shots, seed=options.seed), middle, min(options.shots, 300), options.largest_batch, options.repeats)
         figures["growth"] = found
         growth.print_growth(found)
-        growth.draw(found, options.out)
-        print(f"  picture: {options.out}")
+        if options.pictures:
+            growth.draw(found, options.folder / FILE)
+            print(f"  picture: {options.folder / FILE}")
     problem = None
     if options.against:
         try:
-            figures["against pooltool"] = measure_against(options.peer_shots, options.repeats)
+            figures["against pooltool"] = measure_against(options.peer_shots, options.repeats, options.seed)
         except against_pooltool.PeerError as why:
             problem = f"\n{why}"
     save_json(options.json, figures)

@@ -9,7 +9,7 @@ import snooker_env as sn
 from snooker_env.physics.impact import contact
 from snooker_env.simulation import MAX_EVENTS, _run
 
-from .._common.command import pyplot, saved
+from .._common.command import pyplot, save_figure
 
 BALLS = (2, 3, 4, 6, 8, 11, 15, 22)
 BATCHES = tuple(4**k for k in range(9))  # 1 to 65,536
@@ -21,9 +21,9 @@ _LEAST = 256  # shots played for one figure: small batches are played one after 
 def kernel_call(p, v, w, threads=1, fidelity="standard"):
     """The batch through ``_run``: no checks, no result objects."""
     state = [np.array(a) for a in (p, v, w, np.ones(p.shape[:2], bool))]
-    world, table = sn.Physics.of(None), sn.Table.preset("match")
+    physics, table = sn.Physics.of(None), sn.Table.preset("match")
     start = time.perf_counter()
-    _run(state, world, table, contact.parse_fidelity(fidelity), MAX_EVENTS, 0, 0, threads)
+    _run(state, physics, table, contact.parse_fidelity(fidelity), MAX_EVENTS, 0, 0, threads)
     return time.perf_counter() - start
 
 
@@ -143,6 +143,4 @@ def draw(found, file):
     for axes in (by_balls, by_event, by_batch, by_thread):
         axes.grid(alpha=0.3)
         axes.legend(frameon=False, fontsize=8)
-    with saved(file) as place:
-        figure.savefig(place, dpi=110)
-    plt.close(figure)
+    save_figure(figure, file, dpi=110)

@@ -1,19 +1,16 @@
 """What breaks at the extremes? Impacts and shots at the edge of what can be asked for, each with its invariants; then a fuzz of a million.
 
-    python -m benchmarks.stability [--fuzz 1000000] [--seed 0] [--threads 2] [--json FILE] [--out FILE]
+    python -m benchmarks.stability [--fuzz 1000000] [--seed 0] [--threads 2] [--json FILE] [--out FOLDER]
     python -m benchmarks.stability --replay SEED BATCH INDEX
 
 Exit code 1 if an invariant fails. ``--fuzz 0`` plays the extremes alone (10 s). Impacts are played at "fast", "standard" and
 "reference", shots at these in turn; figures are the worst of all. The paper's Euler scheme has a table of its own.
 """
 
-from pathlib import Path
-
 import numpy as np
 
 from .. import fuzz
-from .._common import invariants as invariants
-from .._common.command import at_least, command, pyplot, save_json, writable
+from .._common.command import Command, at_least, save_json
 from .euler import euler_lines, euler_table
 from .impacts import IMPACT_LIMITS, impact_extremes
 from .picture import draw
@@ -21,7 +18,7 @@ from .shots import SHOT_LIMITS, shot_extremes
 from .symmetry import growth, growth_lines, mirrored_fuzz, order_lines, order_matters, symmetry_growth
 from .worst import verdict
 
-FILE = Path(__file__).parents[1] / "pictures" / "stability.png"
+FILE = "stability.png"
 
 
 def shown(x):
@@ -42,18 +39,13 @@ def table_of(title, results, limits):
 
 def main():
     """Command line; the exit code."""
-    parser = command("stability", __doc__)
+    parser = Command("stability", __doc__, pictures=(FILE,), seed=0)
     parser.add_argument("--fuzz", type=at_least(0), default=1_000_000, help="random shots; 0 for none")
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--threads", type=at_least(1), default=2)
+    parser.add_argument("--threads", type=at_least(1), default=2, help="of the fuzz [2]")
     parser.add_argument("--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot of the fuzz again")
-    parser.add_argument("--json", type=Path, help="also write every figure there")
-    parser.add_argument("--out", type=Path, default=FILE, help="the picture")
-    options = parser.parse_args()
+    options = parser.options()
     if options.replay:
         return int(not fuzz.replay(*options.replay))
-    pyplot(options.out)  # before the work: can the picture be drawn, and its file written?
-    writable(options.out, options.json)
     impacts, shots = impact_extremes(), shot_extremes()
     print("\n".join(table_of("impacts (worst figures)", impacts, IMPACT_LIMITS)), end="\n\n")
     print("\n".join(table_of("shots (worst figures)", shots, SHOT_LIMITS)), end="\n\n")
@@ -82,11 +74,8 @@ def main():
             },
         }  # fmt: skip
         if found:
-            worst = {k: dict(zip(invariants.NAMES, x.tolist(), strict=True)) for k, x in found.worst.items()}
-            figures["fuzz"] = {
-                "shots": found.shots, "seconds": found.seconds, "seed": options.seed, "worst": worst, "events": found.events,
-                "failures": found.failures,
-            }  # fmt: skip
+            figures["fuzz"] = fuzz.figures_of(found, options.seed)
         save_json(options.json, figures)
-    draw(options.out, impacts, shots, euler, symmetry, found)
+    if options.pictures:
+        draw(options.folder / FILE, impacts, shots, euler, symmetry, found)
     return int(bool(failed))

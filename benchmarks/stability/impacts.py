@@ -136,8 +136,8 @@ def impact_extremes():
         "e_c = 0 and 1": (cushion_impacts(150, 4), ({"e_c": 0.0}, {"e_c": 1.0})),
     }
     out = {}
-    for name, (cases, worlds) in sets.items():
-        out[name] = len(cases) * len(worlds), merge([impact_figures(cases, world) for world in worlds])
+    for name, (cases, constants) in sets.items():
+        out[name] = len(cases) * len(constants), merge([impact_figures(cases, physics) for physics in constants])
     for mu_s, mu_bb in product((0.0, 0.21, 1.0), (0.0, 0.05, 1.0)):
         out[f"mu_s {mu_s:g}, mu_bb {mu_bb:g}"] = 150, impact_figures(any_impacts(150, 5, spin=5.0), {"mu_s": mu_s, "mu_bb": mu_bb})
     for mu_s, mu_c in product((0.0, 0.21, 0.7, 1.0), (0.0, 0.14, 1.0)):

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import fuzz
 from .._common import invariants as invariants
-from .._common.command import pyplot, saved
+from .._common.command import pyplot, save_figure
 from .impacts import IMPACT_LIMITS
 from .shots import SHOT_LIMITS
 from .symmetry import growth
@@ -21,9 +21,7 @@ def draw(path, impacts, shots, euler, symmetry, found):
     scheme(axes[0, 1], euler)
     chaos(axes[1, 1], *symmetry)
     invariants_of_fuzz(axes[1, 0], found)
-    with saved(path) as place:
-        figure.savefig(place, dpi=90)
-    plt.close(figure)
+    save_figure(figure, path, dpi=90)
 
 
 def margins(axis, impacts, shots):

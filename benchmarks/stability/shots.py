@@ -204,7 +204,7 @@ def shot_extremes():
     for gap in GAPS:
         out[f"wedged between two, gap {gap:g}"] = wedged(gap)
     out["three balls meet at once"] = three_at_once()
-    worlds = {
+    constants = {
         "e_b, e_c": (0.0, 1.0),
         "mu_bb": (0.0, 1.0),
         "mu_c": (0.0, 1.0),
@@ -215,7 +215,7 @@ def shot_extremes():
     q = np.tile(SPOTS, (20, 1, 1))
     q[:, 0] = (0.1, -1.2)
     motion = struck(q, rng.uniform(1, 7, 20), np.pi / 2 + rng.uniform(-0.12, 0.1, 20), *rng.uniform(-0.3, 0.3, (2, 20)))
-    for name, values in worlds.items():
+    for name, values in constants.items():
         for value in values:
             out[f"{name} = {value:g}"] = 60, shot_figures(q, *motion, "match", dict.fromkeys(name.split(", "), value))
     out["60 s of strokes, 22 balls"] = long_play()

@@ -1,4 +1,4 @@
-"""Is a shot as symmetric as its world? Shots mirrored and turned, and two balls met at once, where the order of their numbers decides.
+"""Is a shot as symmetric as its physics? Shots mirrored and turned, and two balls met at once, where the order of their numbers decides.
 
 Used by ``python -m benchmarks.stability``, which fails if a mirrored shot is not mirrored to the last bit, on the table or on unbounded
 cloth; the rest is measured, not judged.

@@ -19,7 +19,7 @@ from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from . import observations
 from .discrete_actions import SIZE as CHOICES
 from .discrete_actions import Choices
-from .saved_models import Saved, outline
+from .saved_models import SavedModel, outline
 from .stroke import place, strike
 
 OPPONENTS = ("none", "random", "ghost_ball")
@@ -237,7 +237,7 @@ class SavedPolicy:
         discrete = isinstance(self.actions, Choices)
         sizes = sorted({self.actions.size, self.actions.size - self.actions.decision})
         fitting = [("Discrete", str(CHOICES))] if discrete else [("Box", [size]) for size in sizes]
-        saved = Saved.of(self.path, "opponent")
+        saved = SavedModel.of(self.path, "opponent")
         if saved.action[0] != fitting[0][0]:
             raise saved.refused(f"must be a model whose actions are a {fitting[0][0]}")
         other_view = saved.refused(f'must be a model that sees observation="{self.kind}" of the visit or frame task and nothing else')

@@ -2,7 +2,7 @@
 
 A zip of Stable-Baselines3 or sb3-contrib holds weights and ``data``: JSON in which whatever is not a plain value is a pickle (of
 cloudpickle, in base64). To load it whole, as ``PPO.load`` does, is to run the code in these pickles, whatever it is. ``Saved`` reads what
-stands there in plain, which is enough to refuse a model that does not fit; ``Saved.network`` alone unpickles, and asks for consent.
+stands there in plain, which is enough to refuse a model that does not fit; ``SavedModel.network`` alone unpickles, and asks for consent.
 """
 
 import json
@@ -14,7 +14,7 @@ from gymnasium import spaces
 
 from .._check import refuse
 
-__all__ = ["PLAIN", "Saved", "by_train", "entries", "outline", "part"]
+__all__ = ["PLAIN", "SavedModel", "by_train", "entries", "outline", "part"]
 
 MOST = 2**26
 """Bytes of JSON that are read at most (SB3 keeps the last observations there): a small zip can unpack to more than a machine has, and JSON
@@ -73,7 +73,7 @@ def _told(described):
 
 
 @dataclass(frozen=True)
-class Saved:
+class SavedModel:
     """A file of Stable-Baselines3, nothing of it unpickled. ``field``: what the complaints about it name."""
 
     path: Path

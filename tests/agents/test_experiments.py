@@ -9,7 +9,7 @@ import pytest
 
 import train
 from agents.evaluation.protocol import parser
-from agents.players.built_in import NAMES
+from agents.players.by_name import NAMES
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -16,7 +16,8 @@ from sb3_contrib import MaskablePPO
 import train
 from agents.evaluation import rollouts, training_summary
 from agents.learning import callback, models
-from agents.players.built_in import GhostBall, Random, player_of
+from agents.players.built_in import GhostBall, Random
+from agents.players.by_name import player_of
 
 ROOT = Path(__file__).resolve().parents[2]
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
@@ -85,7 +86,7 @@ def test_saved_model_plays_as_it_was_judged(finished, agent):
 
 @pytest.mark.parametrize(("agent", "at", "number"), [("ppo_mask", 100, signal.SIGTERM), ("tqc_target", 100, signal.SIGINT)])
 def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, tmp_path, capsys, monkeypatch, agent, at, number):
-    original = callback.Keeper._on_step  # at 100 shots tqc only gathers yet
+    original = callback.RunCallback._on_step  # at 100 shots tqc only gathers yet
 
     def interrupted(self):
         if self.num_timesteps == at:
@@ -93,18 +94,22 @@ def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, 
         return original(self)
 
     with monkeypatch.context() as patch:
-        patch.setattr(callback.Keeper, "_on_step", interrupted)
+        patch.setattr(callback.RunCallback, "_on_step", interrupted)
         assert run(tmp_path / "run", "--agent", agent) == 128 + number
     assert f"--resume --out {tmp_path / 'run'}" in capsys.readouterr().out
     assert not (tmp_path / "run" / "results.json").exists()
-    kept, begun, start = pickle.loads((tmp_path / "run" / "checkpoint.pkl").read_bytes())["running"], [], callback.Keeper._on_training_start
+    kept, begun, start = (
+        pickle.loads((tmp_path / "run" / "checkpoint.pkl").read_bytes())["running"],
+        [],
+        callback.RunCallback._on_training_start,
+    )
 
     def watched(self):
         start(self)
         begun.append(self.training_env.running)
 
     with monkeypatch.context() as patch:
-        patch.setattr(callback.Keeper, "_on_training_start", watched)
+        patch.setattr(callback.RunCallback, "_on_training_start", watched)
         assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
     assert np.array_equal(begun, [kept]) and (agent == "tqc_target" or kept[1].any())  # visits go on where they were, with their sums
     assert np.array_equal(weights(tmp_path / "run"), weights(finished / agent))
@@ -308,7 +313,7 @@ def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, capsys):
     assert stop.value.code == 2 and "must be a model of ppo_foresight" in capsys.readouterr().err
 
 
-def test_what_starts_from_a_model_is_not_taught_again(tmp_path, capsys):
+def test_what_starts_from_a_model_does_not_imitate_again(tmp_path, capsys):
     assert train.recipe_of(train.Settings(start="x")).imitation == 0 < train.recipe_of(train.Settings()).imitation
     error = refused(capsys, "--start", "x", "--imitate", "5", "--out", str(tmp_path / "run"))
     assert "imitate = 5: must be 0 or left out with --start" in error
@@ -323,7 +328,7 @@ def test_start_refuses_a_model_with_other_actions(tmp_path, capsys):
     assert "start = " in error and "must be a model with actions" in error
 
 
-def test_only_agents_with_masks_can_be_taught(tmp_path, capsys):
+def test_only_agents_with_masks_can_imitate(tmp_path, capsys):
     assert "imitate = 100: must be 0 for ppo_target" in refused(
         capsys, "--agent", "ppo_target", "--imitate", "100", "--out", str(tmp_path / "run")
     )

@@ -1,6 +1,7 @@
 """Do the benchmarks behave as commands? Help, Ctrl-C, libraries that are missing, files that cannot be written, a terminal of ASCII."""
 
 import errno
+import json
 import os
 import re
 import signal
@@ -8,6 +9,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -19,6 +21,7 @@ FOLDER = ROOT / "benchmarks"
 FILES = {file.stem: file for file in FOLDER.glob("*.py") if not file.name.startswith("_")}
 FOLDERS = {file.parent.name: file for file in FOLDER.glob("*/command.py") if not file.parent.name.startswith("_")}
 COMMANDS = sorted(FILES | FOLDERS)
+WITHOUT_CHANCE = ("left_out", "nap", "paper", "pockets")
 
 
 def started(name, *arguments, **environment):
@@ -43,7 +46,7 @@ def test_every_module_is_a_command_or_a_part_of_one():
         assert '__name__ == "__main__"' not in file.read_text() or file.stem == "against_pooltool"  # that one runs in another Python
         assert file.name != "__main__.py" or file.parent.name in FOLDERS
     for name, file in (FILES | FOLDERS).items():
-        assert f'command("{name}", __doc__)' in file.read_text(), file
+        assert f'Command("{name}", __doc__' in file.read_text(), file
     for name, file in FILES.items():
         assert file.read_text().endswith('if __name__ == "__main__":\n    run(main)\n'), name
     for name, file in FOLDERS.items():
@@ -57,7 +60,8 @@ def test_help_is_printed_and_nothing_is_compiled(tmp_path):
         code, out, err = ended(process)
         assert code == 0 and err == "", (name, err)
         assert out.startswith(f"usage: python -m benchmarks.{name} [-h]"), (name, out[:80])
-        assert "show this help message" in out
+        assert "show this help message" in out and "--out FOLDER" in out and "--json FILE" in out
+        assert ("--seed N" in out) == (name not in WITHOUT_CHANCE), name
     assert not list(tmp_path.rglob("*.nb?"))
 
 
@@ -77,7 +81,7 @@ STOPPED = "stopped by Ctrl-C: what is printed so far stands, the rest was not me
 
 
 def test_ctrl_c_is_one_line_and_leaves_no_file(tmp_path):
-    code, out, err = interrupted(started("make_opened", "--tables", 1_000_000, "--out", tmp_path / "opened.npz"), 10.0)
+    code, out, err = interrupted(started("make_opened", "--tables", 1_000_000, "--out", tmp_path), 10.0)
     assert (code, out, err.strip()) == (130, "", STOPPED)
     assert not list(tmp_path.iterdir())
 
@@ -104,8 +108,8 @@ def test_a_file_that_cannot_be_written_is_refused_before_the_work(tmp_path, wher
     place = {"a folder": tmp_path, "under a file": tmp_path / "file" / "x.json", "no such device": Path("/proc/x/y.json")}[where]
     start = time.perf_counter()
     code, out, err = ended(started("paper", "--no-pictures", "--json", place))
-    assert code == 1 and out == "" and time.perf_counter() - start < 120
-    assert re.fullmatch(re.escape(f"{place} cannot be written: ") + r"\S.*\n", err), err
+    assert code == 2 and out == "" and time.perf_counter() - start < 120
+    assert re.search(re.escape(f"error: json = {str(place)!r}: must be a file that can be written (") + r"\S.*\)\n$", err), err
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
@@ -115,9 +119,19 @@ def test_a_full_disk_is_said_in_one_line():
     assert Path("/dev/full").is_char_device()
 
 
-def test_a_picture_that_cannot_be_drawn_is_refused_before_the_work(tmp_path):
-    code, out, err = ended(started("stability", "--out", tmp_path / "picture.txt"))
-    assert code == 1 and out == "" and "picture.txt cannot be drawn: the suffix must be one of " in err and err.count("\n") == 1
+def test_a_folder_that_cannot_be_written_is_refused_before_the_work(tmp_path):
+    (tmp_path / "file").write_text("")
+    code, out, err = ended(started("stability", "--out", tmp_path / "file"))
+    assert code == 2 and out == "" and f"error: out = '{tmp_path}/file/stability.png': must be a file that can be written" in err
+
+
+def test_what_is_printed_is_written_beside_the_pictures(tmp_path):
+    code, out, err = ended(started("paper", "--out", tmp_path / "new", "--json", tmp_path / "new" / "figures.json"))
+    assert (code, err) == (0, "") and (tmp_path / "new" / "paper.txt").read_text() == out
+    assert {file.name for file in (tmp_path / "new").iterdir()} == {"paper.txt", "paper.png", "paper_data.png", "figures.json"}
+    code, out, _ = ended(started("left_out", "--out", tmp_path, "--json", tmp_path / "l.json"))
+    assert code == 0 and (tmp_path / "left_out.txt").read_text() == out
+    assert set(json.loads((tmp_path / "l.json").read_text())) == {"air", "level", "unequal", "kicks", "airborne", "double_hits"}
 
 
 MISSING = [
@@ -155,16 +169,17 @@ def test_a_reader_that_leaves_does_not_stop_a_command_with_a_traceback():
     assert process.stderr.read() == "" and process.wait(60) == 1
 
 
-def test_a_file_is_written_whole_or_not_at_all(tmp_path):
+def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
     file = tmp_path / "new folder" / "figures.json"
     _command.save_json(file, {"a": 1})
     assert file.read_text() == '{\n "a": 1\n}\n' and list(file.parent.iterdir()) == [file]
-    with pytest.raises(SystemExit, match=re.escape(f"{file} could not be written: No space left on device")), _command.saved(file) as place:
-        place.write_text("half")
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-    with pytest.raises(KeyboardInterrupt), _command.saved(file) as place:
-        place.write_text("half")
-        raise KeyboardInterrupt
+    full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    for stop, error in ((full, SystemExit), (KeyboardInterrupt(), KeyboardInterrupt)):
+        with monkeypatch.context() as patch, pytest.raises(error) as stopped:
+            patch.setattr(os, "fsync", Mock(side_effect=stop))
+            _command.save_json(file, {"half": 1})
+        if stop is full:
+            assert stopped.value.args == (f"{file} could not be written: No space left on device",)
     assert file.read_text() == '{\n "a": 1\n}\n' and list(file.parent.iterdir()) == [file]
     _command.save_json(None, {})
     link = tmp_path / "link.json"
@@ -176,7 +191,8 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path):
 def test_files_are_tried_without_leaving_a_trace(tmp_path):
     file = tmp_path / "kept.json"
     file.write_text("kept")
-    _command.writable(file, tmp_path / "other.json", None)
+    options = _command.Command("x", "doc", files=("made.png",)).options(["--out", str(tmp_path), "--json", str(file)])
+    assert options.folder == tmp_path and not options.pictures
     assert [f.name for f in tmp_path.iterdir()] == ["kept.json"] and file.read_text() == "kept"
 
 

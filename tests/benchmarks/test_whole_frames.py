@@ -50,7 +50,7 @@ def test_the_checks_of_whole_frames_can_fail(how, monkeypatch):
 
 
 def test_a_replay_that_differs_is_noticed():
-    table = frames.Table("off")
+    table = frames.FrameTable("off")
     table.start(0)
     text = table.as_json()
     table.turn(frames.PLAYERS["random"])

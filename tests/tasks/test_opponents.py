@@ -12,7 +12,7 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.tasks.saved_models import Saved
+from snooker_env.tasks.saved_models import SavedModel
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_POINTS, Crew
 from tests.bombs import bombed, rezipped, told
@@ -128,7 +128,7 @@ def saved(tmp_path_factory):
 def test_who_saved_a_model_is_read_from_it(tmp_path, name):
     library = pytest.importorskip("stable_baselines3" if name in ("A2C", "TD3", "DDPG") else "sb3_contrib")
     getattr(library, name)("MlpPolicy", SnookerEnv(), device="cpu").save(tmp_path / "model.zip")
-    found = Saved.of(tmp_path / "model.zip", "opponent")
+    found = SavedModel.of(tmp_path / "model.zip", "opponent")
     assert issubclass(getattr(library, name), getattr(library, found.algorithm[1]))  # DDPG is a TD3
     assert found.network(True, "") is not None
 

@@ -13,7 +13,7 @@ import pytest
 from agents.evaluation import metrics, protocol, report
 from agents.features.views import training_tables
 from agents.learning.hyperparameters import Recipe
-from commands.physics_option import text_of, world
+from commands.physics_option import physics_option, physics_text
 from snooker_env.physics.parameters import Physics
 
 QUICK = ["--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"]
@@ -156,23 +156,23 @@ def test_a_player_of_ones_own_is_compared(tmp_path, monkeypatch):
         ("Discreet", "'discreet'"),
     ):
         with pytest.raises(ValueError, match=f"agent = 'mine:{name}': must be MODULE:CLASS of a player .*{why}"):
-            protocol.Agent.of(f"mine:{name}").trained()
+            protocol.Entrant.of(f"mine:{name}").trained()
     with pytest.raises(ValueError, match=r"agent = 'nothere:Soft': .*ModuleNotFoundError"):
-        protocol.Agent.of("nothere:Soft").trained()
+        protocol.Entrant.of("nothere:Soft").trained()
 
 
 def test_a_path_with_a_colon_is_a_path(models, tmp_path):
     (tmp_path / "10:00").symlink_to(models)
-    assert len(protocol.Agent.of(f"x={tmp_path}/10:00/m-?").runs) == 2
+    assert len(protocol.Entrant.of(f"x={tmp_path}/10:00/m-?").runs) == 2
     for path in (r"C:\runs\m-0\model.zip", "a/b:c", "10:00"):
         with pytest.raises(ValueError, match="or name models that are there"):
-            protocol.Agent.of(f"x={path}")
+            protocol.Entrant.of(f"x={path}")
 
 
 @pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},agents.players.built_in:GhostBall"])
 def test_players_and_models_under_one_label_are_refused(which, models):
     with pytest.raises(ValueError, match=r"agent = 'x=.*: must be players or trained models, not both"):
-        protocol.Agent.of(which.format(models / "m-0"))
+        protocol.Entrant.of(which.format(models / "m-0"))
 
 
 @pytest.mark.parametrize(
@@ -197,7 +197,7 @@ def test_a_broken_file_is_named(file, text, says, models, tmp_path):
     else:
         (tmp_path / file).write_text(text)
     with pytest.raises(ValueError, match=says):
-        protocol.Agent.of(str(tmp_path / "model.zip" if file == "model.json" else tmp_path)).trained()
+        protocol.Entrant.of(str(tmp_path / "model.zip" if file == "model.json" else tmp_path)).trained()
 
 
 def test_a_picture_that_fails_loses_no_figures(tmp_path, monkeypatch):
@@ -296,9 +296,9 @@ def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
 
 def test_a_world_is_named_as_it_was_called():
     for text in ("paper", "match", "paper,mu_bb=marlow", "match,mu_bb=0.06"):
-        assert text_of(world(text)) == text
-        assert Physics.of(world(text)) == Physics.of(world(text_of(world(text))))
-    assert text_of("match") == "match" and Physics.of(world("match,mu_bb=0.06")).mu_bb == 0.06
+        assert physics_text(physics_option(text)) == text
+        assert Physics.of(physics_option(text)) == Physics.of(physics_option(physics_text(physics_option(text))))
+    assert physics_text("match") == "match" and Physics.of(physics_option("match,mu_bb=0.06")).mu_bb == 0.06
     for wrong in ("nothing", "paper,mu_bb", "paper,colour=1"):
         with pytest.raises(ValueError):
-            world(wrong)
+            physics_option(wrong)

@@ -8,7 +8,8 @@ from sb3_contrib import MaskablePPO, RecurrentPPO
 from stable_baselines3 import DQN, PPO, SAC
 
 from agents.evaluation import protocol
-from agents.learning.models import PRETRAINED, load_any
+from agents.learning.models import PRETRAINED
+from agents.players.trained import load_any
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from tests.bombs import bombed

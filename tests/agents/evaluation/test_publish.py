@@ -14,12 +14,13 @@ import torch
 from gymnasium import spaces
 
 from agents.evaluation import publish
-from agents.evaluation.entrants import Agent
+from agents.evaluation.entrants import Entrant
 from agents.features.views import training_tables
 from agents.learning import models
 from agents.learning.hyperparameters import Recipe
 from agents.learning.model_files import KEPT
-from agents.learning.models import load_player, load_trained, pretrained
+from agents.learning.models import load_trained, pretrained
+from agents.players.trained import load_player
 from snooker_env.envs.vector import SnookerVectorEnv
 
 FIGURES = {
@@ -193,7 +194,7 @@ def test_a_file_that_is_no_model_is_refused(run, capsys):
     assert "must be a model's .zip or a folder that holds model.zip" in refused(capsys, run, "--limits", "none")
     (run / "checkpoint.pkl").write_bytes(b"")
     with pytest.raises(ValueError, match=f"^agent = .*this run has not ended, it goes on with: python train.py --resume --out {run}$"):
-        Agent.of(str(run)).trained()
+        Entrant.of(str(run)).trained()
     assert published(run) == []
 
 
@@ -206,7 +207,7 @@ def test_a_model_of_an_older_network_is_refused(run, monkeypatch):
             with pytest.raises(ValueError, match=said.format("agent")):
                 load_player(run)
     with monkeypatch.context() as patch:
-        patch.setattr("agents.features.pot_features.Pots.space", spaces.Box(-1.0, 1.0, (7,), np.float32))
+        patch.setattr("agents.features.pot_features.PotsView.space", spaces.Box(-1.0, 1.0, (7,), np.float32))
         with pytest.raises(ValueError, match=said.format("start")):
             load_trained(run / "model.zip", "start")
     monkeypatch.setattr("agents.learning.model_files.Recipe.of", lambda name, **more: {}[name])

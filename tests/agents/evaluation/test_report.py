@@ -9,7 +9,7 @@ from scipy import stats
 
 from agents.evaluation import report
 from agents.evaluation.statistics import unseen
-from agents.evaluation.text_tables import WIDTH, Table
+from agents.evaluation.text_tables import WIDTH, TextTable
 
 GHOST = {"from": "ghost_ball"}
 
@@ -41,15 +41,15 @@ def said(*agents, **more):
     ("changes", "sentence"),
     [
         ({"shots": 2000}, "The trained agents had unequal shots (1,000 to 2,000)."),
-        ({"imitated": 300}, "The trained agents had unequal positions taught (0 to 300)."),
+        ({"imitated": 300}, "The trained agents had unequal positions imitated (0 to 300)."),
         ({"seconds": 12.0}, "The trained agents had unequal seconds of training (10 to 12)."),
         ({"seconds": None}, "Whether the trained agents had equal seconds of training cannot be said: not known of b."),
-        ({"imitated": None}, "Whether the trained agents had equal positions taught cannot be said: not known of b."),
+        ({"imitated": None}, "Whether the trained agents had equal positions imitated cannot be said: not known of b."),
     ],
 )
 def test_what_agents_were_given(changes, sentence):
     equal = [
-        "The trained agents had equal positions taught (0).", "The trained agents had equal shots (1,000).",
+        "The trained agents had equal positions imitated (0).", "The trained agents had equal shots (1,000).",
         "The trained agents had equal seconds of training (10).",
     ]  # fmt: skip
     assert said(agent("a"), agent("b")) == equal
@@ -79,7 +79,7 @@ def test_the_agents():
     trained, long = report.agents_tables(told(agent("a", imitated=300, seconds=None), {"label": "ghost_ball", "runs": [GHOST]}))
     assert trained.header == ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
     assert trained.rows == [["a", "r", "none", "fast", "paper", "0.95"], ["ghost_ball", "not trained", "", "", "", ""]]
-    assert long.header == ["agent", "seeds", "taught", "shots", "seconds", "shots/s"]
+    assert long.header == ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
     assert long.rows == [["a", "5", "300", "1,000", "", ""]]
     assert report.agents_tables(told(agent("a")))[1].rows[0][-3:] == ["1,000", "10", "100"]
 
@@ -168,10 +168,10 @@ def test_where_nothing_or_everything_was_seen_the_bound_is_exact(name, value, mo
 
 
 def tables_of(*results, layouts):
-    """The tables of an evaluation with these results: title -> ``Table``."""
+    """The tables of an evaluation with these results: title -> ``TextTable``."""
     made = told({"label": "a", "runs": [GHOST]}) | {"results": list(results)}
     made["protocol"] |= {"layouts": layouts, "noise": ["none"]}
-    return {part.title: part for part in report.parts(made) if isinstance(part, Table)}
+    return {part.title: part for part in report.parts(made) if isinstance(part, TextTable)}
 
 
 def test_what_cannot_be_on_a_layout_is_left_out():
@@ -191,9 +191,9 @@ def test_what_cannot_be_on_a_layout_is_left_out():
 
 
 def test_rows_and_columns_without_a_figure_are_left_out():
-    table = Table("t", ["k", "l", "a", "b", "c"], [["1", "x", "", "5", ""], ["2", "y", "", "", ""]], 2, 3).tidy()
+    table = TextTable("t", ["k", "l", "a", "b", "c"], [["1", "x", "", "5", ""], ["2", "y", "", "", ""]], 2, 3).tidy()
     assert (table.header, table.rows, table.left) == (["k", "l", "b"], [["1", "x", "5"]], 2)
-    assert list(Table("t", ["k", "a"], [["1", ""]], 1, 1).tidy().narrow()) == []
+    assert list(TextTable("t", ["k", "a"], [["1", ""]], 1, 1).tidy().narrow()) == []
 
 
 @pytest.mark.parametrize("many", [3, 20, 60])
@@ -201,7 +201,7 @@ def test_no_table_is_too_wide(many, capsys):
     """Every column is there once, beside the keys; nothing wraps."""
     header = ["noise", "agent", *(f"column {k}" for k in range(many))]
     rows = [[f"level {i}", "a|b", *(f"{i}.{k} [low, high]" for k in range(many))] for i in range(3)]
-    parts = list(Table("wide", header, rows, 2, 2, True).narrow())
+    parts = list(TextTable("wide", header, rows, 2, 2, True).narrow())
     assert [name for part in parts for name in part.header[2:]] == header[2:] and all(part.header[:2] == header[:2] for part in parts)
     for part in parts:
         part.show()
@@ -214,7 +214,7 @@ def test_no_table_is_too_wide(many, capsys):
 
 
 def test_a_label_that_is_too_long_is_folded(capsys):
-    report.Table("t", ["agent", "x"], [["a" * 150, "5"]], 1, 1).show()
+    report.TextTable("t", ["agent", "x"], [["a" * 150, "5"]], 1, 1).show()
     printed = capsys.readouterr().out
     assert max(map(len, printed.splitlines())) <= 100 and printed.count("a") > 149 and "5" in printed
 

@@ -103,7 +103,7 @@ def test_an_agent_is_played_under_its_condition(change):
     """Stroke by stroke as ``rollouts.play`` plays it there; and what is changed changes the play."""
     condition, seeds = USUAL | change, list(range(change.get("seeds", 3), 33))[:20]
     condition.pop("seeds", None)
-    found = protocol.play_agent(protocol.Agent("a", ("ghost_ball",)), condition, seeds, 100, 100)
+    found = protocol.play_agent(protocol.Entrant("a", ("ghost_ball",)), condition, seeds, 100, 100)
     wanted = rollouts.play(GhostBall(), 20, first_seed=seeds, **condition)
     usual = rollouts.play(GhostBall(), 20, first_seed=list(range(3, 23)), **USUAL)
     (strokes,) = found.strokes

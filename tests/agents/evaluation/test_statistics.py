@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from agents.evaluation.entrants import Agent
-from agents.evaluation.metrics import Played
+from agents.evaluation.entrants import Entrant
+from agents.evaluation.metrics import EntrantMetrics
 from agents.evaluation.statistics import Resamples, interval, iqm
 
 
@@ -77,8 +77,8 @@ def test_coverage_of_the_inter_quartile_mean():
 
 
 def played(label, points):
-    """A ``Played`` with these points (runs, visits) and nothing else."""
-    return Played(Agent(label, ("x",) * len(points)), {"points": points, "pots": points}, [], 1000)
+    """A ``EntrantMetrics`` with these points (runs, visits) and nothing else."""
+    return EntrantMetrics(Entrant(label, ("x",) * len(points)), {"points": points, "pots": points}, [], 1000)
 
 
 def test_paired_ratio():

@@ -1,6 +1,6 @@
 """Does the sentence about a run say what its figures show, and no more?"""
 
-from agents.evaluation.training_summary import lesson
+from agents.evaluation.training_summary import conclusion
 
 
 def player(points, se, share: float | None = 0.9):
@@ -9,11 +9,11 @@ def player(points, se, share: float | None = 0.9):
 
 
 def said(trained, ghost, random, **more):
-    """The lesson of these figures."""
-    return lesson("ppo_mask", 1000, 0, {"trained": trained, "ghost_ball": ghost, "random": random}, **more)
+    """The conclusion from these figures."""
+    return conclusion("ppo_mask", 1000, 0, {"trained": trained, "ghost_ball": ghost, "random": random}, **more)
 
 
-def test_lesson_claims_only_what_the_figures_show():
+def test_the_conclusion_claims_only_what_the_figures_show():
     poor = player(0.5, 0.1)
     no_better = "learned to play no better, as far as 100 visits can show, than random strokes at the pots there are: 0.33 pots"
     assert no_better in said(player(1.0, 0.3), player(0.9, 0.3), player(0.5, 0.3))
@@ -25,7 +25,7 @@ def test_lesson_claims_only_what_the_figures_show():
     assert "more than the widest pot" in said(player(9.0, 0.3), player(2.9, 0.3), poor)
 
 
-def test_lesson_gives_each_player_its_own_share_of_next_pots():
+def test_the_conclusion_gives_each_player_its_own_share_of_next_pots():
     """Whichever is greater; and none where there is none."""
     poor = player(0.5, 0.1)
     assert "follows in 60.0 % against 66.1 %." in said(player(9.0, 0.3, 0.6), player(2.9, 0.3, 0.661), poor)

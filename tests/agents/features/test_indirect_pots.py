@@ -10,7 +10,7 @@ from agents.evaluation.rollouts import play
 from agents.features import indirect_pots as ind
 from agents.features.indirect_pots import AIM_X, AIM_Y, BALL, BANK, CANNON, GHOST_X, GHOST_Y, KIND, OTHER, PLANT, POCKET, TOLERANCE
 from agents.players.aim_search import Aimer, widest_run
-from agents.players.built_in import player_of
+from agents.players.by_name import player_of
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, GREEN, N_BALLS, PINK, YELLOW, BallOn, mask_of
 from snooker_env.game.pots import pots

@@ -5,8 +5,9 @@ from positions import tables
 
 from agents.evaluation.rollouts import play, summary
 from agents.features import lookahead_features, pot_features, prospects
-from agents.features.noise_samples import LOOKS, errors_of, find, unevenness
-from agents.players.built_in import DISCRETE, GhostBall, player_of
+from agents.features.noise_samples import NOISE_SAMPLES, errors_of, find, unevenness
+from agents.players.built_in import DISCRETE, GhostBall
+from agents.players.by_name import player_of
 from snooker_env.game.balls import BallOn
 from snooker_env.planning import Planner, Positions
 from snooker_env.tasks.discrete_actions import SIZE
@@ -19,7 +20,7 @@ def rows_of(seen):
 
 def test_foresight_shows_what_happens_without_errors():
     env = tables(5, noise="none", **DISCRETE)
-    look = lookahead_features.Foresight(2)
+    look = lookahead_features.ForesightView(2)
     observations = env.reset(seed=4)[0]
     seen = look(env, observations)
     assert seen.shape == (5, *lookahead_features.SPACE.shape) and lookahead_features.SPACE.contains(seen[0])
@@ -45,12 +46,12 @@ def test_foresight_shows_what_happens_without_errors():
 def test_foresight_is_the_mean_over_looks_with_the_errors_of_the_tables():
     """Against the tables themselves, given the streams of each look in turn."""
     env, other = tables(4, noise="club", **DISCRETE), tables(4, noise="club", **DISCRETE)
-    seen = rows_of(lookahead_features.Foresight(1)(env, env.reset(seed=8)[0]))
+    seen = rows_of(lookahead_features.ForesightView(1)(env, env.reset(seed=8)[0]))
     spread = prospects.spread_of(env.tables.rules.noise, env.tables.rules.physics)
     for stroke in (1, 10):
         points, worth, cue, on = (np.zeros((5, 4)) for _ in range(4))
         next_best = np.zeros((5, 4, 3))
-        for i, key in enumerate(LOOKS):
+        for i, key in enumerate(NOISE_SAMPLES):
             other.reset(options={"states": env.get_state()})
             other.tables.streams[:] = (key, 0)
             _, points[i], ended, _, _ = other.step(lookahead_features.PICKS[np.full(4, stroke)])
@@ -75,7 +76,7 @@ def test_foresight_says_which_stroke_it_is():
     env = tables(6, noise="professional", layout="random:6", **DISCRETE)
     env.tables.game[:3, BALL_ON], env.tables.game[3:, BALL_ON] = int(BallOn.RED), int(BallOn.ANY_COLOUR)
     planner, at, masks = Planner(env), Positions.of(env), env.action_masks()[:, lookahead_features.PICKS]
-    rows = lookahead_features.Foresight(1).ahead(env, at, masks)
+    rows = lookahead_features.ForesightView(1).ahead(env, at, masks)
     chances = prospects.prospects_of(at, prospects.spread_of(planner.noise, planner.physics))[1]
     strokes = [(pot, speed, top) for pot in (0, 1) for speed in (1.3, 2.3, 3.6, 5.3) for top in (-0.4, 0.0, 0.4)]
     there = np.array([[chances[k, pot] > 0 for pot, _, _ in strokes] for k in range(6)])
@@ -102,11 +103,11 @@ def test_worth_by_hand():
 
 
 def test_looks_are_even():
-    errors = errors_of(LOOKS)
+    errors = errors_of(NOISE_SAMPLES)
     likely = [-1.2816, -0.5244, 0.0, 0.5244, 1.2816]
     assert np.abs(np.sort(errors[:, [0, 3]], axis=0).T - likely).max() < 0.25 and np.abs(errors.mean(0)).max() < 0.15
     assert np.abs(np.corrcoef(errors[:, :4].T) - np.eye(4)).max() < 0.55
-    _, least, median = find(len(LOOKS), keys=200, starts=1)
+    _, least, median = find(len(NOISE_SAMPLES), keys=200, starts=1)
     assert unevenness(errors) < least < median / 2
     many = errors_of(range(1, 400_001))  # standard errors: 0.0016 of a mean, 0.0022 of a variance
     assert np.abs(many.mean(0)).max() < 0.01 and np.abs(np.cov(many.T) - np.eye(5)).max() < 0.01
@@ -117,7 +118,7 @@ def test_lookahead_plays_the_stroke_that_promises_most():
     env, going = tables(6, noise="professional", **DISCRETE), np.array([True, False, True, True, True, True])
     player = player_of("lookahead")
     picks = player.act(env, None, going)
-    rows = rows_of(lookahead_features.Foresight()(env, env.reset(seed=0)[0]))
+    rows = rows_of(lookahead_features.ForesightView()(env, env.reset(seed=0)[0]))
     assert np.array_equal(picks[going], lookahead_features.PICKS[lookahead_features.worth_by_hand(rows).argmax(1)][going]) and picks[1] == 0
     far = play(player, 60, first_seed=5)
     plain = play(GhostBall(), 60, first_seed=5)

@@ -1,4 +1,4 @@
-"""Does the search teach what choices are worth, and does the pupil learn it?"""
+"""Does the expert say what choices are worth, and does the learner follow it?"""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from agents.features.prospects import prospects_of, spread_of
 from agents.features.views import training_tables
 from agents.learning import imitation
 from agents.learning.hyperparameters import Recipe
-from agents.learning.imitation import Teacher, Teaching, to_try
+from agents.learning.imitation import Expert, Imitation, to_try
 from snooker_env.planning import Positions
 from snooker_env.tasks.discrete_actions import SIZE, STROKES
 
@@ -27,8 +27,8 @@ def test_a_choice_is_worth_its_points_and_what_it_leaves():
     picks = np.array([np.flatnonzero(m)[[20, 37, 60]] for m in env.action_masks()])
     there = np.ones(picks.shape, bool)
     states = env.get_state()
-    worth = Teacher(env, 2, np.random.default_rng(0)).worth(picks, there)
-    points_only = Teacher(env, 1, np.random.default_rng(0), ahead=False).worth(picks, there)
+    worth = Expert(env, 2, np.random.default_rng(0)).worth(picks, there)
+    points_only = Expert(env, 1, np.random.default_rng(0), ahead=False).worth(picks, there)
     rules = env.tables.rules
     for k in range(picks.shape[1]):
         env.reset(options={"states": states})
@@ -40,7 +40,7 @@ def test_a_choice_is_worth_its_points_and_what_it_leaves():
     assert worth.max() > 5.0
     there[2:5, 1] = False
     env.reset(options={"states": states})
-    some = Teacher(env, 1, np.random.default_rng(0)).worth(picks, there)
+    some = Expert(env, 1, np.random.default_rng(0)).worth(picks, there)
     assert not some[~there].any() and np.array_equal(some[there], worth[there])
 
 
@@ -83,14 +83,14 @@ def test_the_pupil_becomes_the_softmax_of_worths():
         assert np.sqrt(np.mean((fitted - worths[k][there[k]]) ** 2)) < 0.3
 
 
-def test_teaching_is_reproducible_on_any_number_of_threads():
+def test_imitation_is_reproducible_on_any_number_of_threads():
     found = []
     for threads in (1, 2):
         venv = tables(8)
         model = Recipe.of("ppo_mask").new_model(venv, 5)
-        teaching = Teaching(model, venv, 64, 5, threads)
-        while teaching.done < 64:
-            teaching.round()
-        assert teaching.curve[-1]["states"] == 64
+        run = Imitation(model, venv, 64, 5, threads)
+        while run.done < 64:
+            run.round()
+        assert run.curve[-1]["states"] == 64
         found.append(torch.cat([p.detach().flatten() for p in model.policy.parameters()]))
     assert torch.equal(*found)

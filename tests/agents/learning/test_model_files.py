@@ -17,11 +17,12 @@ from stable_baselines3 import SAC
 
 import train
 from agents.evaluation import publish
-from agents.evaluation.entrants import Agent
+from agents.evaluation.entrants import Entrant
 from agents.features.views import training_tables
 from agents.learning.hyperparameters import Recipe, names
 from agents.learning.model_files import KEPT, packed, read
-from agents.learning.models import load_player, load_weights
+from agents.learning.models import load_weights
+from agents.players.trained import load_player
 from tests.bombs import bombed, rezipped, told
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -82,7 +83,7 @@ def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, capsys):
     ours = bombed(mask, tmp_path / "run" / "model.zip", tmp_path / "mark", weights)
     foreign = bombed(mask, tmp_path / "foreign.zip", tmp_path / "mark", weights, change=lambda found: found.pop("recipe"))
     for file in (ours, foreign, ours.parent):
-        for call in (lambda file=file: Agent.of(str(file)).trained(), lambda file=file: load_player(file)):
+        for call in (lambda file=file: Entrant.of(str(file)).trained(), lambda file=file: load_player(file)):
             if weights or file == foreign:
                 with pytest.raises(ValueError, match=r"^agent = '.*': must be"):
                     call()

@@ -1,4 +1,4 @@
-"""Does a run's folder belong to one run at a time, whatever ends it, and does a run that was stopped while it was taught go on exactly?"""
+"""Does a run's folder belong to one run at a time, whatever ends it, and does a run that stopped while it imitated go on exactly?"""
 
 import json
 import os
@@ -13,7 +13,7 @@ import pytest
 
 import train
 from agents.learning import callback, lock, models
-from agents.learning.imitation import Teaching
+from agents.learning.imitation import Imitation
 from commands.files import write_atomic
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -112,12 +112,12 @@ def test_what_a_killed_run_left_is_no_other_run(tmp_path, capsys):
     assert (tmp_path / "checkpoint.pkl.tmp.mine").exists() and not (tmp_path / "train.lock").exists()
 
 
-# stopped while it is taught ------------------------------------------------------------------------------------------------------
+# stopped while it imitates ------------------------------------------------------------------------------------------------------
 
 
 def after(rounds, monkeypatch, act):
-    """Let ``act`` happen once, when so many rounds of teaching are over."""
-    original, done = Teaching.round, []
+    """Let ``act`` happen once, when so many rounds of imitation are over."""
+    original, done = Imitation.round, []
 
     def counted(self):
         original(self)
@@ -125,7 +125,7 @@ def after(rounds, monkeypatch, act):
         if len(done) == rounds:
             act()
 
-    monkeypatch.setattr(Teaching, "round", counted)
+    monkeypatch.setattr(Imitation, "round", counted)
 
 
 def interrupt():
@@ -153,7 +153,7 @@ def untimed(out):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_saves_what_was_taught_and_resume_goes_on_exactly(whole, tmp_path, capsys, monkeypatch, number):
+def test_a_signal_saves_what_was_imitated_and_resume_goes_on_exactly(whole, tmp_path, capsys, monkeypatch, number):
     out = tmp_path / "run"
     with monkeypatch.context() as patch:
         after(20, patch, lambda: signal.raise_signal(number))
@@ -163,13 +163,13 @@ def test_a_signal_saves_what_was_taught_and_resume_goes_on_exactly(whole, tmp_pa
     assert {p.name for p in out.iterdir()} == {"checkpoint.pkl"}
     assert signal.getsignal(number) in (signal.default_int_handler, signal.SIG_DFL)
     assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
-    assert "taught by the search, 40 of 64 positions" in capsys.readouterr().out
+    assert "imitating the search, 40 of 64 positions" in capsys.readouterr().out
     assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
     assert len(untimed(out)[0]) == 20 and models.load_player(out).model.imitated == 64
 
 
-def test_teaching_is_saved_at_intervals(whole, tmp_path, capsys, monkeypatch):
-    """What comes without warning, as a kill does, loses only what was taught since the last save."""
+def test_imitation_is_saved_at_intervals(whole, tmp_path, capsys, monkeypatch):
+    """What comes without warning, as a kill does, loses only what was imitated since the last save."""
     out = tmp_path / "run"
     with monkeypatch.context() as patch:
         patch.setattr(callback, "LEAST", -1.0)
@@ -213,7 +213,7 @@ def test_saves_are_rare(tmp_path, monkeypatch):
             return None
 
     monkeypatch.setattr(callback, "save_checkpoint", save)
-    assert callback.taught(Lessons(), tmp_path, train.Settings(), Lessons(), callback.Stop(), False)
+    assert callback.imitate(Lessons(), tmp_path, train.Settings(), Lessons(), callback.Stop(), False)
     assert saves[0] == 31.0 and np.array_equal(np.diff(saves), [506.0] * 3)
 
 

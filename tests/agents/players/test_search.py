@@ -6,7 +6,8 @@ from positions import tables
 
 from agents.evaluation.rollouts import play, summary
 from agents.features import pot_features, prospects
-from agents.players.built_in import DISCRETE, GhostBall, Random, player_of
+from agents.players.built_in import DISCRETE, GhostBall, Random
+from agents.players.by_name import player_of
 from agents.players.search import Search, _Mind
 from snooker_env.planning import Positions, action_masks
 from snooker_env.tasks.discrete_actions import STROKES

@@ -1,0 +1,66 @@
+"""Which player does a name mean? One that is built in, a pre-trained model, a model's file or folder, or MODULE:CLASS of one's own.
+
+Any class of players (``built_in`` says what a player is) that is made without arguments can be named as MODULE:CLASS: the module is
+imported and so runs, it is the user's own code. Of the environment it may choose how its actions are read
+(``hyperparameters.ACTION_OPTIONS``); the other options are given to it. What reads models is imported only when a name means one.
+"""
+
+import importlib
+import re
+from pathlib import Path
+
+from snooker_env import SnookerVectorEnv
+from snooker_env.checks import choice, refuse
+
+from .built_in import ABSOLUTE, Geometric, GhostBall, Lookahead, Random
+from .search import Search
+
+NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "lookahead", "search")
+
+
+def is_player(name):
+    """Whether that is the name of a player, built in or MODULE:CLASS, and not of a model."""
+    own = re.fullmatch(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*", name) and not Path(name).exists()
+    return name in NAMES or bool(own)
+
+
+def _own(name):
+    """The player MODULE:CLASS."""
+    from ..learning.hyperparameters import ACTION_OPTIONS
+
+    module, _, maker = name.partition(":")
+    try:
+        player = getattr(importlib.import_module(module), maker)()
+        for key in player.options:
+            choice("key of options", key, ACTION_OPTIONS)
+        SnookerVectorEnv(1, **player.options).close()
+        if not callable(player.act):
+            raise TypeError("act cannot be called")
+    except Exception as error:  # it is the user's code
+        raise refuse("agent", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
+    return player
+
+
+def player_of(name, *, budget=2000, seed=0):
+    """The player or pre-trained model of that name, the model in that file or run folder, or MODULE:CLASS. ValueError if there is none."""
+    makers = {
+        "random": lambda: Random(seed=seed),
+        "random_absolute": lambda: Random(ABSOLUTE, seed),
+        "ghost_ball": GhostBall,
+        "geometric": Geometric,
+        "lookahead": Lookahead,
+        "search": lambda: Search(budget, seed=seed),
+    }
+    if name in makers:
+        return makers[name]()
+    if is_player(name):
+        return _own(name)
+    from ..learning.models import PRETRAINED, pretrained
+    from .trained import load_player
+
+    if name in pretrained():
+        return load_player(PRETRAINED / f"{name}.zip")
+    if not Path(name).exists():
+        known = ", ".join((*NAMES, *pretrained()))
+        raise refuse("agent", name, f"must be {known}, a model's .zip or a folder that holds model.zip")
+    return load_player(Path(name))
