@@ -90,7 +90,8 @@ def leave(tally, piece, entered):
 
 
 def _is_kernel(node):
-    names = {d.id for d in getattr(node, "decorator_list", ()) if isinstance(d, ast.Name)}
+    marks = (d.func if isinstance(d, ast.Call) else d for d in getattr(node, "decorator_list", ()))
+    names = {mark.id for mark in marks if isinstance(mark, ast.Name)}
     return isinstance(node, ast.FunctionDef) and not names.isdisjoint(("kernel", "inlined", "entry"))
 
 
