@@ -29,8 +29,9 @@ import numpy as np
 import snooker_env as sn
 from snooker_env import simulation
 from snooker_env.physics import table
-from snooker_env.physics.engine import PART, EventKind
+from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
+from snooker_env.physics.meetings import PART
 
 from . import _machine, _shots, _variants
 from ._command import at_least, command, pyplot, run, save_json, saved, writable
