@@ -87,7 +87,9 @@ class MatchEnv(AECEnv):
         self.action_spaces = {name: copy.deepcopy(self.options.rules.actions.space) for name in PLAYERS}  # each with its own generator
         self.np_random, _ = seeding.np_random()
         self._seeded = False
-        self._buffers, self._last, self._shot = ShotBuffers(1, path=render_mode is not None), None, None
+        self._buffers, self._last = ShotBuffers(1, path=render_mode is not None), None
+        self.last_shot = None
+        """The ``Shot`` of the last turn, with its path when a render mode is set; None where none was played."""
         self._pictures = Pictures(self.options.rules.table, render_mode)
 
     @property
@@ -152,7 +154,7 @@ class MatchEnv(AECEnv):
 
     def _begin(self):
         """PettingZoo's book-keeping for a table as it is."""
-        self._last = self._shot = None
+        self._last = self.last_shot = None
         self.agents = list(PLAYERS)
         self.rewards = dict.fromkeys(PLAYERS, 0.0)
         self._cumulative_rewards = dict.fromkeys(PLAYERS, 0.0)
@@ -181,7 +183,7 @@ class MatchEnv(AECEnv):
         played = self.tables.turn(lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers), out, crew)[0]
         self._last = out if played else None
         if not played:
-            self._shot = None
+            self.last_shot = None
         self._cumulative_rewards[name] = 0.0
         gained, winner = int(self.tables.lead()[0] - before), self.frame.winner
         self.rewards = {player: frame_reward(self.options.reward, gained, winner, k) for k, player in enumerate(PLAYERS)}
@@ -191,7 +193,7 @@ class MatchEnv(AECEnv):
             self._show(film=bool(played))
 
     def _watch(self, k, buffers, j, own):
-        self._shot = buffers.shot(j, self.options.rules.physics)
+        self.last_shot = buffers.shot(j, self.options.rules.physics)
 
     def _info(self, frame, player):
         last, row = self._last, self.tables.game[0]
@@ -229,10 +231,10 @@ class MatchEnv(AECEnv):
 
     def render(self):
         """The table with the cue ball's last path: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise."""
-        return self._pictures.render(self.tables.positions[0], self.tables.on_table[0], self._shot, self.tables.text(0))
+        return self._pictures.render(self.tables.positions[0], self.tables.on_table[0], self.last_shot, self.tables.text(0))
 
     def _show(self, *, film):
-        self._pictures.show(self.tables.positions[0], self.tables.on_table[0], self._shot, self.tables.text(0), film=film)
+        self._pictures.show(self.tables.positions[0], self.tables.on_table[0], self.last_shot, self.tables.text(0), film=film)
 
     def close(self):
         """Close the window, if there is one."""

@@ -1,7 +1,8 @@
 """How is a frame played, on one table or on thousands? Turns of two players by the rules of ``game.frame_columns``, each table on its own.
 
-A turn is the striker's: ``frame_kernels.decide`` (after a foul of the other), ``stroke.address``, ``stroke.run`` and ``conclude``, the referee. A step
-of the frame task is the agent's turn and all turns of the opponent up to the agent's next; the agent is player 0, the opponent player 1.
+A turn is the striker's: ``frame_kernels.decide`` (after a foul of the other), ``stroke.address``, ``stroke.run`` and the referee,
+``frame_kernels.conclude``. A step of the frame task is the agent's turn and all turns of the opponent up to the agent's next; the agent is
+player 0, the opponent player 1.
 Alone, the agent gets the table back at once whenever it would go to the other: penalties still go to the other's score, and after a foul
 he plays on from where the balls lie, without a free ball. A match is played turn by turn, whoever strikes.
 

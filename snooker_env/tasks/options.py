@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice, integer, refuse, truth
+from .._check import choice, integer, refuse, refuse_what, truth
 from ..game.frame import MISS_RULES
 from ..game.layouts import Plan
 from ..geometry import BALL_RADIUS
@@ -158,5 +158,5 @@ def options_of(options, given):
     if not isinstance(options, Options):
         raise refuse("options", options, "must be an Options or None")
     if given:
-        raise refuse("options", "Options", f"must be None with the keywords {sorted(given)}: change them with options.but(...)")
+        raise refuse_what("options", "an Options", f"must be None with the keywords {sorted(given)}: change them with options.but(...)")
     return options

@@ -90,8 +90,7 @@ def test_every_argument_of_the_environment_is_in_the_table_of_errors():
     assert {*NAMES, "render_mode"} <= named
     with pytest.raises(TypeError, match="foul_play"):
         SnookerEnv(foul_play=True)
-    with pytest.raises(TypeError):
-        SnookerEnv("visit")
+    refused(lambda: SnookerEnv("visit"), "options", "'visit'", "must be an Options or None")
 
 
 ENVS = {

@@ -50,7 +50,7 @@ def alike(a, b):
 
 
 def differences(ours, theirs):
-    """Which public names of a table are not the same; those of shared state are ``Visits``, compared by their arrays."""
+    """Which public names of a table are not the same; those of shared state are ``Tables``, compared by their arrays."""
     wrong = []
     for name in public(SnookerEnv()):
         if name in NOT_OF_A_TABLE:
@@ -63,8 +63,8 @@ def differences(ours, theirs):
             continue
         got, want = ours.call(name, *arguments), theirs.call(name, *arguments)
         assert isinstance(got, tuple) and len(got) == N
-        if name == "visits":
-            parts = ("positions", "on_table", "streams", "n")
+        if name == "tables":
+            parts = ("positions", "on_table", "game", "streams", "begun", "n")
             got, want = ([[getattr(v, part) for part in parts] for v in each] for each in (got, want))
         if not all(map(alike, got, want)):
             wrong.append(name)
@@ -118,7 +118,7 @@ def test_nothing_can_be_set():
     for name in ("reward", "no_such"):
         with pytest.raises(AttributeError, match=f"{name} cannot be set: the tables share everything"):
             env.set_attr(name, ["pots", "pots"])
-    assert env.get_attr("reward") == ("points", "points")
+    assert [options.reward for options in env.get_attr("options")] == ["points", "points"]
 
 
 def test_what_is_given_is_the_callers_own():

@@ -109,7 +109,9 @@ def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
 
 LONG = {
     "snooker_env.physics.engine": ["run_batch"], "snooker_env.simulation": ["_collide_balls", "_collide_cushion"],
-    "snooker_env.tasks.visit": ["_address", "_conclude", "_begin"], "snooker_env.game.layouts": ["deal_tables"],
+    "snooker_env.tasks.stroke": ["address"], "snooker_env.tasks.visit": ["_conclude", "_begin"],
+    "snooker_env.tasks.frame_kernels": ["decide", "remember", "conclude", "observe", "finish", "begin", "show"],
+    "snooker_env.tasks.opponents": ["_uniform", "_ghost_ball"], "snooker_env.game.layouts": ["deal_tables"],
     "snooker_env.game.apply_ruling": ["settle_one"], "snooker_env.game.paths": ["_paths"], "snooker_env.game.snookered": ["_snookered"],
     "agents.features.pot_features": ["_add_pots"], "agents.features.indirect_pots": ["_indirect"],
     "snooker_env.planning.strokes": ["_as_actions", "_pot_aim"], "snooker_env.planning.geometry": ["_pots", "_clear_paths"],

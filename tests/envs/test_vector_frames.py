@@ -1,0 +1,253 @@
+"""Do native vector frames play, bit for bit, what ``SyncVectorEnv`` plays? All autoreset modes, threads, opponents, actions, limits."""
+
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+
+import snooker_env as sn
+from snooker_env.envs import vector
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.tasks.discrete_actions import SIZE
+from snooker_env.tasks.options import Options
+from tests.envs.test_vector import MODES, native, same, sync
+from tests.refusals import refused
+
+
+def policy(observation, rng):
+    """An opponent in Python that draws from its generator and looks at what it sees."""
+    return np.clip(rng.uniform(-1.0, 1.0, 7) * (1.0, 0.3, 0.3, 0.5, 1.0, 1.0, 1.0) + 0.01 * observation[0], -1.0, 1.0)
+
+
+class Many:
+    """The same opponent, which says that it can be asked for many tables at once and counts how often it is."""
+
+    def __init__(self):
+        self.calls = 0
+
+    def __call__(self, observation, rng):
+        return policy(observation, rng)
+
+    def many(self, observations, generators, masks):
+        self.calls += 1
+        assert masks is None
+        return [policy(row, rng) for row, rng in zip(observations, generators, strict=True)]
+
+
+FULL = {"decision": True, "placement": True, "aim": "target", "noise": "club"}
+OPTIONS = {
+    "alone": {"layout": "opened", "miss": "clear_path"},
+    "alone, few balls": {"layout": "random:0", "aim": "target", "noise": "professional", "max_strokes": 25},
+    "random": FULL | {"opponent": "random", "layout": "random:1", "miss": "clear_path"},
+    "ghost_ball": {"opponent": "ghost_ball", "layout": "random:1", "aim": "target", "observation": "balls", "reward": "win"},
+    "ghost_ball breaks": FULL | {"opponent": "ghost_ball", "max_episode_steps": 4},
+    "callable": FULL | {"opponent": policy, "layout": "random:0", "max_strokes": 15},
+    "discrete": {"opponent": "random", "layout": "colours", "action": "discrete", "noise": "amateur", "max_strokes": 30},
+    "discrete, ghost_ball": {"opponent": "ghost_ball", "layout": "random:2", "action": "discrete", "max_episode_steps": 5},
+}
+
+
+def actions_of(env, rng):
+    """Random ones, mostly near a pot where that helps."""
+    if env.options.action == "discrete":
+        return np.array([rng.choice(np.flatnonzero(mask)) for mask in env.action_masks()])
+    a = rng.uniform(-1.0, 1.0, env.action_space.shape).astype(np.float32)
+    a[:, 1:4] *= 0.3
+    return a
+
+
+def check_equal(n, mode, steps, options, threads=None):
+    ours, theirs = native(n, task="frame", autoreset_mode=mode, threads=threads, **options), sync(n, mode, task="frame", **options)
+    assert ours.observation_space == theirs.observation_space and ours.action_space == theirs.action_space
+    assert same(ours.reset(seed=3), theirs.reset(seed=3))
+    rng, done, ends, strokes = np.random.default_rng(1), np.zeros(n, bool), 0, 0
+    for step in range(steps):
+        if mode == AutoresetMode.DISABLED and done.any():
+            got = ours.reset(options={"reset_mask": done.copy()})
+            assert same(got, theirs.reset(options={"reset_mask": done.copy()})), step
+        if options.get("action") == "discrete":
+            assert np.array_equal(ours.action_masks(), np.array(theirs.call("action_masks")))
+        a = actions_of(ours, rng)
+        got, want = ours.step(a), theirs.step(a)
+        for x, y, name in zip(got, want, ("observations", "rewards", "terminated", "truncated", "infos"), strict=True):
+            assert same(x, y), (step, name, x, y)
+        done = got[2] | got[3]
+        ends, strokes = ends + int(done.sum()), strokes + int(got[4]["opponent_strokes"].sum())
+    ours.close(), theirs.close()
+    return ends, strokes
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
+def test_they_equal_sync_vector_env(mode, options):
+    ends, strokes = check_equal(9, mode, 45, options)
+    assert ends > 0 or options["layout"] == "opened"
+    assert (strokes > 100) == ("opponent" in options)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+@pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball", policy])
+def test_any_number_of_threads_and_any_chunks_give_the_same(threads, opponent, monkeypatch):
+    monkeypatch.setattr(vector, "CHUNK", 16)
+    check_equal(50, AutoresetMode.SAME_STEP, 8, FULL | {"opponent": opponent, "layout": "random:3", "max_strokes": 9}, threads)
+
+
+def test_a_player_of_many_tables_is_asked_once_for_all_that_wait():
+    many = Many()
+    options = FULL | {"task": "frame", "layout": "random:2", "autoreset_mode": AutoresetMode.SAME_STEP}
+    one, other = native(40, opponent=many, **options), native(40, opponent=policy, **options)
+    assert same(one.reset(seed=1), other.reset(seed=1))
+    rng = np.random.default_rng(0)
+    for _ in range(5):
+        before, a = many.calls, actions_of(one, rng)
+        got, want = one.step(a), other.step(a)
+        assert all(same(x, y) for x, y in zip(got, want, strict=True))
+        longest = int(np.max(got[4]["opponent_strokes"]))
+        assert 0 < many.calls - before <= 2 * longest + 6  # rounds, not tables: handing over and new frames may add a few
+    wrong = SnookerVectorEnv(4, task="frame", opponent=type("Short", (), {"__call__": lambda *_: None, "many": lambda *_: []})())
+    with pytest.raises(ValueError, match=r"opponent's actions = 0: must be \d+, one for each table that waits"):
+        [wrong.reset(seed=seed) for seed in range(5)]
+
+
+def test_an_error_of_an_opponent_asks_for_a_reset():
+    def failing(observation, rng):
+        raise KeyError("no turn")
+
+    env = SnookerVectorEnv(4, task="frame", opponent=failing)
+    with pytest.raises(KeyError, match="no turn"):
+        env.reset(seed=3)
+    with pytest.raises(Exception, match=r"reset\(\) before step"):
+        env.step(np.zeros((4, 4)))
+
+
+def test_states_go_from_one_table_to_many_and_back():
+    options = {"task": "frame", "opponent": "random", "miss": "clear_path", "layout": "random:3", "decision": True, "placement": True}
+    one, many = SnookerEnv(**options), SnookerVectorEnv(3, **options)
+    one.reset(seed=4)
+    rng = np.random.default_rng(0)
+    for _ in range(6):
+        one.step(rng.uniform(-1, 1, 7))
+    state = one.get_state()
+    many.reset(options={"states": [state] * 3})
+    assert many.get_state() == [state] * 3
+    a = rng.uniform(-1, 1, 7)
+    want, got = one.step(a), many.step(np.tile(a, (3, 1)))
+    assert all(np.array_equal(row, want[0]) for row in got[0]) and got[1].tolist() == [want[1]] * 3
+    assert many.get_state()[2] == one.get_state() and many.call("frame")[1] == one.frame
+
+
+# One place for all options
+
+
+def test_options_are_checked_once_and_taken_by_every_environment():
+    options = Options(task="frame", layout="random:2", noise="club", decision=True)
+    keywords = {"task": "frame", "layout": "random:2", "noise": "club", "decision": True}
+    for one, other in ((SnookerEnv(options), SnookerEnv(**keywords)), (SnookerVectorEnv(2, options), SnookerVectorEnv(2, **keywords))):
+        assert one.options == other.options == options and same(one.reset(seed=2), other.reset(seed=2))
+    changed = options.but(noise="none")
+    assert changed.noise == "none" and options.noise == "club" and changed.rules.noise.silent
+    with pytest.raises(AttributeError):
+        options.noise = "none"  # pyright: ignore[reportAttributeAccessIssue]
+    with pytest.raises(ValueError, match=r"options = an Options: must be None with the keywords \['layout'\]"):
+        SnookerEnv(options, layout="colours")
+    for make in (SnookerEnv, lambda **k: SnookerVectorEnv(2, **k), Options):
+        with pytest.raises(TypeError, match="layuot"):
+            make(layuot="colours")
+
+
+def test_a_match_takes_them_too():
+    pytest.importorskip("pettingzoo")
+    env = sn.match_env(Options(task="frame", layout="random:2", aim="target"))
+    assert env.action_space("player_0").shape == (4,) and sn.match_env().action_space("player_0").shape == (7,)
+    for wrong in (Options(), Options(task="frame", opponent="random")):
+        with pytest.raises(ValueError, match="a match has two players"):
+            sn.match_env(wrong)
+
+
+# Discrete actions in frames and matches
+
+
+def test_discrete_actions_and_their_masks_in_a_frame():
+    env = SnookerEnv(task="frame", action="discrete", layout="random:2", opponent="ghost_ball")
+    env.reset(seed=1)
+    for step in range(30):
+        masks = env.action_masks()
+        assert masks.shape == (SIZE,) and masks.any() and masks[:135].all()
+        if env.step(int(np.flatnonzero(masks)[step % masks.sum()]))[2]:
+            break
+    assert env.frame.scores != (0, 0)
+
+
+def test_discrete_actions_and_their_masks_in_a_match():
+    pytest.importorskip("pettingzoo")
+    from pettingzoo.test import api_test
+
+    api_test(sn.match_env(action="discrete", layout="random:2"), num_cycles=40)
+    env = sn.match_env(action="discrete", layout="random:4")
+    env.reset(seed=5)
+    turns = set()
+    for _ in range(40):
+        player = env.agent_selection
+        other = next(name for name in env.possible_agents if name != player)
+        mask = env.infos[player]["action_mask"]
+        assert mask.dtype == np.int8 and mask.sum() >= 135 and not env.infos[other]["action_mask"].any()
+        assert np.array_equal(mask, env.action_mask(player))
+        env.step(int(np.flatnonzero(mask)[-1]))
+        turns.add(player)
+        if any(env.terminations.values()):
+            break
+    assert len(turns) == 2
+    with pytest.raises(ValueError, match="a Box has no masks"):
+        sn.match_env().action_mask("player_0")
+
+
+# Arrays that are given
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("options", [{"layout": "random:2"}, {"task": "frame", "layout": "random:0", "opponent": "random"}])
+def test_results_are_written_into_the_arrays_given(mode, options):
+    n = 6
+    plain, given = native(n, autoreset_mode=mode, **options), native(n, autoreset_mode=mode, **options)
+    out = {
+        "observations": np.full(plain.observation_space.shape, 9.0, np.float32), "rewards": np.full(n, 9.0),
+        "terminations": np.ones(n, bool), "truncations": np.ones(n, bool),
+    }  # fmt: skip
+    first = given.reset(seed=1, out={"observations": out["observations"]})
+    assert first[0] is out["observations"] and same(plain.reset(seed=1), first)
+    rng = np.random.default_rng(0)
+    for _ in range(12):
+        a = actions_of(plain, rng)
+        want, got = plain.step(a), given.step(a, out=out)
+        assert got[0] is out["observations"] and got[1] is out["rewards"] and got[2] is out["terminations"] and got[3] is out["truncations"]
+        assert all(same(x, y) for x, y in zip(want, got, strict=True))
+        done = want[2] | want[3]
+        if mode == AutoresetMode.DISABLED and done.any():
+            mask = {"reset_mask": done.copy()}
+            assert same(plain.reset(options=mask), given.reset(options=mask, out={"observations": out["observations"]}))
+
+
+def test_observations_of_balls_are_written_too():
+    env, plain = native(3, observation="balls"), native(3, observation="balls")
+    out = {"observations": {"balls": np.zeros((3, 22, 5), np.float32), "state": np.zeros((3, 11), np.float32)}}
+    got, _ = env.reset(seed=1, out=out)
+    assert got is out["observations"] and same(got, plain.reset(seed=1)[0])
+
+
+@pytest.mark.parametrize(
+    ("out", "field"),
+    [
+        ([], "out"), ({"infos": 1}, "out"), ({"rewards": np.zeros(3, np.float32)}, 'out["rewards"]'),
+        ({"rewards": [0.0] * 3}, 'out["rewards"]'), ({"observations": np.zeros((3, 120), np.float32)}, 'out["observations"]'),
+        ({"rewards": np.zeros(6)[::2]}, 'out["rewards"]'), ({"observations": np.zeros((121, 3), np.float32).T}, 'out["observations"]'),
+        ({"truncations": np.zeros(3)}, 'out["truncations"]'),
+    ],
+)  # fmt: skip
+def test_arrays_that_cannot_be_written_into_are_refused_before_anything_is_played(out, field):
+    env = native(3, noise="club")
+    env.reset(seed=1)
+    before = env.get_state()
+    with pytest.raises(ValueError) as info:
+        env.step(np.zeros((3, 4)), out=out)
+    assert str(info.value).startswith(f"{field} = ") and env.get_state() == before
+    refused(lambda: env.reset(out={"rewards": np.zeros(3)}), "out", "'rewards'", "must be one of 'observations'")
