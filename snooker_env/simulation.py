@@ -9,7 +9,7 @@ import numpy as np
 from ._check import array, flags, integer, refuse, refuse_what
 from ._jit import entry
 from .physics import cloth, cue, engine, trajectory
-from .physics.engine import EventKind, Status
+from .physics.events import EventKind, Status
 from .physics.impact import contact
 from .physics.impact.polynomial import WORK
 from .physics.parameters import FASTEST, FASTEST_IMPACT, MOST_SPIN, MOST_SPIN_IMPACT, P_E_B, Physics
@@ -266,15 +266,13 @@ def _run(state, physics, table, fidelity, max_events, log_size, path_size, threa
     b, n = state[0].shape[:2]
     out = _Run(
         np.zeros((b, n), np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b),
-        np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.COLUMNS + 2)),
+        np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT)),
     )  # fmt: skip
-    (r, v, w, here), (code, n_steps), phys = state, fidelity, physics.pack()
+    world = physics.pack(), table.noses, table.jaws, table.falls, *fidelity
+    log, outcome = (out.event_time, out.event_what, out.segments), (out.status, out.n_events, out.n_segments, out.duration)
 
     def run(first, last):
-        engine.run_batch(
-            r, v, w, here, out.potted, phys, table.noses, table.jaws, table.falls, code, n_steps, max_events, out.event_time,
-            out.event_what, out.segments, out.status, out.n_events, out.n_segments, out.duration, first, last,
-        )  # fmt: skip
+        engine.run_batch(*state, out.potted, *world, max_events, *log, *outcome, first, last)
 
     threads = min(threads, b)
     if threads <= 1:

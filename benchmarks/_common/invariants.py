@@ -15,7 +15,7 @@ import numpy as np
 from snooker_env.physics import cloth
 from snooker_env.physics.cloth import AX, AY, COLUMNS, FALLING, GONE, REST, T0, T_END, VX, VY, X, Y
 from snooker_env.physics.engine import EventKind, Status
-from snooker_env.physics.parameters import P_MU_A, P_MU_B, P_MU_S, P_R, P_SPIN
+from snooker_env.physics.parameters import P_MU_BB_EXTRA, P_MU_BB_LEAST, P_MU_S, P_R, P_SPIN
 from snooker_env.simulation import MAX_EVENTS, _run
 
 FINITE, CLOCK, JUMP, ENERGY, PHASE, MOMENTUM, PARTING, OVERLAP, CUSHION, REST_TIME, ACCOUNT = range(11)
@@ -185,7 +185,7 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
             push = hypot(a1 + b1, a2 + b2)
             impulse = max(hypot(a1, a2), hypot(b1, b2))
             size = hypot(v1[0], v1[1]) + hypot(v2[0], v2[1])
-            share = phys[P_MU_S] * (phys[P_MU_A] + phys[P_MU_B])
+            share = phys[P_MU_S] * (phys[P_MU_BB_LEAST] + phys[P_MU_BB_EXTRA])
             if impulse > 0.0 and not in_air:
                 _note(worst, MOMENTUM, (push - share * (impulse + push) - 1e-14 * size) / impulse)
             still = (rows[i, VX] - rows[j, VX]) * nx + (rows[i, VY] - rows[j, VY]) * ny

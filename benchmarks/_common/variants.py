@@ -11,7 +11,7 @@ FREE_BALLS, LOOSE_CUSHION, SMOOTH_CLOTH, MIRROR, AT_ONCE = 101, 102, 103, 104, 1
 cushion in closed form, with friction at the nose but none at the cloth; the cushion as a mirror with a restitution. A ball that drops at
 once where its centre crosses the edge of a pocket."""
 
-_FLIES = "if kind == _POT and state[i] != FALLING:"
+_FLIES = "if kind == events.POT and state[i] != FALLING"
 """Where the engine asks whether a ball at the edge of a pocket can meet a jaw behind it."""
 
 _ADDED = '''
@@ -32,7 +32,7 @@ def _smooth_cushion(v, w, nx, ny, phys, e):
     p = (1.0 + e) * vy / cos_t
     a1, a2 = vx + R * (wy * sin_t - wz * cos_t), -vy * sin_t + R * wx
     s = hypot(a1, a2)
-    k = min(phys[P_MU_W] * p / s, 1.0 / 3.5) if s > 0.0 else 0.0
+    k = min(phys[P_MU_C] * p / s, 1.0 / 3.5) if s > 0.0 else 0.0
     f1, f2 = -k * a1, -k * a2
     q = 2.5 / R
     after = (vx + f1, -e * vy - sin_t * f2, vz)
@@ -64,5 +64,5 @@ def load():
     texts["physics/impact/contact.py"] += _ADDED
     if texts["physics/engine.py"].count(_FLIES) != 1:
         raise RuntimeError(f"engine.py has changed: {_FLIES!r} is not in it once")
-    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES[:-1]} and fidelity != {AT_ONCE}:")
+    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES} and world.fidelity != {AT_ONCE}")
     return package_copies.load("snooker_env_variants", texts, ["simulation"])[0]

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 import snooker_env as sn
-from snooker_env.physics.impact.impulse import friction_coefficient
+from snooker_env.physics.impact import coulomb
 
 R, M = sn.Physics().R, sn.Physics().M
 REDUCED = M / 2
@@ -121,7 +121,7 @@ def micro_steps(r, v, w, p, q, k, c, g, mu_s, friction, dt, steps):
             pn = force * dt
             fx = fy = fz = 0.0
             if s > 0.0:
-                f = min(friction_coefficient(s, friction) * pn, M * s / 7.0)
+                f = min(coulomb.friction_coefficient(s, friction) * pn, M * s / 7.0)
                 fx, fy, fz = -f * sx / s, -f * sy / s, -f * sz / s
                 lost[1] += f * s
             ax, ay, az = (fx - pn * nx) / M, (fy - pn * ny) / M, fz / M
@@ -169,5 +169,5 @@ def compliant(r, v, w, physics, law=LAWS["Hertz"], dt=STEP, span=SPAN, stiffer=1
     """Balls after ``span`` seconds of micro-steps: r (n, 2), v (n, 3), w (n, 3), energy lost (4,) [J], greatest overlap [m]."""
     r, v, w = r.copy(), np.column_stack([v, np.zeros(len(v))]), w.copy()
     law = Law(law.p, law.q, law.k * stiffer)
-    constants = law.p, law.q, law.k, damping(law, physics.e_b), physics.g, physics.mu_s, physics.friction_law
+    constants = law.p, law.q, law.k, damping(law, physics.e_b), physics.g, physics.mu_s, coulomb.Law(*physics.friction_law)
     return r, v, w, *micro_steps(r, v, w, *constants, dt, round(span / dt))

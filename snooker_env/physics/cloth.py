@@ -24,6 +24,9 @@ GONE, REST, ROLL, SLIDE, FALLING, BEND = range(6)
 # ROLL: straight, to rest; BEND: a piece of a path that the nap bends, and it rolls on; FALLING: over a pocket
 X, Y, VX, VY, AX, AY, WX, WY, WZ, T0, T_END, LO_X, HI_X, LO_Y, HI_Y = range(15)
 COLUMNS = 15
+SEGMENT_BALL, SEGMENT_STATE = COLUMNS, COLUMNS + 1
+SEGMENT = COLUMNS + 2
+"""Columns of a segment, a row of a shot's path log: a ball's motion, then which ball it is, and its state."""
 
 _STILL = 1e-12  # m/s: slower is at rest (it would roll 4e-24 m)
 _STRAY = 2e-6  # m; no piece of a bent path is further from it

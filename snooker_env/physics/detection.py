@@ -9,9 +9,28 @@ again by rounding.
 """
 
 from math import inf, sqrt
+from typing import NamedTuple
 
 from .._jit import kernel
+from . import events
 from .cloth import AX, AY, HI_X, HI_Y, LO_X, LO_Y, REST, ROLL, T0, T_END, VX, VY, X, Y, extent
+from .columns import (
+    AXIS_X,
+    FALL_RADIUS,
+    FALL_X,
+    FALL_Y,
+    JAW_COS,
+    JAW_RADIUS,
+    JAW_UX,
+    JAW_UY,
+    JAW_X,
+    JAW_Y,
+    NOSE_AXIS,
+    NOSE_HIGH,
+    NOSE_LEVEL,
+    NOSE_LOW,
+    NOSE_SIDE,
+)
 from .roots import quadratic_crossing, quartic_crossing
 
 TOUCH = 1e-10  # m
@@ -100,24 +119,33 @@ def _apart(lo_x, hi_x, lo_y, hi_y, x, y, r):
     return dx * dx + dy * dy > r * r
 
 
+class Box(NamedTuple):
+    """A rectangle in the plane of the balls' centres [m]."""
+
+    lo_x: float
+    hi_x: float
+    lo_y: float
+    hi_y: float
+
+
 @kernel
 def clear_box(noses, jaws, falls, R):
-    """A rectangle (lo x, hi x, lo y, hi y) in which a ball's centre meets no nose, jaw or fall; an empty one if the table has none."""
+    """Where a ball's centre meets no nose, jaw or fall; empty if there is no such rectangle."""
     lo_x, hi_x, lo_y, hi_y = -inf, inf, -inf, inf
     for k in range(noses.shape[0]):
-        level = noses[k, 2] - R
-        if noses[k, 0] == 0.0:
-            lo_x, hi_x = (lo_x, min(hi_x, level)) if noses[k, 1] > 0.0 else (max(lo_x, -level), hi_x)
+        level = noses[k, NOSE_LEVEL] - R
+        if noses[k, NOSE_AXIS] == AXIS_X:
+            lo_x, hi_x = (lo_x, min(hi_x, level)) if noses[k, NOSE_SIDE] > 0.0 else (max(lo_x, -level), hi_x)
         else:
-            lo_y, hi_y = (lo_y, min(hi_y, level)) if noses[k, 1] > 0.0 else (max(lo_y, -level), hi_y)
+            lo_y, hi_y = (lo_y, min(hi_y, level)) if noses[k, NOSE_SIDE] > 0.0 else (max(lo_y, -level), hi_y)
     free = True
     for k in range(jaws.shape[0]):
-        free = free and _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, 0], jaws[k, 1], jaws[k, 2] + R - _MARGIN)
+        free = free and _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, JAW_X], jaws[k, JAW_Y], jaws[k, JAW_RADIUS] + R - _MARGIN)
     for k in range(falls.shape[0]):
-        free = free and _apart(lo_x, hi_x, lo_y, hi_y, falls[k, 0], falls[k, 1], falls[k, 2] - _MARGIN)
+        free = free and _apart(lo_x, hi_x, lo_y, hi_y, falls[k, FALL_X], falls[k, FALL_Y], falls[k, FALL_RADIUS] - _MARGIN)
     if not free:
-        return inf, -inf, inf, -inf
-    return lo_x, hi_x, lo_y, hi_y
+        return Box(inf, -inf, inf, -inf)
+    return Box(lo_x, hi_x, lo_y, hi_y)
 
 
 @kernel
@@ -135,32 +163,32 @@ def _level_crossing(gap, closing, closing2, beside, T):
 
 @kernel
 def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
-    """The next nose (kind 1), jaw (2) or fall (3) of ball i after T0 within its phase: absolute time, kind, index; inf if none.
+    """The next nose (CUSHION), jaw (JAW) or fall (POT) that ball i meets after T0 within its phase: time, kind, index; inf if none.
 
     clear: as ``clear_box`` returns it.
     """
-    best, kind, index = inf, 0, -1
+    best, kind, index = inf, events.NONE, -1
     lo_x, hi_x, lo_y, hi_y = motion[i, LO_X] - _MARGIN, motion[i, HI_X] + _MARGIN, motion[i, LO_Y] - _MARGIN, motion[i, HI_Y] + _MARGIN
-    if state[i] == REST or (lo_x > clear[0] and hi_x < clear[1] and lo_y > clear[2] and hi_y < clear[3]):
+    if state[i] == REST or (lo_x > clear.lo_x and hi_x < clear.hi_x and lo_y > clear.lo_y and hi_y < clear.hi_y):
         return best, kind, index
     T = motion[i, T_END] - motion[i, T0]
     x0, y0, x1, y1, x2, y2 = motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY], 0.5 * motion[i, AX], 0.5 * motion[i, AY]
     for k in range(noses.shape[0]):
-        side, level = noses[k, 1], noses[k, 2]
-        if noses[k, 0] == 0.0:
-            if (hi_x if side > 0.0 else -lo_x) < level - R or hi_y < noses[k, 3] or lo_y > noses[k, 4]:
+        side, level = noses[k, NOSE_SIDE], noses[k, NOSE_LEVEL]
+        if noses[k, NOSE_AXIS] == AXIS_X:
+            if (hi_x if side > 0.0 else -lo_x) < level - R or hi_y < noses[k, NOSE_LOW] or lo_y > noses[k, NOSE_HIGH]:
                 continue
             p, p1, p2, q, q1, q2 = x0, x1, x2, y0, y1, y2
         else:
-            if (hi_y if side > 0.0 else -lo_y) < level - R or hi_x < noses[k, 3] or lo_x > noses[k, 4]:
+            if (hi_y if side > 0.0 else -lo_y) < level - R or hi_x < noses[k, NOSE_LOW] or lo_x > noses[k, NOSE_HIGH]:
                 continue
             p, p1, p2, q, q1, q2 = y0, y1, y2, x0, x1, x2
-        beside = noses[k, 3] <= q <= noses[k, 4]
+        beside = noses[k, NOSE_LOW] <= q <= noses[k, NOSE_HIGH]
         s = _level_crossing(level - R - side * p, side * p1, side * p2, beside, min(T, best))
         if s < best:
             along = q + (q1 + q2 * s) * s
-            if noses[k, 3] <= along <= noses[k, 4]:
-                best, kind, index = s, 1, k
+            if noses[k, NOSE_LOW] <= along <= noses[k, NOSE_HIGH]:
+                best, kind, index = s, events.CUSHION, k
     if best < T:  # only what lies on the way to the nose can come first
         lo_x, hi_x = extent(x0, x1, motion[i, AX], best)
         lo_y, hi_y = extent(y0, y1, motion[i, AY], best)
@@ -168,28 +196,28 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
     # one limit for all falls, then one for all jaws: what is found for one of them does not hang on which comes before it in the list
     T = min(T, best)
     for k in range(falls.shape[0]):
-        if _apart(lo_x, hi_x, lo_y, hi_y, falls[k, 0], falls[k, 1], falls[k, 2]):
+        if _apart(lo_x, hi_x, lo_y, hi_y, falls[k, FALL_X], falls[k, FALL_Y], falls[k, FALL_RADIUS]):
             continue
-        s = distance_crossing(x0 - falls[k, 0], y0 - falls[k, 1], x1, y1, x2, y2, falls[k, 2], T)
+        s = distance_crossing(x0 - falls[k, FALL_X], y0 - falls[k, FALL_Y], x1, y1, x2, y2, falls[k, FALL_RADIUS], T)
         if s < best:
-            best, kind, index = s, 3, k
+            best, kind, index = s, events.POT, k
     T = min(T, best)
     for k in range(jaws.shape[0]):
-        if _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, 0], jaws[k, 1], jaws[k, 2] + R):
+        if _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, JAW_X], jaws[k, JAW_Y], jaws[k, JAW_RADIUS] + R):
             continue
-        cx, cy = x0 - jaws[k, 0], y0 - jaws[k, 1]
-        s = distance_crossing(cx, cy, x1, y1, x2, y2, jaws[k, 2] + R, T)
+        cx, cy = x0 - jaws[k, JAW_X], y0 - jaws[k, JAW_Y]
+        s = distance_crossing(cx, cy, x1, y1, x2, y2, jaws[k, JAW_RADIUS] + R, T)
         if s < best:
             dx, dy = cx + (x1 + x2 * s) * s, cy + (y1 + y2 * s) * s
             d = sqrt(dx * dx + dy * dy)
-            before = jaws[k, 5] - (dx * jaws[k, 3] + dy * jaws[k, 4]) / d
+            before = jaws[k, JAW_COS] - (dx * jaws[k, JAW_UX] + dy * jaws[k, JAW_UY]) / d
             if before > 0.0:
                 # The nose ends where the arc starts, with a common tangent: a ball pressed SKIN deep into the nose falls through the circle
                 # an angle of sqrt(2 SKIN / d) before that. One that glides along the nose only grazes it, by less than a tenth of that.
-                seam = sqrt(2.5 * SKIN / (jaws[k, 2] + R))
+                seam = sqrt(2.5 * SKIN / (jaws[k, JAW_RADIUS] + R))
                 vx, vy = x1 + 2.0 * x2 * s, y1 + 2.0 * y2 * s
                 grazes = -(dx * vx + dy * vy) < 0.3 * seam * d * sqrt(vx * vx + vy * vy)
-                if before > seam * sqrt(1.0 - jaws[k, 5] * jaws[k, 5]) or grazes:
+                if before > seam * sqrt(1.0 - jaws[k, JAW_COS] * jaws[k, JAW_COS]) or grazes:
                     continue
-            best, kind, index = s, 2, k
+            best, kind, index = s, events.JAW, k
     return motion[i, T0] + best, kind, index

@@ -29,7 +29,10 @@ _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
 """Bounds of ``e_c_power``: the rebound goes as no higher power of e than 1.25 (tests/physics/test_cushion_law.py), so it never falls."""
 
 # Places in the packed vector. They are indices, not tunables: freezing them into a kernel is safe.
-(P_R, P_M, P_G, P_MU_S, P_MU_R, P_SPIN, P_E_B, P_MU_A, P_MU_B, P_MU_C, P_E_C, P_E_KNEE, P_E_POWER, P_MU_W, P_SIN, P_E_J, P_NAP) = range(17)
+(
+    P_R, P_M, P_G, P_MU_S, P_MU_R, P_SPIN, P_E_B, P_MU_BB_LEAST, P_MU_BB_EXTRA, P_MU_BB_FADE, P_E_C, P_E_KNEE, P_E_POWER, P_MU_C, P_SIN,
+    P_E_J, P_NAP,
+) = range(17)  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)

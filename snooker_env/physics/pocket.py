@@ -24,7 +24,8 @@ each a parabola, with the impacts on the edge at its end. Oracle: a compliant ba
 from math import inf, sqrt
 
 from .._jit import kernel
-from .parameters import P_E_J, P_G, P_MU_W, P_R, P_SIN
+from .columns import FALL_RADIUS, FALL_X, FALL_Y, JAW_COS, JAW_RADIUS, JAW_UX, JAW_UY, JAW_X, JAW_Y
+from .parameters import P_E_J, P_G, P_MU_C, P_R, P_SIN
 
 JAW, LOST, BACK = range(3)
 """How a leg of the flight ends."""
@@ -49,7 +50,7 @@ def _first_arc(x, y, vx, vy, jaws, R):
     speed2 = vx * vx + vy * vy
     best, jaw = inf, -1
     for k in range(jaws.shape[0]):
-        px, py, reach = jaws[k, 0] - x, jaws[k, 1] - y, jaws[k, 2] + R
+        px, py, reach = jaws[k, JAW_X] - x, jaws[k, JAW_Y] - y, jaws[k, JAW_RADIUS] + R
         towards, beside = px * vx + py * vy, px * vy - py * vx
         chord2 = reach * reach * speed2 - beside * beside
         if towards <= 0.0 or chord2 <= 0.0:
@@ -57,7 +58,7 @@ def _first_arc(x, y, vx, vy, jaws, R):
         t = max(0.0, (towards - sqrt(chord2)) / speed2)
         if t < best:
             qx, qy = vx * t - px, vy * t - py
-            if qx * jaws[k, 3] + qy * jaws[k, 4] >= jaws[k, 5] * sqrt(qx * qx + qy * qy):
+            if qx * jaws[k, JAW_UX] + qy * jaws[k, JAW_UY] >= jaws[k, JAW_COS] * sqrt(qx * qx + qy * qy):
                 best, jaw = t, k
     return best, jaw
 
@@ -77,8 +78,8 @@ def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
         return best, jaw
     below = sqrt(2.0 * (1.0 - phys[P_SIN]) * R / g)  # a free fall until it is below the noses
     t = min(best, below)
-    dx, dy = x + vx * t - falls[pocket, 0], y + vy * t - falls[pocket, 1]
-    depth, high = falls[pocket, 2] - sqrt(dx * dx + dy * dy), R - 0.5 * g * t * t
+    dx, dy = x + vx * t - falls[pocket, FALL_X], y + vy * t - falls[pocket, FALL_Y]
+    depth, high = falls[pocket, FALL_RADIUS] - sqrt(dx * dx + dy * dy), R - 0.5 * g * t * t
     if depth < 0.0 or depth * depth + high * high < R * R:
         return -1.0, jaw
     return (best, jaw) if best < below else (inf, -1)
@@ -87,9 +88,9 @@ def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
 @kernel
 def _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket):
     """Does a straight line from (x, y) leave the fall on the side away from where the ball came in, seen from the centre?"""
-    dx, dy = x - falls[pocket, 0], y - falls[pocket, 1]
+    dx, dy = x - falls[pocket, FALL_X], y - falls[pocket, FALL_Y]
     speed2, along = vx * vx + vy * vy, dx * vx + dy * vy
-    inside = falls[pocket, 2] * falls[pocket, 2] - dx * dx - dy * dy
+    inside = falls[pocket, FALL_RADIUS] * falls[pocket, FALL_RADIUS] - dx * dx - dy * dy
     if inside < 0.0 or speed2 == 0.0:
         return False
     t = (sqrt(along * along + inside * speed2) - along) / speed2
@@ -103,24 +104,25 @@ def jaw_gap(x, y, z, jaws, k, R, sin_theta):
     Beyond its ends (part 1, else 0) an arc goes on straight along its tangents: on one side into the throat, on the other as the nose. A
     ball above the nose's height meets it as a wall: none flies over a cushion.
     """
-    dx, dy, ux, uy, c = x - jaws[k, 0], y - jaws[k, 1], jaws[k, 3], jaws[k, 4], jaws[k, 5]
-    far, near = dx * dx + dy * dy, jaws[k, 2] + 4.0 * R
+    dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
+    cos_half = jaws[k, JAW_COS]
+    far, near = dx * dx + dy * dy, jaws[k, JAW_RADIUS] + 4.0 * R
     if far > near * near:
         return 1.0, 0.0, 0.0, 0.0, 0
     far = sqrt(far)
     along, aside, part = dx * ux + dy * uy, dy * ux - dx * uy, 0
     nx, ny = dx / far, dy / far
-    if along < c * far:
-        s, part = sqrt(1.0 - c * c), 1
-        far = c * along + s * abs(aside)
-        if far <= jaws[k, 2]:
+    if along < cos_half * far:
+        sin_half, part = sqrt(1.0 - cos_half * cos_half), 1
+        far = cos_half * along + sin_half * abs(aside)
+        if far <= jaws[k, JAW_RADIUS]:
             return 1.0, 0.0, 0.0, 0.0, 0
-        s = s if aside > 0.0 else -s
-        nx, ny = c * ux - s * uy, c * uy + s * ux
+        s = sin_half if aside > 0.0 else -sin_half
+        nx, ny = cos_half * ux - s * uy, cos_half * uy + s * ux
     # the nose is where a ball on the bed is R from the table's arc; one that has dropped is held as far off, so that it comes back free
     sin_phi = min(1.0, max(0.0, sin_theta + z / R))
     high = min(sin_phi, sin_theta)
-    return far - jaws[k, 2] - R * (1.0 - sqrt(1.0 - sin_theta * sin_theta) + sqrt(1.0 - high * high)), -nx, -ny, sin_phi, part
+    return far - jaws[k, JAW_RADIUS] - R * (1.0 - sqrt(1.0 - sin_theta * sin_theta) + sqrt(1.0 - high * high)), -nx, -ny, sin_phi, part
 
 
 @kernel
@@ -139,7 +141,7 @@ def strike_jaw(vx, vy, u, w, nx, ny, sin_phi, phys):
     sz = -u + R * (w[0] * y - w[1] * x) - closing * z
     slip = sqrt(sx * sx + sy * sy + sz * sz)
     p = (1.0 + phys[P_E_J]) * closing
-    f = min(phys[P_MU_W] * p, slip / 3.5) / slip if slip > 0.0 else 0.0
+    f = min(phys[P_MU_C] * p, slip / 3.5) / slip if slip > 0.0 else 0.0
     fx, fy, fz = -f * sx, -f * sy, -f * sz
     q = 2.5 / R
     return (
@@ -165,8 +167,9 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
     first, last = jaws.shape[0], 0  # the jaws of this pocket
     for k in range(jaws.shape[0]):
         # from the middle of the arc, which is no further from its ends than their chord: a straight facing is an arc of a huge circle
-        dx, dy = jaws[k, 0] + jaws[k, 2] * jaws[k, 3] - falls[pocket, 0], jaws[k, 1] + jaws[k, 2] * jaws[k, 4] - falls[pocket, 1]
-        reach = jaws[k, 2] * sqrt(2.0 * (1.0 - jaws[k, 5])) + 4.0 * R + falls[pocket, 2]
+        dx = jaws[k, JAW_X] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UX] - falls[pocket, FALL_X]
+        dy = jaws[k, JAW_Y] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UY] - falls[pocket, FALL_Y]
+        reach = jaws[k, JAW_RADIUS] * sqrt(2.0 * (1.0 - jaws[k, JAW_COS])) + 4.0 * R + falls[pocket, FALL_RADIUS]
         if dx * dx + dy * dy < reach * reach:
             first, last = min(first, k), k + 1
     T = 0.0
@@ -176,9 +179,9 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
         x, y, z, u = x + vx * h, y + vy * h, z + (u + 0.5 * g * h) * h, u + g * h
         if z >= (1.0 - sin_theta) * R:
             return LOST, -1, T, x, y, z, vx, vy, u
-        dx, dy = x - falls[pocket, 0], y - falls[pocket, 1]
+        dx, dy = x - falls[pocket, FALL_X], y - falls[pocket, FALL_Y]
         far = sqrt(dx * dx + dy * dy)
-        depth, high = falls[pocket, 2] - far, R - z
+        depth, high = falls[pocket, FALL_RADIUS] - far, R - z
         reach2 = depth * depth + high * high
         if depth > 0.0 and reach2 < R * R:  # in touch with the edge
             reach = sqrt(reach2)

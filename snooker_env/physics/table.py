@@ -12,6 +12,22 @@ import numpy as np
 from .._check import array, choice, number, refuse, refuse_what
 from .._jit import entry
 from ..geometry import PRESETS, Bed, Pocket, parts
+from .columns import (
+    FALL_RADIUS,
+    FALL_X,
+    FALL_Y,
+    JAW_COS,
+    JAW_RADIUS,
+    JAW_UX,
+    JAW_UY,
+    JAW_X,
+    JAW_Y,
+    NOSE_AXIS,
+    NOSE_HIGH,
+    NOSE_LEVEL,
+    NOSE_LOW,
+    NOSE_SIDE,
+)
 
 MOUTH = 0.012
 """How far past the line of the noses [m] a ball may lie still, unless a table's pockets let it lie deeper: just so far between the jaw and
@@ -22,11 +38,6 @@ OVERLAP_ALLOWED = 1e-6
 """Input positions may overlap a ball or cushion by this much [m]: layouts printed to a micrometre. They count as touching."""
 SAME_BALL = 1e-9
 """A ball's radius may differ by this much [m] from the one that a table is made for."""
-
-NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL, NOSE_LOW, NOSE_HIGH = range(5)
-JAW_X, JAW_Y, JAW_RADIUS, JAW_UX, JAW_UY, JAW_COS = range(6)
-FALL_X, FALL_Y, FALL_RADIUS = range(3)
-"""Columns of ``Table.noses``, ``Table.jaws`` and ``Table.falls``."""
 
 
 @dataclass(frozen=True, eq=False)

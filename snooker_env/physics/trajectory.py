@@ -8,21 +8,21 @@ from . import cloth
 
 @entry
 def states_at(segments, n_balls, times, phys, positions, velocities, spins):
-    """Fill positions (m, n, 2), velocities (m, n, 2), spins (m, n, 3) at ``times`` (m,) from ``segments`` (k, COLUMNS + 2).
+    """Fill positions (m, n, 2), velocities (m, n, 2), spins (m, n, 3) at ``times`` (m,) from ``segments`` (k, cloth.SEGMENT).
 
     A segment holds from its T0 until the same ball's next one; of several at one time the last counts (after the impact).
     """
     k = segments.shape[0]
     state = np.empty(k, np.int64)
     for s in range(k):
-        state[s] = int(segments[s, cloth.COLUMNS + 1])
+        state[s] = int(segments[s, cloth.SEGMENT_STATE])
     current = np.empty(n_balls, np.int64)
     for m in range(times.shape[0]):
         t = times[m]
         for s in range(k):  # the log is in order of time
             if segments[s, cloth.T0] > t:
                 break
-            current[int(segments[s, cloth.COLUMNS])] = s
+            current[int(segments[s, cloth.SEGMENT_BALL])] = s
         for i in range(n_balls):
             r, v, w = cloth.evaluate(segments, state, current[i], t, phys)
             positions[m, i, 0], positions[m, i, 1] = r

@@ -12,8 +12,9 @@ import numpy as np
 from .._check import array, number, refuse
 from ..game.balls import CUE, N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ..physics.columns import JAW_RADIUS
 from ..physics.engine import EventKind
-from ..physics.table import JAW_RADIUS, Table
+from ..physics.table import Table
 
 RAIL = 0.155
 """From the nose line to the outer edge of the table [m]: cushion and wood."""

@@ -205,7 +205,7 @@ def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
 
     places = {
         "R": [p.P_R], "M": [p.P_M], "g": [p.P_G], "mu_s": [p.P_MU_S], "mu_r": [p.P_MU_R], "spin_decel": [p.P_SPIN], "e_b": [p.P_E_B],
-        "e_c": [p.P_E_C], "e_c_knee": [p.P_E_KNEE], "e_c_power": [p.P_E_POWER], "e_j": [p.P_E_J], "mu_c": [p.P_MU_W],
+        "e_c": [p.P_E_C], "e_c_knee": [p.P_E_KNEE], "e_c_power": [p.P_E_POWER], "e_j": [p.P_E_J], "mu_c": [p.P_MU_C],
         "sin_theta": [p.P_SIN], "nap": [p.P_NAP], "end_mass_ratio": [], "max_offset": [],
     }  # fmt: skip
     base = Physics(e_c_knee=1.0, e_j=0.9)  # where the power may be changed, and a jaw has a restitution of its own
@@ -218,7 +218,7 @@ def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
         for k in places[field.name]:
             assert changed[k] == value
     assert Physics(e_c=0.7).pack()[p.P_E_J] == 0.7
-    law = [p.P_MU_A, p.P_MU_B, p.P_MU_C]
+    law = [p.P_MU_BB_LEAST, p.P_MU_BB_EXTRA, p.P_MU_BB_FADE]
     assert Physics(mu_bb=(0.01, 0.1, 2.0)).pack()[law].tolist() == [0.01, 0.1, 2.0]
     assert Physics(mu_bb=0.07).pack()[law].tolist() == [0.07, 0.0, 0.0]
     assert Physics(mu_bb="marlow").pack()[law].tolist() == list(p.MARLOW)

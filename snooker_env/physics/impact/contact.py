@@ -8,24 +8,25 @@ from math import hypot, sqrt
 
 from ..._check import refuse
 from ..._jit import kernel
-from ..parameters import P_E_C, P_E_KNEE, P_E_POWER, P_MU_A, P_MU_B, P_MU_C, P_MU_S, P_MU_W, P_R, P_SIN
-from . import euler
-from .impulse import OK, friction_coefficient, solve
+from ..parameters import P_E_C, P_E_KNEE, P_E_POWER, P_MU_BB_EXTRA, P_MU_BB_FADE, P_MU_BB_LEAST, P_MU_C, P_MU_S, P_R, P_SIN
+from . import euler, inertia
+from .coulomb import Law, Problem, friction_coefficient
+from .impulse import OK, Accuracy, solve
+from .inertia import Slips
 
 FAST, STANDARD, REFERENCE, EULER = range(4)
 FIDELITIES = ("fast", "standard", "reference", "euler:N")
 MAX_EULER_STEPS = 10_000_000
 
-# In units of the closing speed: the local error allowed, the slip that counts as zero, the slip up to which one that has broken loose keeps
-# its limiting direction; then the order of the Taylor series. Measured against the oracle of
-# the tests: reference stays under 1e-9 of the larger incoming speed, standard under 1e-6 on 99 % of impacts and 1e-5 on all.
-_REFERENCE = (1e-13, 1e-13, 1e-5, 20)
-_STANDARD = (5e-8, 1e-7, 1e-3, 12)
-# Without the cloth's reaction a cushion would be wrong by 7 % of the speed, so "fast" keeps it and solves a few per mille exactly.
-_LOOSE = (1e-4, 1e-5, 1e-2, 8)
+# Measured against the oracle of the tests: reference stays under 1e-9 of the larger incoming speed, standard under 1e-6 on 99 % of impacts
+# and 1e-5 on all.
+_REFERENCE = Accuracy(tol=1e-13, delta=1e-13, creep=1e-5, order=20)
+_STANDARD = Accuracy(tol=5e-8, delta=1e-7, creep=1e-3, order=12)
+# Without the cloth's reaction a cushion would be wrong by 7 % of the speed, so "fast" keeps it and solves to a few per mille.
+_LOOSE = Accuracy(tol=1e-4, delta=1e-5, creep=1e-2, order=8)
 
-_NO_CLOSING = 1e-60  # below it a speed is zero: the scaled slips would overflow, and nothing physical is lost
-_BALLS = (7.0, 6.0, -1.0, 2.5, 0.0, 1.0, -2.0, 0.0, 1.0, 0.0, 0.0)  # ball pressed: O; from the masses in impulse.py's text
+_NO_CLOSING = 1e-60
+"""A closing speed [m/s] below this is zero: the scaled slips would overflow. Nothing physical is lost."""
 
 
 def parse_fidelity(fidelity):
@@ -65,20 +66,20 @@ def _to_world(a, nx, ny):
 
 @kernel
 def _friction_impulse_free(xa, za, ya, law, e):
-    """Free spheres, per unit mass: normal impulse and the friction impulse opposite to the first slip, capped where slip ends."""
+    """Two free spheres, per unit mass: friction impulse, opposite to the first slip and no more than ends it, and normal impulse."""
     pn = 0.5 * (1.0 + e) * ya
     s = hypot(xa, za)
     if s == 0.0:
         return 0.0, 0.0, pn
-    pt = min(friction_coefficient(s, law) * pn, s / 7.0)
+    pt = min(friction_coefficient(s, law) * pn, s / inertia.BALLS.k1)  # of free spheres the same for both tangents
     return -pt * xa / s, -pt * za / s, pn
 
 
 @kernel
-def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps, work):
+def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps, series):
     """Two balls in the frame X tangent, Y from C to O, Z up, closing."""
     R = phys[P_R]
-    law = (phys[P_MU_A], phys[P_MU_B], phys[P_MU_C])
+    law = Law(phys[P_MU_BB_LEAST], phys[P_MU_BB_EXTRA], phys[P_MU_BB_FADE])
     if fidelity == EULER:
         return euler.balls(vc, wc, vo, wo, law, phys[P_MU_S], R, e, n_steps)
     ya = vc[1] - vo[1]
@@ -92,7 +93,7 @@ def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps, work):
             (vo[0] - f1, vo[1] + p, vo[2] - f2), (wo[0] + q * f2, wo[1], wo[2] - q * f1), True,
         )  # fmt: skip
     accuracy = _REFERENCE if fidelity == REFERENCE else _STANDARD
-    if hypot(xa, za) <= accuracy[1] * ya:  # no slip, and nothing between two balls starts one: the normal impulse is all
+    if hypot(xa, za) <= accuracy.delta * ya:  # no slip, and nothing between two balls starts one: the normal impulse is all
         p = 0.5 * (1.0 + e) * ya
         return (vc[0], vc[1] - p, vc[2]), wc, (vo[0], vo[1] + p, vo[2]), wo, True
     # za < 0: friction presses O. za > 0 presses C: the same problem seen from the other side (half a turn about Z, names swapped),
@@ -101,10 +102,10 @@ def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps, work):
     sign = -1.0 if swapped else 1.0
     vp, wp = (vc, wc) if swapped else (vo, wo)  # the pressed ball
     b1, b2 = sign * (vp[0] - R * wp[1]), sign * (vp[1] + R * wp[0])
-    start = (xa / ya, -abs(za) / ya, b1 / ya, b2 / ya)
-    scaled_law = (law[0], law[1], law[2] * ya)
-    x, status = solve(start, _BALLS, scaled_law, phys[P_MU_S], e, accuracy, work)
-    f1, f2, g1, g2, p = x[0] * ya, x[1] * ya, x[2] * ya, x[3] * ya, x[4] * ya
+    start = Slips(xa / ya, -abs(za) / ya, b1 / ya, b2 / ya, 1.0)
+    scaled_law = Law(law.least, law.extra, law.fade * ya)
+    x, status = solve(Problem(inertia.BALLS, start, scaled_law, phys[P_MU_S], e), accuracy, series)
+    f1, f2, g1, g2, p = x.F1 * ya, x.F2 * ya, x.G1 * ya, x.G2 * ya, x.p * ya
     # lifted ball: (f1, -p, f2) and spin q (f2, 0, -f1); pressed: (-f1 + g1, p + g2, 0) and spin q (f2 + g2, -g1, -f1)
     lift_v, lift_w = (sign * f1, -sign * p, f2), (sign * q * f2, 0.0, -q * f1)
     press_v, press_w = (sign * (g1 - f1), sign * (p + g2), 0.0), (sign * q * (f2 + g2), -sign * q * g1, -q * f1)
@@ -119,7 +120,7 @@ def _add(a, b):
 
 
 @kernel(seconds=2, uses=(solve,))
-def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, work):
+def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, series):
     """Impact of two equal balls, (nx, ny) the unit vector from ball 1 to ball 2 -> v1, w1, v2, w2, solved.
 
     [MJP14] 2.1 to 2.4. ``e``: restitution to use. The vertical velocity of the lifted ball is part of the result.
@@ -127,21 +128,13 @@ def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, work):
     if not (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny > _NO_CLOSING:
         return v1, w1, v2, w2, True
     vc, wc, vo, wo, solved = _balls_in_frame(
-        _to_frame(v1, nx, ny), _to_frame(w1, nx, ny), _to_frame(v2, nx, ny), _to_frame(w2, nx, ny), phys, e, fidelity, n_steps, work
+        _to_frame(v1, nx, ny), _to_frame(w1, nx, ny), _to_frame(v2, nx, ny), _to_frame(w2, nx, ny), phys, e, fidelity, n_steps, series
     )
     return _to_world(vc, nx, ny), _to_world(wc, nx, ny), _to_world(vo, nx, ny), _to_world(wo, nx, ny), solved
 
 
-@kernel
-def _cushion_constants(sin_t, cos_t):
-    """impulse.py's constants for a nose at height R sin_t above the centre (from the masses, [MJP10])."""
-    return (
-        3.5, 2.5 + sin_t * sin_t, 1.0 - 2.5 * sin_t, 2.5 - sin_t, sin_t * cos_t, -cos_t, -cos_t * cos_t, sin_t, -cos_t, cos_t, sin_t,
-    )  # fmt: skip
-
-
 @kernel(seconds=1, uses=(solve,))
-def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, work):
+def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, series):
     """Impact of a ball with a nose, (nx, ny) the unit vector INTO the cushion -> v, w, solved. [MJP10], Coulomb at zero slip.
 
     ``"fast"`` integrates with a loose tolerance: there is no closed form that keeps the cloth's reaction, which matters here.
@@ -153,18 +146,17 @@ def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, work):
     if not closing > _NO_CLOSING:
         return v, w, True
     wx, wy, wz = _to_frame(w, nx, ny)
-    R, mu_s, mu_w = phys[P_R], phys[P_MU_S], phys[P_MU_W]
+    R, mu_s, mu_c = phys[P_R], phys[P_MU_S], phys[P_MU_C]
     if fidelity == EULER:
-        v, w, solved = euler.cushion((vx, vy, vz), (wx, wy, wz), mu_w, mu_s, R, sin_t, e, n_steps)
+        v, w, solved = euler.cushion((vx, vy, vz), (wx, wy, wz), mu_c, mu_s, R, sin_t, e, n_steps)
         return _to_world(v, nx, ny), _to_world(w, nx, ny), solved
-    c = _cushion_constants(sin_t, cos_t)
-    start = (
+    start = Slips(
         (vx + R * (wy * sin_t - wz * cos_t)) / closing, (-vy * sin_t + vz * cos_t + R * wx) / closing,
-        (vx - R * wy) / closing, (vy + R * wx) / closing,
+        (vx - R * wy) / closing, (vy + R * wx) / closing, 1.0,
     )  # fmt: skip
     accuracy = _REFERENCE if fidelity == REFERENCE else _STANDARD if fidelity == STANDARD else _LOOSE
-    x, status = solve(start, c, (mu_w, 0.0, 0.0), mu_s, e, accuracy, work)
-    f1, f2, g1, g2, p, lift = x[0] * closing, x[1] * closing, x[2] * closing, x[3] * closing, x[4] * closing, x[6] * closing
+    x, status = solve(Problem(inertia.cushion(sin_t, cos_t), start, Law(mu_c, 0.0, 0.0), mu_s, e), accuracy, series)
+    f1, f2, g1, g2, p, lift = x.F1 * closing, x.F2 * closing, x.G1 * closing, x.G2 * closing, x.p * closing, x.Z * closing
     q = 2.5 / R
     v = (vx + f1 + g1, vy - cos_t * p - sin_t * f2 + g2, vz + lift)
     w = (wx + q * (f2 + g2), wy + q * (sin_t * f1 - g1), wz - q * cos_t * f1)

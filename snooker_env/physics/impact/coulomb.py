@@ -1,47 +1,66 @@
-"""How fast do the impulses of an impact grow? Coulomb's law at its two contacts: at A, between the bodies, and under the pressed ball.
+"""How do Coulomb's laws at the two contacts drive an impact? The rates of its impulses, for each state that the contacts can be in.
 
-The equations and their names are those of ``impulse.py``. Each contact is in one of a few states, and each state has its own rates.
+The symbols are those of ``inertia.py`` and ``impulse.py``. Contact A slips, sticks, or creeps; the cloth contact slides, starts, or grips.
 """
 
 from math import exp, hypot, sqrt
+from typing import NamedTuple
 
 from ..._jit import kernel
+from .inertia import K_CLOTH, Contact, Impulses, Slips, slips_after
 
-SLIP, STICK, CREEP = 0, 1, 2  # what contact A does
-SLIDES, STARTS, GRIPS = 0, 1, 2  # what the cloth contact does: slips; is about to slip, from zero; holds
-_SLOW = 0.1  # a slip changes slowly if friction and drive cancel but for this part
-KB = 3.5  # effective inverse mass of a solid sphere's lowest point, times M
+SLIP, STICK, CREEP = 0, 1, 2
+"""Contact A. SLIP: friction is opposite to the slip. STICK: friction holds the slip at zero. CREEP: the slip is too small to be followed,
+but friction cannot hold it; it has the direction in which the other forces drive it."""
+SLIDES, STARTS, GRIPS = 0, 1, 2
+"""The cloth contact. SLIDES: friction is opposite to the slip. STARTS: the slip is zero and about to start, friction is opposite to what
+drives it. GRIPS: friction holds it at zero."""
+
+_NEARLY_BALANCED = 0.1
+"""A slip creeps only while friction and drive cancel but for this part of friction's own effect. Twice or half: under 2 % of the steps
+(measured as in ``impulse.py``, here and below)."""
+_ALIGNED = 1e-3
+"""... and only once its direction is the drive's to within this angle [rad]. Twice or half: no change above 2e-8."""
+_DIRECTION_TRIALS, _SETTLED = 30, 1e-15
+"""The direction of creep is iterated until it moves by no more than rounding; each round gains a factor of about mu, so 30 are
+ample. Half: no change above 5e-13."""
+_HALVINGS = 60
+"""More than the bits of a double: the bisection ends at rounding. Half: a few harsh impacts move by 7e-6."""
+
+
+class Law(NamedTuple):
+    """The coefficient of friction at A as a function of the slip s: mu(s) = least + extra exp(-fade s)."""
+
+    least: float
+    extra: float
+    fade: float
+
+
+class Problem(NamedTuple):
+    """One impact to solve: its constants, the slips before it, both coefficients of friction, and the energetic restitution."""
+
+    contact: Contact
+    start: Slips
+    law: Law
+    mu_s: float
+    e: float
 
 
 @kernel
 def friction_coefficient(s, law):
-    """mu(s) = a + b exp(-c s); ``law`` = (a, b, c)."""
-    return law[0] if law[1] == 0.0 else law[0] + law[1] * exp(-law[2] * s)
+    """mu(s); a constant law costs no exponential."""
+    return law.least if law.extra == 0.0 else law.least + law.extra * exp(-law.fade * s)
 
 
 @kernel
-def slips(x, start, c):
-    """Slips a1, a2 at A, b1, b2 at the cloth, and the closing speed y, from the state x = (F1, F2, G1, G2, p, W, Z)."""
-    k1, k2, c1, c2, d_a, d_b, d_y, _n0, _n2, l_a, l_y = c
-    f1, f2, g1, g2, p, _w, z = x
-    return (
-        start[0] + k1 * f1 + c1 * g1,
-        start[1] + d_a * p + k2 * f2 + c2 * g2 + l_a * z,
-        start[2] + c1 * f1 + KB * g1,
-        start[3] + d_b * p + c2 * f2 + KB * g2,
-        1.0 + d_y * p - d_a * f2 - d_b * g2 + l_y * z,
-    )
-
-
-@kernel
-def _cloth_friction(b1, b2, drive1, drive2, most, near, cloth):
+def _cloth_friction(slip, drive1, drive2, most, near, cloth):
     """Friction of at most ``most`` against the cloth slip b; against the drive, where b starts from zero; or what holds it at zero."""
     if cloth == GRIPS:
-        return -drive1 / KB, -drive2 / KB
-    size = sqrt(b1 * b1 + b2 * b2)
+        return -drive1 / K_CLOTH, -drive2 / K_CLOTH
+    size = sqrt(slip.b1 * slip.b1 + slip.b2 * slip.b2)
     if size > (near if cloth == STARTS else 0.0):
         r = -most / size
-        return r * b1, r * b2
+        return r * slip.b1, r * slip.b2
     size = sqrt(drive1 * drive1 + drive2 * drive2)
     if size == 0.0:
         return 0.0, 0.0
@@ -50,95 +69,80 @@ def _cloth_friction(b1, b2, drive1, drive2, most, near, cloth):
 
 
 @kernel
-def _slip_rates(x, start, c, law, mu_s, near, cloth):
-    """dx/dt while A slips, dp = |a| dt."""
-    c1, c2, d_b, n0, n2 = c[2], c[3], c[5], c[7], c[8]
-    a1, a2, b1, b2, y = slips(x, start, c)
-    s = sqrt(a1 * a1 + a2 * a2)
-    mu = friction_coefficient(s, law)
-    f1, f2 = -mu * a1, -mu * a2
-    load = n0 * s + n2 * f2
+def _slip_rates(x, near, cloth, problem):
+    """dx/dt while A slips, dp = |a| dt: F' = -mu a."""
+    contact = problem.contact
+    slip = slips_after(x, problem.start, contact)
+    s = sqrt(slip.a1 * slip.a1 + slip.a2 * slip.a2)
+    mu = friction_coefficient(s, problem.law)
+    f1, f2 = -mu * slip.a1, -mu * slip.a2
+    load = contact.n_p * s + contact.n_f * f2
     lift = 0.0
-    if load < 0.0 or x[6] > 0.0:
+    if load < 0.0 or x.Z > 0.0:
         lift, load = -load, 0.0
-    g1, g2 = _cloth_friction(b1, b2, c1 * f1, d_b * s + c2 * f2, mu_s * load, near, cloth)
-    return f1, f2, g1, g2, s, y * s, lift
+    drive1, drive2 = contact.c1 * f1, contact.d_b * s + contact.c2 * f2
+    g1, g2 = _cloth_friction(slip, drive1, drive2, problem.mu_s * load, near, cloth)
+    return Impulses(f1, f2, g1, g2, s, slip.closing * s, lift)
 
 
 @kernel
-def _stick_forces(b1, b2, z, c, mu_s, near, cloth):
-    """Per unit of p, the friction (f1, f2) that holds a = 0, with the cloth's (g1, g2) and the lift it implies."""
-    k1, k2, c1, c2, d_a, d_b, _dy, n0, n2, l_a, _ly = c
-    if cloth == GRIPS:  # only the second components are driven
-        det = k2 * KB - c2 * c2
-        return 0.0, (c2 * d_b - KB * d_a) / det, 0.0, (c2 * d_a - k2 * d_b) / det, 0.0
+def _stick_forces(b1, b2, z, near, cloth, problem):
+    """The friction that holds a = 0, per unit of p, with the cloth's friction and the lift that it implies: f1, f2, g1, g2, lift."""
+    k1, k2, c1, c2, d_a, d_b, _d_n, n_p, n_f, l_a, _l_n = problem.contact
+    mu_s = problem.mu_s
+    if cloth == GRIPS:  # a' = 0 and b' = 0; only their second components are driven
+        det = k2 * K_CLOTH - c2 * c2
+        return 0.0, (c2 * d_b - K_CLOTH * d_a) / det, 0.0, (c2 * d_a - k2 * d_b) / det, 0.0
     size = sqrt(b1 * b1 + b2 * b2)
     if size > (near if cloth == STARTS else 0.0):
         e1, e2 = b1 / size, b2 / size
     else:
         e1, e2 = 0.0, 1.0 if d_b - c2 * d_a / k2 >= 0.0 else -1.0
-    # g = -mu_s N e and f = -(d + C g)/k with N = n0 + n2 f2: one linear equation for f2
-    drive = c2 * mu_s * e2 * n0 - d_a
-    f2 = drive / (k2 - c2 * mu_s * e2 * n2) if drive != 0.0 else 0.0  # at sin_theta 0, mu_s 1 both are zero
-    load = n0 + n2 * f2
-    if load < 0.0 or z > 0.0:
-        f2 = (l_a * n0 - d_a) / (k2 - l_a * n2)
-        return 0.0, f2, 0.0, 0.0, -(n0 + n2 * f2)
+    # g = -mu_s N e with N = n_p + n_f f2, and a2' = 0: one linear equation for f2
+    drive = c2 * mu_s * e2 * n_p - d_a
+    f2 = drive / (k2 - c2 * mu_s * e2 * n_f) if drive != 0.0 else 0.0  # at sin_theta 0, mu_s 1 both are zero
+    load = n_p + n_f * f2
+    if load < 0.0 or z > 0.0:  # the ball lifts: g = 0, and a2' = 0 holds with l_a Z' = -l_a N
+        f2 = (l_a * n_p - d_a) / (k2 - l_a * n_f)
+        return 0.0, f2, 0.0, 0.0, -(n_p + n_f * f2)
     g1, g2 = -mu_s * load * e1, -mu_s * load * e2
     return -c1 * g1 / k1, f2, g1, g2, 0.0
 
 
 @kernel
-def _stick_rates(x, start, c, mu_s, near, cloth):
+def _stick_rates(x, near, cloth, problem):
     """dx/dp while A sticks."""
-    _a1, _a2, b1, b2, y = slips(x, start, c)
-    f1, f2, g1, g2, lift = _stick_forces(b1, b2, x[6], c, mu_s, near, cloth)
-    return f1, f2, g1, g2, 1.0, y, lift
+    slip = slips_after(x, problem.start, problem.contact)
+    f1, f2, g1, g2, lift = _stick_forces(slip.b1, slip.b2, x.Z, near, cloth, problem)
+    return Impulses(f1, f2, g1, g2, 1.0, slip.closing, lift)
 
 
 @kernel
-def _creep_rates(x, start, c, law, mu_s, near, cloth):
-    """dx/dp while the slip at A is negligible and friction hardly outweighs the drive, or the drive it: just after A broke loose, or while
-    its slip all but dies. It then has the direction e that the drive gives it.
+def _creep_rates(x, near, cloth, problem):
+    """dx/dp while A creeps: friction and what drives the slip nearly balance, just after A broke loose or while its slip dies away.
 
-    There a' = kappa e, so e_i = q_i / (kappa + mu k_i) with q the drive without A's own friction, and |e| = 1 gives kappa; q holds
-    the cloth's friction, which depends on e through the load: iterated.
-    """
-    k1, k2, c1, c2, d_a, d_b, _dy, n0, n2, l_a, _ly = c
-    a1, a2, b1, b2, y = slips(x, start, c)
-    mu = friction_coefficient(hypot(a1, a2), law)
-    e1, e2 = 0.0, 1.0 if d_a >= 0.0 else -1.0
+    The slip keeps the direction e that the drive gives it: a' = kappa e with kappa >= 0 and F' = -mu e. So (kappa + mu k_i) e_i = q_i,
+    where q, the drive without A's own friction, holds the cloth's friction, which depends on e through the load: e is found by iteration,
+    kappa in each round by |e| = 1."""
+    contact, mu_s = problem.contact, problem.mu_s
+    slip = slips_after(x, problem.start, contact)
+    mu = friction_coefficient(hypot(slip.a1, slip.a2), problem.law)
+    e1, e2 = 0.0, 1.0 if contact.d_a >= 0.0 else -1.0
     g1 = g2 = lift = 0.0
-    for _ in range(30):
-        load = n0 - n2 * mu * e2
+    for _ in range(_DIRECTION_TRIALS):
+        load = contact.n_p - contact.n_f * mu * e2
         lift = 0.0
-        if load < 0.0 or x[6] > 0.0:
+        if load < 0.0 or x.Z > 0.0:
             lift, load = -load, 0.0
-        g1, g2 = _cloth_friction(b1, b2, -c1 * mu * e1, d_b - c2 * mu * e2, mu_s * load, near, cloth)
-        r1, r2 = _direction(c1 * g1, d_a + c2 * g2 + l_a * lift, mu * k1, mu * k2)
+        drive1, drive2 = -contact.c1 * mu * e1, contact.d_b - contact.c2 * mu * e2
+        g1, g2 = _cloth_friction(slip, drive1, drive2, mu_s * load, near, cloth)
+        q1, q2 = contact.c1 * g1, contact.d_a + contact.c2 * g2 + contact.l_a * lift
+        r1, r2 = _direction(q1, q2, mu * contact.k1, mu * contact.k2)
         moved = abs(r1 - e1) + abs(r2 - e2)
         e1, e2 = r1, r2
-        if moved < 1e-15:
+        if moved < _SETTLED:
             break
-    return -mu * e1, -mu * e2, g1, g2, 1.0, y, lift
-
-
-@kernel
-def _slip_speed(rates, c):
-    """How fast the slip at A changes, per unit of the rates' variable."""
-    return hypot(c[0] * rates[0] + c[2] * rates[2], c[4] * rates[4] + c[1] * rates[1] + c[3] * rates[3] + c[9] * rates[6])
-
-
-@kernel
-def settled(x, a1, a2, s, start, c, law, mu_s, near, cloth):
-    """Does friction nearly balance the drive, and has the slip at A settled in the drive's direction?
-
-    Then dp = |a| dt would hardly move on, and ``_creep_rates`` is right to within the slip.
-    """
-    rates = _creep_rates(x, start, c, law, mu_s, near, cloth)
-    f1, f2 = rates[0], rates[1]
-    slow = _slip_speed(rates, c) < _SLOW * friction_coefficient(0.0, law) * c[1]
-    return slow and f1 * a1 + f2 * a2 < 0.0 and abs(f1 * a2 - f2 * a1) <= 1e-3 * s * hypot(f1, f2)
+    return Impulses(-mu * e1, -mu * e2, g1, g2, 1.0, slip.closing, lift)
 
 
 @kernel
@@ -148,7 +152,7 @@ def _direction(q1, q2, m1, m2):
     if q1 == 0.0 or size == 0.0:
         return 0.0, 1.0 if q2 >= 0.0 else -1.0
     low, high = -min(m1, m2), size
-    for _ in range(60):
+    for _ in range(_HALVINGS):
         kappa = 0.5 * (low + high)
         if (q1 / (kappa + m1)) ** 2 + (q2 / (kappa + m2)) ** 2 > 1.0:
             low = kappa
@@ -160,34 +164,57 @@ def _direction(q1, q2, m1, m2):
 
 
 @kernel
-def rates(x, mode, start, c, law, mu_s, near, cloth):
+def rates(x, mode, near, cloth, problem):
+    """How the impulses grow in this state of both contacts: per t with dp = |a| dt where A slips, else per unit of p."""
     if mode == SLIP:
-        return _slip_rates(x, start, c, law, mu_s, near, cloth)
+        return _slip_rates(x, near, cloth, problem)
     if mode == STICK:
-        return _stick_rates(x, start, c, mu_s, near, cloth)
-    return _creep_rates(x, start, c, law, mu_s, near, cloth)
+        return _stick_rates(x, near, cloth, problem)
+    return _creep_rates(x, near, cloth, problem)
 
 
 @kernel
-def held(x, start, c, law, mu_s, near, cloth):
+def _slip_rate(per, contact):
+    """How fast the slip at A changes while the impulses grow at the rates ``per``."""
+    return hypot(
+        contact.k1 * per.F1 + contact.c1 * per.G1,
+        contact.d_a * per.p + contact.k2 * per.F2 + contact.c2 * per.G2 + contact.l_a * per.Z,
+    )
+
+
+@kernel
+def settled(x, slip, s, near, cloth, problem):
+    """Does friction at A nearly balance the drive, and has the slip, of size s, taken the drive's direction?
+
+    Then dp = |a| dt would hardly move on, and ``_creep_rates`` is right to within the slip.
+    """
+    per = _creep_rates(x, near, cloth, problem)
+    slow = _slip_rate(per, problem.contact) < _NEARLY_BALANCED * friction_coefficient(0.0, problem.law) * problem.contact.k2
+    opposed = per.F1 * slip.a1 + per.F2 * slip.a2 < 0.0
+    return slow and opposed and abs(per.F1 * slip.a2 - per.F2 * slip.a1) <= _ALIGNED * s * hypot(per.F1, per.F2)
+
+
+@kernel
+def held(x, near, cloth, problem):
     """Can friction hold the slip at A at zero?"""
-    _1, _2, b1, b2, _v = slips(x, start, c)
-    f = _stick_forces(b1, b2, x[6], c, mu_s, near, cloth)
-    return hypot(f[0], f[1]) <= friction_coefficient(0.0, law)
+    slip = slips_after(x, problem.start, problem.contact)
+    f = _stick_forces(slip.b1, slip.b2, x.Z, near, cloth, problem)
+    return hypot(f[0], f[1]) <= friction_coefficient(0.0, problem.law)
 
 
 @kernel
-def wedged(c, law, mu_s):
-    """Between nose and cloth, both slips zero: do both hold?
+def wedged(problem):
+    """Between nose and cloth, both slips zero: do both contacts hold?
 
     Then nothing moves across the nose, and no impulse frees the ball. It takes both frictions: the forces go through both contacts.
     """
-    _1, f2, _2, g2, _lift = _stick_forces(0.0, 0.0, 0.0, c, mu_s, 0.0, GRIPS)
-    return abs(f2) <= friction_coefficient(0.0, law) and abs(g2) <= mu_s * (c[7] + c[8] * f2)
+    _f1, f2, _g1, g2, _lift = _stick_forces(0.0, 0.0, 0.0, 0.0, GRIPS, problem)
+    load = problem.contact.n_p + problem.contact.n_f * f2
+    return abs(f2) <= friction_coefficient(0.0, problem.law) and abs(g2) <= problem.mu_s * load
 
 
 @kernel
-def grip_holds(rates, x, c, mu_s):
-    """Is the cloth's friction in ``rates``, of a grip, within Coulomb's law, and the ball down?"""
-    most = mu_s * (c[7] * rates[4] + c[8] * rates[1])
-    return x[6] <= 0.0 and rates[2] * rates[2] + rates[3] * rates[3] <= most * most and most > 0.0
+def grip_holds(per, x, problem):
+    """Is the cloth's friction in the rates ``per``, of a grip, within Coulomb's law, and the ball down?"""
+    most = problem.mu_s * (problem.contact.n_p * per.p + problem.contact.n_f * per.F2)
+    return x.Z <= 0.0 and most * most >= per.G1 * per.G1 + per.G2 * per.G2 and most > 0.0

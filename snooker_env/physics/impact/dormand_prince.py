@@ -1,4 +1,4 @@
-"""How is a step of the impact's equations taken in any state? By the explicit pair of Dormand & Prince 5(4) on the seven numbers.
+"""How is a step taken when the contacts do not both slip? By the explicit Runge-Kutta pair 5(4) of Dormand & Prince, on all seven impulses.
 
 Coefficients: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6. One loop runs over the stages, so that
 the rates are compiled once.
@@ -8,10 +8,14 @@ import numpy as np
 
 from ..._jit import kernel
 from .coulomb import rates
-from .polynomial import ROW
+from .inertia import Impulses
+from .polynomial import CLOSING, F2, G2, LIFT, ROW, P
 
-DEGREE = 4  # of the continuous extension
-_STAGES = ROW * (DEGREE + 1)  # where the stages lie in the work array, behind the polynomial
+DEGREE = 4
+"""Of the continuous extension."""
+_STAGES = ROW * (DEGREE + 1)
+"""Where the rates of the stages lie in ``series``, behind the polynomial: 7 of 7 numbers."""
+_NONE = Impulses(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _A = np.array(
     [
         (0.2, 0.0, 0.0, 0.0, 0.0, 0.0),
@@ -32,58 +36,59 @@ _EXTENSION = np.array(
 
 
 @kernel
-def step(w, x, h, k1, mode, start, c, law, mu_s, near, cloth):
-    """One step from x, where the rates are k1 -> the state after it, the rates there, and the error of a state as a function of p."""
-    _store(w, 0, k1)
-    new, k7 = x, k1
+def step(series, x, h, per, mode, near, cloth, problem):
+    """One step from x, where the rates are ``per`` -> the state after it, the rates there, and the step's error as a function of p."""
+    _store(series, 0, per)
+    end, per_end = x, per
     for i in range(6):
-        new = x
+        end = x
         for j in range(i + 1):
-            new = _add(new, h * _A[i, j], _stage(w, j))
-        k7 = rates(new, mode, start, c, law, mu_s, near, cloth)
-        _store(w, i + 1, k7)
-    off = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            end = _add(end, h * _A[i, j], _stage(series, j))
+        per_end = rates(end, mode, near, cloth, problem)
+        _store(series, i + 1, per_end)
+    off = _NONE
     for j in range(7):
-        off = _add(off, h * _ERROR[j], _stage(w, j))
+        off = _add(off, h * _ERROR[j], _stage(series, j))
     # an error in p(t) alone is harmless: what counts is each number as a function of p
-    off = _add(off, -off[4] / k7[4], k7)
-    worst = max(max(max(abs(off[0]), abs(off[1])), max(abs(off[2]), abs(off[3]))), max(abs(off[5]), abs(off[6])))
-    return new, k7, worst
+    off = _add(off, -off.p / per_end.p, per_end)
+    worst = max(max(max(abs(off.F1), abs(off.F2)), max(abs(off.G1), abs(off.G2))), max(abs(off.W), abs(off.Z)))
+    return end, per_end, worst
 
 
 @kernel
-def _store(w, i, k):
+def _store(series, i, per):
     m = _STAGES + 7 * i
-    w[m], w[m + 1], w[m + 2], w[m + 3], w[m + 4], w[m + 5], w[m + 6] = k
+    series[m], series[m + 1], series[m + 2], series[m + 3], series[m + 4], series[m + 5], series[m + 6] = per
 
 
 @kernel
-def _stage(w, i):
+def _stage(series, i):
     m = _STAGES + 7 * i
-    return w[m], w[m + 1], w[m + 2], w[m + 3], w[m + 4], w[m + 5], w[m + 6]
+    return Impulses(series[m], series[m + 1], series[m + 2], series[m + 3], series[m + 4], series[m + 5], series[m + 6])
 
 
 @kernel
-def _add(x, h, k):
-    return (
-        x[0] + h * k[0], x[1] + h * k[1], x[2] + h * k[2], x[3] + h * k[3], x[4] + h * k[4], x[5] + h * k[5], x[6] + h * k[6],
+def _add(x, h, per):
+    return Impulses(
+        x.F1 + h * per.F1, x.F2 + h * per.F2, x.G1 + h * per.G1, x.G2 + h * per.G2, x.p + h * per.p, x.W + h * per.W, x.Z + h * per.Z,
     )  # fmt: skip
 
 
 @kernel
-def leave_polynomial(w, x, new, h, c):
+def leave_polynomial(series, x, end, h, contact):
     """The last step's continuous extension, of order 4, as a polynomial in the fraction of the step (Hairer, Norsett & Wanner, II.6)."""
-    d_a, d_b, d_y, l_y = c[4], c[5], c[6], c[10]
     for q in range(7):
-        r1 = new[q] - x[q]
-        r2 = h * w[_STAGES + q] - r1
-        r3 = r1 - h * w[_STAGES + 42 + q] - r2
+        r1 = end[q] - x[q]
+        r2 = h * series[_STAGES + q] - r1
+        r3 = r1 - h * series[_STAGES + 6 * 7 + q] - r2
         r4 = 0.0
         for j in range(7):
-            r4 += h * _EXTENSION[j] * w[_STAGES + 7 * j + q]
-        # x + s (r1 + (1 - s) (r2 + s (r3 + (1 - s) r4)))
-        w[q], w[ROW + q], w[2 * ROW + q], w[3 * ROW + q], w[4 * ROW + q] = x[q], r1 + r2, r3 + r4 - r2, -r3 - 2.0 * r4, r4
-    for k in range(DEGREE + 1):
+            r4 += h * _EXTENSION[j] * series[_STAGES + 7 * j + q]
+        # x + t (r1 + (1 - t) (r2 + t (r3 + (1 - t) r4))), by powers of t
+        series[q] = x[q]
+        series[ROW + q], series[2 * ROW + q], series[3 * ROW + q], series[4 * ROW + q] = r1 + r2, r3 + r4 - r2, -r3 - 2.0 * r4, r4
+    for k in range(DEGREE + 1):  # the closing speed follows linearly
         m = ROW * k
-        w[m + 7] = d_y * w[m + 4] - d_a * w[m + 1] - d_b * w[m + 3] + l_y * w[m + 6]
-    w[7] += 1.0
+        closing = contact.d_n * series[m + P] - contact.d_a * series[m + F2] - contact.d_b * series[m + G2]
+        series[m + CLOSING] = closing + contact.l_n * series[m + LIFT]
+    series[CLOSING] += 1.0

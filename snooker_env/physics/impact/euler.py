@@ -8,9 +8,10 @@ which the work has come down to its target. Kept as the paper has it, with its d
 from math import hypot, sqrt
 
 from ..._jit import kernel
-from .impulse import friction_coefficient
+from .coulomb import friction_coefficient
 
-_MAX_OVERRUN = 100  # steps allowed, in units of N, before the scheme is declared lost
+_MAX_OVERRUN = 100
+"""Steps allowed, in units of N, before the scheme is declared lost. One that ends takes some N of them."""
 
 
 @kernel
@@ -27,7 +28,7 @@ def balls(vc, wc, vo, wo, law, mu_s, R, e, n_steps):
     q = 2.5 / R
     work = target = 0.0
     compressing = True
-    for _ in range(_MAX_OVERRUN * n_steps + 100):
+    for _ in range(_MAX_OVERRUN * (n_steps + 1)):
         xa = (vcx - R * wcz) - (vox + R * woz)  # eq. 11b
         za = (vcz + R * wcx) - (voz - R * wox)
         ya = vcy - voy
@@ -71,8 +72,11 @@ def balls(vc, wc, vo, wo, law, mu_s, R, e, n_steps):
 
 
 @kernel
-def cushion(v, w, mu_w, mu_s, R, sin_t, e, n_steps):
-    """Ball against a nose in the frame X along the cushion, Y into it, Z up; returns v, w and whether the scheme came to its end."""
+def cushion(v, w, mu_c, mu_s, R, sin_t, e, n_steps):
+    """Ball against a nose in the frame X along the cushion, Y into it, Z up; returns v, w and whether the scheme came to its end.
+
+    mu_c: the coefficient at the nose, mu_w in [MJP10].
+    """
     vx, vy, vz = v
     wx, wy, wz = w
     cos_t = sqrt(1.0 - sin_t * sin_t)
@@ -81,13 +85,13 @@ def cushion(v, w, mu_w, mu_s, R, sin_t, e, n_steps):
     q = 2.5 / R
     work = target = 0.0
     compressing = True
-    for _ in range(_MAX_OVERRUN * n_steps + 100):
+    for _ in range(_MAX_OVERRUN * (n_steps + 1)):
         a1 = vx + R * (wy * sin_t - wz * cos_t)
         a2 = -vy * sin_t + vz * cos_t + R * wx
         s = hypot(a1, a2)
         f1 = f2 = g1 = g2 = 0.0
         if s > 0.0:
-            f1, f2 = -mu_w * a1 / s * dp, -mu_w * a2 / s * dp
+            f1, f2 = -mu_c * a1 / s * dp, -mu_c * a2 / s * dp
         load = dp * sin_t - f2 * cos_t
         lift = max(0.0, -load)
         load = max(0.0, load)

@@ -1,53 +1,60 @@
 """What happens inside a step of an impact? The step as a polynomial: its state at any time, and when a quantity reaches a value.
 
-Both methods of integration leave their step in this form, in a work array: coefficient k of quantity q is ``w[ROW * k + q]``. The first
-seven quantities are the state (F1, F2, G1, G2, p, W, Z); then the closing speed y; the rest is a method's own.
+Both methods of integration leave their step in this form, in the array ``series``: the coefficient of order k of a quantity is
+``series[ROW * k + column]``. The first seven columns are the state; then the closing speed; the others are a method's own.
 """
 
 from ..._jit import kernel
+from .inertia import Impulses
 
 ROW = 16
-WORK = 21 * ROW  # the size of a work array: a step of degree 20
-W, Y = 5, 7
+WORK = 21 * ROW
+"""The size of ``series``: a step of order 20, the highest of ``contact.py``."""
+F1, F2, G1, G2, P, WORK_DONE, LIFT, CLOSING = range(8)
+"""Columns: the fields of ``Impulses`` in their order, and the closing speed."""
+
+_MOST_TRIALS = 60
+"""Halley's method takes 2 or 3; even halving alone would end after so many. Twice or half: no change."""
 
 
 @kernel
-def state_at(w, n, t):
-    """The state at time t in a step of degree n."""
-    m = ROW * n
-    f1, f2, g1, g2, p, work, z = w[m], w[m + 1], w[m + 2], w[m + 3], w[m + 4], w[m + 5], w[m + 6]
-    for _ in range(n):
+def state_at(series, degree, t):
+    """The state at time t in a step of this degree (Horner's scheme)."""
+    m = ROW * degree
+    f1, f2, g1, g2, p = series[m + F1], series[m + F2], series[m + G1], series[m + G2], series[m + P]
+    done, lift = series[m + WORK_DONE], series[m + LIFT]
+    for _ in range(degree):
         m -= ROW
-        f1, f2, g1, g2 = w[m] + t * f1, w[m + 1] + t * f2, w[m + 2] + t * g1, w[m + 3] + t * g2
-        p, work, z = w[m + 4] + t * p, w[m + 5] + t * work, w[m + 6] + t * z
-    return f1, f2, g1, g2, p, work, z
+        f1, f2, g1, g2 = series[m + F1] + t * f1, series[m + F2] + t * f2, series[m + G1] + t * g1, series[m + G2] + t * g2
+        p, done, lift = series[m + P] + t * p, series[m + WORK_DONE] + t * done, series[m + LIFT] + t * lift
+    return Impulses(f1, f2, g1, g2, p, done, lift)
 
 
 @kernel
-def value_at(w, n, q, t):
-    """Quantity q at time t, its derivative, and half the second."""
-    m = ROW * n + q
-    f, slope, bend = w[m], 0.0, 0.0
-    for _ in range(n):
+def value_at(series, degree, column, t):
+    """A quantity at time t, its derivative, and half the second."""
+    m = ROW * degree + column
+    f, slope, bend = series[m], 0.0, 0.0
+    for _ in range(degree):
         m -= ROW
         bend = slope + t * bend
         slope = f + t * slope
-        f = w[m] + t * f
+        f = series[m] + t * f
     return f, slope, bend
 
 
 @kernel
-def time_of(w, n, q, value, low, high, t, near):
-    """When quantity q falls to the value, between low, where it is above, and high, where it is not; t: a guess, near: how close is enough.
+def time_of(series, degree, column, value, low, high, guess, near):
+    """When a quantity falls to the value: between ``low``, where it is above, and ``high``, where it is not; near: how close is enough.
 
-    Halley's method kept between low and high. It ends after a correction so small that the next, about its cube over the square of the
-    time since ``first``, where the quantity may stand still, would be below ``near``.
+    Halley's method, kept between low and high. It ends after a correction so small that the next one would be below ``near``: that is about
+    the cube of this one over the square of the time since the first ``low``, where the quantity may stand still.
     """
-    first = low
-    for _ in range(60):
+    first, t = low, guess
+    for _ in range(_MOST_TRIALS):
         if not low < t < high:
             t = 0.5 * (low + high)
-        f, slope, bend = value_at(w, n, q, t)
+        f, slope, bend = value_at(series, degree, column, t)
         f -= value
         low, high = (t, high) if f > 0.0 else (low, t)
         bottom = slope * slope - f * bend

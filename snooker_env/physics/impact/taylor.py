@@ -1,150 +1,186 @@
-"""How is a step taken while both contacts slip? By the Taylor series of the solution, as long as it converges fast.
+"""How is a step taken while both contacts slip? By the Taylor series of the solution, which spans most of an impact or all of it.
 
-Between the ends of slips all is analytic in t, dp = |a| dt. Written with the sizes s = |a| and B = |b| and the cloth slip's direction e as
-quantities of their own, the equations of ``impulse.py`` hold only products, so each series follows from those of lower order by sums of
-products [Moore 1966; Jorba & Zou 2005]::
+The variable is t, with dp = |a| dt. Between the ends of slips the solution is analytic in t. Write s = |a|, b = B e with |e| = 1 for the
+cloth slip, and N for the load on the cloth. Then the equations of ``impulse.py`` hold nothing but products::
 
-    s s = a . a      b = B e, e . e = 1      N = n0 s + n2 f2      f = -mu a      g = -mu_s N e      W' = y s
+    s s = a . a      b = B e, e . e = 1      N = n_p s + n_f F2'      F' = -mu a      G' = -mu_s N e      p' = s      W' = closing s
 
-b = B e at order k is a linear equation for B_k and the part of e_k across e_0; the part along e_0 follows from e . e = 1. A cloth slip that
-starts from zero is no singularity either: b = t B e with B_0 > 0, where e_0 is the direction of what drives it. Then b_{k+1} itself holds
-B_k and e_k, the latter through the friction -mu_s N e, and the equation is linear all the same.
-"""
+(N is the load per unit of t). So each coefficient follows from those of lower order by sums of products: automatic differentiation, as in
+Moore, Interval Analysis (1966), and Jorba & Zou, Experimental Mathematics 14 (2005). With X = sum of X_k t^k::
+
+    (X Y)_k = X_0 Y_k + X_k Y_0 + [X_1 Y_(k-1) + ... + X_(k-1) Y_1]                     known part in brackets
+    X_k = (X')_(k-1) / k                                                               F, G, p, W; a, b and the closing speed from these
+    s_k = ([a . a - s s]_k / 2 + a_0 . a_k) / s_0                                       from s s = a . a
+    e_k . e_0 = -[e . e]_k / 2                                                          from e . e = 1
+    B_0 e_k + B_k e_0 = b_k - [B e]_k                                                   from b = B e: its parts along and across e_0
+    mu = least + m, m = extra exp(-fade s):  k m_k = -fade (1 s_1 m_(k-1) + ... + k s_k m_0)      from m' = -fade s' m
+
+A cloth slip that starts from zero is no singularity either: b = t B e, with e_0 the direction of what drives it, and B_0 > 0. Then
+b_(k+1) stands in place of b_k. It holds e_k through the friction, G'_k = -mu_s (N_0 e_k + [N e]_k + N_k e_0), and that term goes to the
+other side: the factor of e_k becomes B_0 + K_CLOTH mu_s N_0 / (k + 1)."""
 
 from math import exp, log, sqrt
 
 from ..._jit import kernel
-from .coulomb import KB, friction_coefficient
-from .polynomial import ROW
+from .coulomb import friction_coefficient
+from .inertia import K_CLOTH
+from .polynomial import CLOSING, F1, F2, G1, G2, LIFT, ROW, WORK_DONE, P
 
-_MIN_ORDER = 4
-_HOVER = 0.03  # an error allowed in a slip, over that slip: a slip that should die would hover at the size of the tolerance
-_HUGE = 1e100  # no use in going on: the next coefficients might overflow
-_STEEP = 0.9  # ratio of successive terms; a larger one is chance
-_POSITIVE = 0xFFFF  # a mask that spares the compiler's test for negative indices, a third of the time
-_S, _A1, _A2, _E1, _E2, _B, _N, _MU = 8, 9, 10, 11, 12, 13, 14, 15  # the series' places in a row, behind the polynomial's
+S, A1, A2, E1, E2, B, N, M = range(8, 16)
+"""Columns of ``series`` behind those of ``polynomial.py``: s, a, e, B, mu_s N, and the part m of mu that varies."""
+
+_LEAST_ORDER = 4
+"""Below this two small terms may be chance. Twice or half: no change above rounding in the impacts of ``impulse.py``: a caution."""
+_HOVER = 0.03
+"""The error allowed in a slip, over that slip: a slip that should die would hover at the size of the tolerance. Twice or half: under 3 %
+of the steps."""
+_HUGE = 1e100
+"""A term beyond this ends the series: the next coefficients might overflow."""
+_STEEP = 0.9
+"""The largest ratio of successive terms that is believed; a larger one is chance. Twice: steps beyond the radius of convergence, errors
+without bound. Half: 4 % fewer steps, and up to 5 times the error of two balls at ``standard``."""
+_SLOWEST = 0.2
+"""The slip is taken not to fall below this part of its first size when the time of the impact is guessed. Twice or half: no change."""
+_TINY = 1e-300
+"""Keeps a quotient of two zeros finite."""
+_POSITIVE = 0xFFFF
+"""A mask that spares the compiler's test for negative indices, a third of the time."""
 
 
 @kernel
-def expand(w, x, a1, a2, b1, b2, y, starts, p_left, c, law, mu_s, tol, order):
-    """The series at state x with its slips and closing speed -> its order, and the time for which it holds to within tol.
+def expand(series, x, slip, starts, p_left, problem, tol, order):
+    """The series at state x with these slips -> its order, and the time for which it holds to within tol.
 
     starts: the cloth slip is zero and about to start. p_left: the impulse still to come, about; the order is no higher than that needs.
+    Terms of order k are without a number below; those at t = 0 end in 0; ``r`` is 1/k.
     """
-    k1, k2, c1, c2, d_a, d_b, d_y, n0, n2, _la, _ly = c
-    w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7] = x[0], x[1], x[2], x[3], x[4], x[5], x[6], y
-    s0 = sqrt(a1 * a1 + a2 * a2)
+    k1, k2, c1, c2, d_a, d_b, d_n, n_p, n_f, _l_a, _l_n = problem.contact
+    law, mu_s = problem.law, problem.mu_s
+    a1_0, a2_0, b1_0, b2_0, closing0 = slip
+
+    # order 0
+    series[F1], series[F2], series[G1], series[G2], series[P], series[WORK_DONE], series[LIFT] = x
+    series[CLOSING] = closing0
+    s0 = sqrt(a1_0 * a1_0 + a2_0 * a2_0)
     mu0 = friction_coefficient(s0, law)
-    varies = mu0 - law[0]
-    f1, f2, s = -mu0 * a1, -mu0 * a2, s0
-    n0, n2 = mu_s * n0, mu_s * n2  # N in units of what the cloth's friction can be
-    load0 = n0 * s0 + n2 * f2
-    if starts:
-        b1, b2 = c1 * f1, d_b * s0 + c2 * f2
-    size0 = sqrt(b1 * b1 + b2 * b2)
-    e1_0, e2_0 = b1 / size0, b2 / size0
-    if starts:
-        size0 -= KB * load0
-    g1, g2 = -load0 * e1_0, -load0 * e2_0
-    w[_S], w[_A1], w[_A2], w[_E1], w[_E2], w[_B], w[_N], w[_MU] = s0, a1, a2, e1_0, e2_0, size0, load0, varies
+    m0 = mu0 - law.least
+    f1, f2, s = -mu0 * a1_0, -mu0 * a2_0, s0  # F', and p' = s
+    n_p, n_f = mu_s * n_p, mu_s * n_f  # N in units of what the cloth's friction can be: mu_s N
+    load0 = n_p * s0 + n_f * f2
+    if starts:  # b_1 without the cloth's own friction: what drives the slip
+        b1_0, b2_0 = c1 * f1, d_b * s0 + c2 * f2
+    size0 = sqrt(b1_0 * b1_0 + b2_0 * b2_0)  # B_0
+    e1_0, e2_0 = b1_0 / size0, b2_0 / size0
+    if starts:  # b_1 = B_0 e_0 = drive - K_CLOTH mu_s N_0 e_0
+        size0 -= K_CLOTH * load0
+    g1, g2 = -load0 * e1_0, -load0 * e2_0  # G'
+    series[S], series[A1], series[A2], series[E1] = s0, a1_0, a2_0, e1_0
+    series[E2], series[B], series[N], series[M] = e2_0, size0, load0, m0
     tol = min(tol, _HOVER * s0)
     per_s, per_size = 1.0 / s0, 1.0 / size0
-    h1, h2 = a1 * per_s, a2 * per_s
-    x1, x2 = e1_0 * per_size, e2_0 * per_size
-    power = y * s0
+    h1, h2 = a1_0 * per_s, a2_0 * per_s  # a_0 / s_0
+    x1, x2 = e1_0 * per_size, e2_0 * per_size  # e_0 over the factor of e_k
+    power = closing0 * s0  # W'
     size, last, t, t_power = 0.0, 0.0, p_left * per_s, 1.0
     for k in range(1, order + 1):
         m = ROW * k
         r = 1.0 / k
-        # the coefficients of order k: the rates of order k - 1, integrated
+        # The terms of order k of what is integrated: the rates of order k - 1 over k.
         p = s * r
         power *= r
-        u1, u2 = (k1 * r) * f1 + (c1 * r) * g1, (d_a * p + (k2 * r) * f2) + (c2 * r) * g2
-        v1, v2 = (c1 * r) * f1, d_b * p + (c2 * r) * f2
-        q1, q2 = (KB * r) * g1, (KB * r) * g2
+        a1, a2 = (k1 * r) * f1 + (c1 * r) * g1, (d_a * p + (k2 * r) * f2) + (c2 * r) * g2
+        v1, v2 = (c1 * r) * f1, d_b * p + (c2 * r) * f2  # b without the cloth's friction,
+        q1, q2 = (K_CLOTH * r) * g1, (K_CLOTH * r) * g2  # and what that adds
         f1 *= r
         f2 *= r
         g1 *= r
         g2 *= r
-        y_k = (d_y * p - d_a * f2) - d_b * g2
-        w[m], w[m + 1], w[m + 2], w[m + 3], w[m + 4], w[m + 5], w[m + 6], w[m + 7] = f1, f2, g1, g2, p, power, 0.0, y_k
-        w[m + _A1], w[m + _A2] = u1, u2
+        closing = (d_n * p - d_a * f2) - d_b * g2
+        series[m + F1], series[m + F2], series[m + G1], series[m + G2] = f1, f2, g1, g2
+        series[m + P], series[m + WORK_DONE], series[m + LIFT], series[m + CLOSING] = p, power, 0.0, closing
+        series[m + A1], series[m + A2] = a1, a2
+
+        # Enough? The last two terms at the end of the impact must be within tol.
         if k == 1:  # the time that the impact takes if the slip goes on to change at this rate
-            s_end = s0 + (h1 * u1 + h2 * u2) * per_s * p_left
-            t = 2.0 * p_left / (s0 + max(s_end, 0.2 * s0))
-        last, size = size, abs(u1) + abs(u2) + abs(v1 + q1) + abs(v2 + q2) + abs(power)
-        if (size * t + last) * t_power <= tol and k >= _MIN_ORDER:
+            s_end = s0 + (h1 * a1 + h2 * a2) * per_s * p_left
+            t = 2.0 * p_left / (s0 + max(s_end, _SLOWEST * s0))
+        last, size = size, abs(a1) + abs(a2) + abs(v1 + q1) + abs(v2 + q2) + abs(power)
+        if (size * t + last) * t_power <= tol and k >= _LEAST_ORDER:
             return k, t
         t_power *= t
         if k == order or size > _HUGE:
             break
-        # products of the orders 1 to k - 1, the newest last
-        squares = ys = ee = be1 = be2 = ne1 = ne2 = 0.0
+
+        # The sums in brackets, over the orders i and k - i from 1 to k - 1; for even k the one in the middle first.
+        squares = cs = ee = be1 = be2 = ne1 = ne2 = 0.0  # [a.a - s s]/2, [closing s], [e.e]/2, [B e], [N e]
         i = ROW * (k >> 1)
         if k & 1 == 0:
-            e1, e2 = w[i + _E1], w[i + _E2]
-            squares = 0.5 * (w[i + _A1] * w[i + _A1] + w[i + _A2] * w[i + _A2] - w[i + _S] * w[i + _S])
-            ys = w[i + 7] * w[i + _S]
+            e1, e2 = series[i + E1], series[i + E2]
+            squares = 0.5 * (series[i + A1] * series[i + A1] + series[i + A2] * series[i + A2] - series[i + S] * series[i + S])
+            cs = series[i + CLOSING] * series[i + S]
             ee = 0.5 * (e1 * e1 + e2 * e2)
-            be1, be2 = w[i + _B] * e1, w[i + _B] * e2
-            ne1, ne2 = w[i + _N] * e1, w[i + _N] * e2
+            be1, be2 = series[i + B] * e1, series[i + B] * e2
+            ne1, ne2 = series[i + N] * e1, series[i + N] * e2
             i -= ROW
         while i > 0:
             j = (m - i) & _POSITIVE
-            e1, e2, d1, d2 = w[i + _E1], w[i + _E2], w[j + _E1], w[j + _E2]
-            squares += w[i + _A1] * w[j + _A1] + w[i + _A2] * w[j + _A2] - w[i + _S] * w[j + _S]
-            ys += w[i + 7] * w[j + _S] + w[j + 7] * w[i + _S]
+            e1, e2, d1, d2 = series[i + E1], series[i + E2], series[j + E1], series[j + E2]
+            squares += series[i + A1] * series[j + A1] + series[i + A2] * series[j + A2] - series[i + S] * series[j + S]
+            cs += series[i + CLOSING] * series[j + S] + series[j + CLOSING] * series[i + S]
             ee += e1 * d1 + e2 * d2
-            be1 += w[i + _B] * d1 + w[j + _B] * e1
-            be2 += w[i + _B] * d2 + w[j + _B] * e2
-            ne1 += w[i + _N] * d1 + w[j + _N] * e1
-            ne2 += w[i + _N] * d2 + w[j + _N] * e2
+            be1 += series[i + B] * d1 + series[j + B] * e1
+            be2 += series[i + B] * d2 + series[j + B] * e2
+            ne1 += series[i + N] * d1 + series[j + N] * e1
+            ne2 += series[i + N] * d2 + series[j + N] * e2
             i -= ROW
-        # the rates of order k
-        s = (squares * per_s + h1 * u1) + h2 * u2
-        f1, f2 = -mu0 * u1, -mu0 * u2
-        if varies > 0.0:
-            mu = k * s * varies
+
+        # The rates of order k: p' = s, F' = -mu a, W' = closing s, mu_s N, and from b = B e the direction e for G'.
+        s = (squares * per_s + h1 * a1) + h2 * a2
+        f1, f2 = -mu0 * a1, -mu0 * a2
+        if m0 > 0.0:
+            varying = k * s * m0
             for n in range(1, k):
                 i = ROW * n
                 j = (m - i) & _POSITIVE
-                mu += n * w[i + _S] * w[j + _MU]
-                f1 -= w[i + _A1] * w[j + _MU]
-                f2 -= w[i + _A2] * w[j + _MU]
-            mu *= -law[2] * r
-            w[m + _MU] = mu
-            f1 -= mu * a1
-            f2 -= mu * a2
-        power = (ys + y_k * s0) + y * s
-        load = n0 * s + n2 * f2
-        scale = size0
+                varying += n * series[i + S] * series[j + M]
+                f1 -= series[i + A1] * series[j + M]
+                f2 -= series[i + A2] * series[j + M]
+            varying *= -law.fade * r
+            series[m + M] = varying
+            f1 -= varying * a1_0
+            f2 -= varying * a2_0
+        power = (cs + closing * s0) + closing0 * s
+        load = n_p * s + n_f * f2
+        scale = size0  # the factor of e_k
         if starts:
             r = 1.0 / (k + 1)
-            scale = size0 + (KB * load0) * r
+            scale = size0 + (K_CLOTH * load0) * r
             per_size = 1.0 / scale
             x1, x2 = e1_0 * per_size, e2_0 * per_size
             v1, v2 = (c1 * r) * f1 - be1, (d_b * s + c2 * f2) * r - be2
-            q1, q2 = -(KB * r) * (ne1 + load * e1_0), -(KB * r) * (ne2 + load * e2_0)
+            q1, q2 = -(K_CLOTH * r) * (ne1 + load * e1_0), -(K_CLOTH * r) * (ne2 + load * e2_0)
         else:
             v1 -= be1
             v2 -= be2
-        v1 += q1
+        v1 += q1  # scale e_k + B_k e_0
         v2 += q2
         across = v2 * x1 - v1 * x2
         e1, e2 = -ee * e1_0 - across * e2_0, -ee * e2_0 + across * e1_0
-        w[m + _S], w[m + _E1], w[m + _E2], w[m + _N] = s, e1, e2, load
-        w[m + _B] = v1 * e1_0 + v2 * e2_0 + scale * ee
+        series[m + S], series[m + E1], series[m + E2], series[m + N] = s, e1, e2, load
+        series[m + B] = v1 * e1_0 + v2 * e2_0 + scale * ee
         g1, g2 = -((load0 * e1 + ne1) + load * e1_0), -((load0 * e2 + ne2) + load * e2_0)
-    h = exp(log(tol / (last + 1e-300)) / (k - 1))
-    ratio = size * h / (last + 1e-300)
-    if ratio > 1.0:  # then the very last term is the larger
+
+    # The order did not do: the time after which the last term but one, or the last, is as large as tol.
+    h = exp(log(tol / (last + _TINY)) / (k - 1))
+    ratio = size * h / (last + _TINY)
+    if ratio > 1.0:  # then the last one is the larger
         h = exp(log(tol / size) / k)
-    # what is left out is the last term over 1 - ratio: a step shorter by the root of that, or a little more (Bernoulli's inequality)
+    # What is left out is the last term over 1 - ratio: a step shorter by the root of that, or a little more (Bernoulli's inequality).
     ratio = min(ratio, _STEEP)
     return k, h / (1.0 + ratio / ((1.0 - ratio) * k))
 
 
 @kernel
-def turned(w, b1, b2):
-    """Does the cloth's slip point backwards, seen from the step's start?"""
-    return b1 * w[_E1] + b2 * w[_E2] < 0.0
+def turned(series, b1, b2):
+    """Does the cloth slip b point backwards, seen from the step's start?"""
+    return b1 * series[E1] + b2 * series[E2] < 0.0

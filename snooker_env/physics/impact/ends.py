@@ -1,0 +1,95 @@
+"""When does an impact end? Where the closing speed has come to zero and the work has then come down to its target, inside the last step.
+
+The step is a polynomial (``polynomial.py``) of its own time, from 0 to ``span``. Compression ends at closing speed 0, with work W_c; the
+impact ends at W = (1 - e^2) W_c: energetic restitution [Stronge 1990; MJP14 eq. 10].
+"""
+
+from math import sqrt
+from typing import NamedTuple
+
+from ..._jit import kernel
+from . import dormand_prince
+from .coulomb import held
+from .inertia import slips_after
+from .polynomial import CLOSING, ROW, WORK_DONE, state_at, time_of, value_at
+from .taylor import turned
+
+_CLOSE = 0.01
+"""How near the ends are located, over tol and the step's length. Twice or half: no change above rounding, as one more step of Halley's
+method passes either."""
+_TURN_HALVINGS, _LOOSE_HALVINGS = 50, 40
+"""Bisections down to rounding, and to 1e-12 of a step, where a slip that breaks loose is still zero. Twice or half: no change above 1e-15
+in play."""
+
+
+class Target(NamedTuple):
+    """How far the work must come down. Until compression has ended, ``compressing`` is True and the others are not known."""
+
+    compressing: bool
+    top: float
+    """Work at the end of compression, the most there is."""
+    work: float
+    """At the end of the impact."""
+
+
+@kernel
+def _end_of_compression(series, degree, span, closing, near):
+    """When the closing speed falls to zero, in a step that ends with closing speed ``closing`` <= 0."""
+    first, slope = series[CLOSING], series[ROW + CLOSING]
+    bend = (closing - first - slope * span) / (span * span)
+    root = slope * slope - 4.0 * bend * first
+    guess = 2.0 * first / (sqrt(root) - slope) if root > 0.0 and slope < 0.0 else 0.5 * span
+    return time_of(series, degree, CLOSING, 0.0, 0.0, span, guess, near)
+
+
+@kernel
+def _end_of_restitution(series, degree, low, span, work, target, near):
+    """When the work falls to its target: at ``low`` it is above, at ``span``, with ``work``, it is not."""
+    now = sqrt(max(target.top - value_at(series, degree, WORK_DONE, low)[0], 0.0))  # the root of the work given back grows all but evenly
+    guess = low + (span - low) * (sqrt(target.top - target.work) - now) / (sqrt(target.top - work) - now)
+    return time_of(series, degree, WORK_DONE, target.work, low, span, guess, near)
+
+
+@kernel
+def ends_inside(end, closing, target):
+    """Does compression or the impact end inside the step that ends at the state ``end`` with closing speed ``closing``?"""
+    return closing <= 0.0 if target.compressing else target.work >= end.W
+
+
+@kernel
+def locate_end(series, degree, span, end, closing, target, e, tol):
+    """In such a step: is the impact over, when, and the target as it is known now."""
+    over, t, near = False, 0.0, _CLOSE * tol * span
+    if target.compressing:
+        t = _end_of_compression(series, degree, span, closing, near)
+        top = value_at(series, degree, WORK_DONE, t)[0]
+        target = Target(False, top, (1.0 - e * e) * top)
+    if target.work >= end.W:
+        over = True
+        if e > 0.0:
+            t = _end_of_restitution(series, degree, t, span, end.W, target, near)
+    return over, t, target
+
+
+@kernel
+def turns_at(series, degree, span, o1, o2, problem):
+    """When in a step the cloth's slip, less (o1, o2), is at right angles to where it pointed at first; it points backwards at the end."""
+    low, high = 0.0, span
+    for _ in range(_TURN_HALVINGS):
+        t = 0.5 * (low + high)
+        slip = slips_after(state_at(series, degree, t), problem.start, problem.contact)
+        low, high = (low, t) if turned(series, slip.b1 - o1, slip.b2 - o2) else (t, high)
+    return high
+
+
+@kernel
+def breaks_loose_at(series, near, cloth, problem):
+    """The fraction of a Runge-Kutta step after which friction no longer holds the slip at A at zero."""
+    low, high = 0.0, 1.0
+    for _ in range(_LOOSE_HALVINGS):
+        t = 0.5 * (low + high)
+        if held(state_at(series, dormand_prince.DEGREE, t), near, cloth, problem):
+            low = t
+        else:
+            high = t
+    return high

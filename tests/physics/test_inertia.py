@@ -1,0 +1,111 @@
+"""Are the constants of an impact those of rigid spheres? Derived again from Newton's and Euler's laws, and compared symbolically."""
+
+import pytest
+from sympy import Matrix, Rational, diff, expand, nsimplify, simplify, solve, symbols
+
+from snooker_env.physics.impact import inertia
+from snooker_env.physics.impact.inertia import K_CLOTH, Contact, Impulses, Slips
+
+M, R = symbols("M R", positive=True)
+t = symbols("t", real=True)
+F1, F2, G1, G2, P, N, LIFT = symbols("F1 F2 G1 G2 p N Z", real=True)
+X, Y, UP = Matrix([1, 0, 0]), Matrix([0, 1, 0]), Matrix([0, 0, 1])
+FIELDS = Contact._fields
+
+
+def python_of(function):
+    """The Python function behind a kernel."""
+    return getattr(function, "py_func", function)
+
+
+class Sphere:
+    """A solid sphere, at rest before the impact. ``push``: an impulse per unit mass at the point R n of its surface, n a unit vector."""
+
+    def __init__(self):
+        self.v, self.w = Matrix([0, 0, 0]), Matrix([0, 0, 0])
+
+    def push(self, n, per_mass):
+        impulse = M * per_mass
+        self.v += impulse / M  # Newton
+        self.w += (R * n).cross(impulse) / (Rational(2, 5) * M * R**2)  # Euler
+
+    def surface(self, n):
+        return self.v + self.w.cross(R * n)
+
+
+def two_balls():
+    """C free, O on the cloth: slips, closing speed, and the load N that keeps O's centre at its height."""
+    c, o = Sphere(), Sphere()
+    friction = F1 * X + F2 * UP
+    c.push(Y, friction - P * Y)
+    o.push(-Y, -(friction - P * Y))
+    o.push(-UP, G1 * X + G2 * Y + N * UP)
+    (load,) = solve(o.v.dot(UP), N)
+    o.v, o.w = o.v.subs(N, load), o.w.subs(N, load)
+    a, b = c.surface(Y) - o.surface(-Y), o.surface(-UP)
+    return [a.dot(X), a.dot(UP), b.dot(X), b.dot(Y), c.v.dot(Y) - o.v.dot(Y)], load
+
+
+def ball_and_nose():
+    """The contact R sin(t) above the centre. The ball's vertical velocity is Z, with the load N that this takes."""
+    from sympy import cos, sin
+
+    ball = Sphere()
+    normal, second = Matrix([0, cos(t), sin(t)]), Matrix([0, -sin(t), cos(t)])
+    ball.push(normal, F1 * X + F2 * second - P * normal)
+    ball.push(-UP, G1 * X + G2 * Y + N * UP)
+    (load,) = solve(ball.v.dot(UP) - LIFT, N)
+    ball.v, ball.w = ball.v.subs(N, load), ball.w.subs(N, load)
+    a, b = ball.surface(normal), ball.surface(-UP)
+    return [a.dot(X), a.dot(second), b.dot(X), b.dot(Y), ball.v.dot(normal)], load
+
+
+def as_used(contact):
+    """The slips and the load as the kernels compute them, symbolically."""
+    contact = Contact(*(nsimplify(value, rational=True) for value in contact))
+    after = python_of(inertia.slips_after)(Impulses(F1, F2, G1, G2, P, 0, LIFT), Slips(0, 0, 0, 0, 0), contact)
+    return [nsimplify(value, rational=True) for value in after], contact.n_p * P + contact.n_f * F2
+
+
+def of_cushion():
+    from sympy import cos, sin
+
+    return python_of(inertia.cushion)(sin(t), cos(t))
+
+
+def wrong(contact, derived):
+    """Which of the slips, the closing speed and the load (5) differ from what was derived."""
+    slips, load = derived
+    load = load.subs(LIFT, 0)  # a lifted ball has no load
+    used, load_used = as_used(contact)
+    names = (*Slips._fields, "load")
+    return [n for n, u, d in zip(names, (*used, load_used), (*slips, load), strict=True) if simplify(expand(u - d)) != 0]
+
+
+CASES = {"balls": (lambda: inertia.BALLS, two_balls), "cushion": (of_cushion, ball_and_nose)}
+SEEN_IN = {
+    "k1": ["a1"], "k2": ["a2"], "c1": ["a1", "b1"], "c2": ["a2", "b2"], "d_a": ["a2", "closing"], "d_b": ["b2", "closing"],
+    "d_n": ["closing"], "n_p": ["load"], "n_f": ["load"], "l_a": ["a2"], "l_n": ["closing"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", CASES)
+def test_the_constants_are_those_of_rigid_spheres(kind):
+    contact, derive = CASES[kind]
+    assert wrong(contact(), derive()) == []
+
+
+@pytest.mark.parametrize("field", FIELDS)
+@pytest.mark.parametrize("kind", CASES)
+def test_a_constant_that_is_off_is_found(kind, field):
+    contact, derive = CASES[kind]
+    off = contact()._replace(**{field: getattr(contact(), field) + Rational(1, 1000)})
+    assert wrong(off, derive()) == [n for n in (*Slips._fields, "load") if n in SEEN_IN[field]]
+
+
+@pytest.mark.parametrize("kind", CASES)
+def test_what_does_not_act_on_a_slip_is_left_out_rightly(kind):
+    """Each slip depends on just the impulses that its equation names, and the constant under the pressed ball is 7/2 in both."""
+    slips, _ = CASES[kind][1]()
+    assert [simplify(diff(slips[k], of)) for k, of in ((0, F2), (0, G2), (0, P), (1, F1), (1, G1), (2, F2), (2, G2), (2, P))] == [0] * 8
+    assert [simplify(diff(slips[k], of)) for k, of in ((2, G1), (3, G2))] == [Rational(7, 2)] * 2 == [nsimplify(K_CLOTH, rational=True)] * 2
