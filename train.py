@@ -62,9 +62,11 @@ class Settings:
     """What makes a run the run it is."""
 
     agent: str = option("ppo_foresight", "what learns, and how: a file of agents/hyperparams", choices=tuple(names()))
-    steps: int = option(0, "shots in all, rounded up to whole rollouts, as is said at the start; 0: as many as the recipe says")
+    steps: int = option(0, "shots in all, rounded up to whole rollouts; 0: as many as the recipe says")
     envs: int = option(0, "tables played side by side; 0: as many as the recipe says")
-    parallel: str = option("auto", "threads for the tables: auto is one a processor; the same shots come out", choices=("auto", "one"))
+    parallel: str = option(
+        "auto", "threads for the tables: auto is one for each processor; the shots are the same", choices=("auto", "one")
+    )
     seed: int = option(0, "of tables, weights and exploration")
     layout: str = option("", "where training visits start [the recipe's]")
     noise: str = option("", "execution noise: none, professional, amateur, club, robot or olympiad [the recipe's]")

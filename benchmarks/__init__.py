@@ -1,4 +1,4 @@
-"""Commands that measure snooker_env: ``python -m benchmarks.NAME --help``. Files whose names begin with ``_`` are parts of them."""
+"""Commands that measure snooker_env, a file or a folder each: ``python -m benchmarks.NAME --help``. ``_common`` holds what they share."""
 
 import sys
 

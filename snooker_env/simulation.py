@@ -122,7 +122,8 @@ class Shot:
     Fields:
 
     * positions: (n, 2) [m] at rest; of a potted ball: where its centre crossed the fall, or where its flight over the pocket ended.
-    * potted: (n,) int: pocket index (``snooker_env.POCKETS``), or -1 if not potted in this shot.
+    * potted: (n,) int: pocket index, or -1 if not potted in this shot. ``Table.pockets`` names them: on a table with six pockets
+      ``snooker_env.POCKETS``.
     * on_table: (n,) bool: still in play.
     * duration: Time [s] until everything is at rest, spin included (with ``spin_decel`` 0, which ends no spin: until no ball moves across
       the table).
@@ -242,9 +243,18 @@ def play(
 
 
 def simulate_batch(
-    positions: Batches, velocities: Batches, spins: Batches, table: TableLike="match", physics: PhysicsLike=None, fidelity: Fidelity="standard", *, on_table: FlagRows | None=None, threads: int | None=None, events: bool=False,
-    max_events: int=MAX_EVENTS,
-) -> ShotBatch:  # fmt: skip
+    positions: Batches,
+    velocities: Batches,
+    spins: Batches,
+    table: TableLike = "match",
+    physics: PhysicsLike = None,
+    fidelity: Fidelity = "standard",
+    *,
+    on_table: FlagRows | None = None,
+    threads: int | None = None,
+    events: bool = False,
+    max_events: int = MAX_EVENTS,
+) -> ShotBatch:
     """Play b shots on b tables at once: positions (b, n, 2), velocities (b, n, 2), spins (b, n, 3), on_table (b, n) bool or None.
 
     threads: how many to use, None for one per core; results do not depend on it. events: also return each shot's event log.

@@ -1,4 +1,4 @@
-"""What is counted of the visits an agent played, and which figures come of it? Each with its interval, and over another agent's."""
+"""What is counted in the visits that an agent played, and which figures follow? Each with its interval, and relative to another agent's."""
 
 import zlib
 from dataclasses import dataclass
@@ -108,5 +108,5 @@ class EntrantMetrics:
             "counted": {name: float(self.counted[name].sum(axis=1).mean()) for name in BELOW},
             "longest_break": int(self.counted["points"].max()),
             "by_run": {f"{name}_a_visit": self.counted[name].mean(axis=1).tolist() for name in SCORES},
-            "strokes": strokes, "ms_a_decision": 1e3 * sum(s.thinking for s in self.strokes) / strokes,
+            "strokes": strokes, "ms_a_decision": 1e3 * sum(s.decision_seconds for s in self.strokes) / strokes,
         }  # fmt: skip

@@ -85,14 +85,16 @@ def parser():
         help=f"NAME, MODEL, LABEL=PATH,PATH,... or MODULE:CLASS; NAME: {', '.join((*NAMES, *pretrained()))}",
     )
     p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
-    p.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help="how the actions of such models are read, as aim=target")
+    p.add_argument(
+        "--options", nargs="+", default=[], metavar="KEY=VALUE", help="how the actions of such models are read, for example aim=target"
+    )
     p.add_argument("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=f"agents to compare the others with [{REFERENCE}]")
     usual = [f"{name}={n}" for name, n in PROTOCOL.items()]
     p.add_argument("--layouts", nargs="+", default=usual, metavar="LAYOUT", help=f"LAYOUT=VISITS [{' '.join(usual)}]")
     p.add_argument("--visits", type=int, help="so many on every layout, for a quick trial or a slow player")
     p.add_argument("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
     p.add_argument("--fidelity", nargs="+", default=["standard"], help="fast, standard, reference or euler:N [standard]")
-    p.add_argument("--physics", nargs="+", default=["paper"], help="paper, match or with changes as paper,mu_bb=marlow [paper]")
+    p.add_argument("--physics", nargs="+", default=["paper"], help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
     p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
     p.add_argument("--json", type=Path, help="write every figure here")

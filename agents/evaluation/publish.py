@@ -84,7 +84,7 @@ def main(argv=None):
     parser = argparse.ArgumentParser("python -m agents.publish", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", type=Path, help="a run's folder")
     parser.add_argument("--name", help="of the model [the agent's]")
-    parser.add_argument("--limits", required=True, help="what a user should know that it cannot do")
+    parser.add_argument("--limits", required=True, help="what the model cannot do, for its card")
     parser.add_argument("--replace", action="store_true", help="overwrite the model of that name")
     options = parser.parse_args(argv)
     try:

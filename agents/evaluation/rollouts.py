@@ -1,4 +1,4 @@
-"""How do visits go that a player plays? Every stroke of them, on tables that are the same for every player."""
+"""What happens in the visits that a player plays? Every stroke of them, on tables that are the same for every player."""
 
 import time
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ class Strokes:
     """(n, 2) where the cue ball lay afterwards [m]; NaN where it was potted."""
     tolerance: np.ndarray
     """How far the aim of the widest direct pot may err that was there afterwards [rad], by ``game.pots``; 0 where there was none."""
-    thinking: float
+    decision_seconds: float
     """Seconds that the player took for all of them."""
 
     @property
@@ -110,12 +110,12 @@ def play(
     """
     tables = SnookerVectorEnv(visits, layout=layout, noise=noise, threads=threads, **{**player.options, **options})
     observations, _ = tables.reset(seed=first_seed)
-    log, going, number, thinking = [], np.ones(visits, bool), 0, 0.0
+    log, going, number, decision_seconds = [], np.ones(visits, bool), 0, 0.0
     while going.any():
         ball_on = Positions.of(tables).ball_on[going]
         began = time.perf_counter()
         actions = player.act(tables, observations, going)
-        thinking += time.perf_counter() - began
+        decision_seconds += time.perf_counter() - began
         observations, _, ended, _, info = tables.step(actions)
         here = np.flatnonzero(going)
         left = Positions.of(tables)[here]
@@ -129,7 +129,7 @@ def play(
     tables.close()
     columns = (np.concatenate(column) for column in zip(*log, strict=True))
     names = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance")
-    return Strokes(visits=visits, thinking=thinking, **dict(zip(names, columns, strict=True)))
+    return Strokes(visits=visits, decision_seconds=decision_seconds, **dict(zip(names, columns, strict=True)))
 
 
 def _tolerance(observations, here):

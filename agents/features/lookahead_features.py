@@ -18,7 +18,7 @@ from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
 from .noise_samples import NOISE_SAMPLES
 from .pot_features import SHOWN, with_pots
-from .prospects import BY_HAND, prospects_of, spread_of
+from .prospects import RULE_OF_THUMB, prospects_of, spread_of
 
 POTS_SEEN = 2
 SEEN_SPEEDS, SEEN_TOPS = (1, 3, 5, 7), (0, 2, 4)
@@ -28,8 +28,8 @@ PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(POTS_SEEN)
 STROKES_SEEN = len(PICKS)
 (THERE, CHANCE, SCORED, GOES_ON, POINTS, CUE_X, CUE_Y, FIRST, SECOND, THIRD, VALUE, SPREAD, SPEED, TOP, RED_ON) = range(15)
 """Places in a row: 1 if there is such a pot, its chance by its width; share of samples that score, that go on; mean points / 7; of those
-that go on: where the cue ball stops (x, y), chances of the three likeliest next pots; mean value by hand of what is left / 25 (0 for a
-visit that ended), its standard deviation; speed / 6.3, top / 0.4, 1 if a red was on."""
+that go on: where the cue ball stops (x, y), chances of the three likeliest next pots; mean value, by the rule of thumb, of what is left /
+25 (0 for a visit that ended), its standard deviation; speed / 6.3, top / 0.4, 1 if a red was on."""
 ENTRIES = RED_ON + 1
 SPACE = spaces.Box(-10.0, 10.0, (SHOWN + STROKES_SEEN * ENTRIES,), np.float32)
 _CHOSEN = np.zeros(CHOICES, bool)
@@ -71,7 +71,7 @@ class ForesightView:
         row[:, SCORED], row[:, GOES_ON], row[:, POINTS] = (points > 0).mean(0), goes_on.mean(0), points.mean(0) / 7.0
         row[:, CUE_X : CUE_Y + 1] = (share * (left.positions[:, 0] / (HALF_WIDTH, HALF_LENGTH)).reshape(k, m, 2)).sum(0)
         row[:, FIRST : THIRD + 1] = (share * -np.sort(-chances, axis=1)[:, :3].reshape(k, m, 3)).sum(0)
-        row[:, VALUE], row[:, SPREAD] = values.mean(0) / BY_HAND[0], values.std(0) / BY_HAND[0]
+        row[:, VALUE], row[:, SPREAD] = values.mean(0) / RULE_OF_THUMB[0], values.std(0) / RULE_OF_THUMB[0]
         row[:, SPEED], row[:, TOP], row[:, RED_ON] = _SPEEDS[stroke], _TOPS[stroke], at.ball_on[table] == BallOn.RED
         seen = np.zeros((*masks.shape, ENTRIES), np.float32)
         seen[table, stroke] = row
@@ -82,6 +82,6 @@ class ForesightView:
         return tables.action_masks() & _CHOSEN
 
 
-def worth_by_hand(ahead):
+def worth_by_rule(ahead):
     """Points that the strokes of rows (n, STROKES_SEEN, ENTRIES) promise, value left included; -inf where there is none."""
-    return np.where(ahead[..., THERE] > 0, 7.0 * ahead[..., POINTS] + BY_HAND[0] * ahead[..., VALUE], -np.inf)
+    return np.where(ahead[..., THERE] > 0, 7.0 * ahead[..., POINTS] + RULE_OF_THUMB[0] * ahead[..., VALUE], -np.inf)

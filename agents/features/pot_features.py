@@ -12,7 +12,7 @@ from snooker_env.kernels import TOLERANCE as POT_TOLERANCE
 from snooker_env.tasks import OBSERVATION_SIZE, POTS, observation_space, shaped_observations
 
 POT_ENTRIES = 13
-"""Numbers shown of each of the ``choices.POTS`` widest pots, see ``with_pots``."""
+"""Numbers shown of each of the ``tasks.POTS`` widest pots, see ``with_pots``."""
 SHOWN = OBSERVATION_SIZE + POTS * POT_ENTRIES
 
 # Entries that change sign when the table is seen in a mirror, left and right exchanged.

@@ -21,16 +21,16 @@ SECOND, THIRD = 0.15, 0.05
 """What the second and the third best pot of a position add: they leave a choice of where to go next."""
 FAR = 0.1
 """How much less likely a pot is for each metre that the balls have to run."""
-BY_HAND = (FOLLOWS, SECOND, THIRD, FAR)
+RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, FAR)
 SURE = (1e4, 1e-3, 0.0, 0.0)
-"""The same for one who never errs: all that is left follows."""
+"""The same for a player without execution errors: all that is left follows."""
 
 
 @entry
 def _prospects(positions, on_table, ball_on, spread, constants, values, chances):
-    """For n tables: ``values`` (n,) of the positions, by hand, and ``chances`` (n, most) to make each of the widest pots.
+    """For n tables: ``values`` (n,) of the positions, by the rule of thumb, and ``chances`` (n, most) to make each of the widest pots.
 
-    ``spread`` [rad] as ``spread_of`` gives it, ``constants`` as ``BY_HAND``.
+    ``spread`` [rad] as ``spread_of`` gives it, ``constants`` as ``RULE_OF_THUMB``.
     """
     found = np.empty((16, POT_COLUMNS))
     follows, second, third, far = constants
@@ -67,7 +67,7 @@ def spread_of(noise, physics):
     return max(1e-5, radians(noise.direction_deg(physics)))
 
 
-def prospects_of(at, spread, constants=BY_HAND, most=POTS, threads=1):
+def prospects_of(at, spread, constants=RULE_OF_THUMB, most=POTS, threads=1):
     """What ``Positions`` promise to a player whose aim errs by ``spread`` [rad] (``spread_of``), by the rule of thumb ``constants``.
 
     Returns their values (n,) [points] and the chances (n, most) to make each of the widest pots. Any number of threads gives the same.

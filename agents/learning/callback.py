@@ -15,13 +15,13 @@ POINTS_OF_THE_CURVE = 20
 
 
 class Stop:
-    """While it lasts SIGINT and SIGTERM are only noted: the save comes when what runs is learned from. A second one acts at once, whichever
-    of the two it is."""
+    """While it is open SIGINT and SIGTERM are only noted, and the run is saved as soon as what it plays has been learned from. A second
+    signal, either of the two, acts at once."""
 
     def __init__(self):
         self.signal = None
         self.running = "this round of positions"
-        """What is played to its end before the save, in words."""
+        """What is finished before the run is saved, in words."""
 
     def __enter__(self):
         self._before = {number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)}
@@ -40,7 +40,7 @@ class Stop:
 
 
 def rollout_of(model):
-    """Shots of all tables between two updates: training goes by whole ones."""
+    """Shots of all tables between two updates: training runs in whole rollouts."""
     off_policy = hasattr(model, "train_freq")  # their n_steps is that of n-step returns
     return model.n_envs * (model.train_freq.frequency if off_policy else model.n_steps)
 
@@ -105,7 +105,7 @@ class RunCallback(BaseCallback):
 
 
 LEAST, SHARE = 30.0, 0.01
-"""Seconds of imitation that a kill may lose, and what share of its time saves may take: where they are slow they come less often.
+"""Seconds of imitation that a kill may lose, and the share of its time that saves may take: slow saves come less often.
 
 Of every imitated position 3.3 kB are kept (of agents that look ahead): the default's 10,000 make a checkpoint of 35 MB, written in half a
 second; ``imitation.KEPT`` positions, the most, 170 MB.

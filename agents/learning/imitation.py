@@ -2,8 +2,8 @@
 
 ``train.py`` does it for the recipes that say so (``imitation``), or with ``--imitate POSITIONS``.
 
-The expert: in positions of real visits some of the choices are played on copies of the table under execution noise, once each. A choice
-is worth its points and, if the visit goes on, the value by hand of the position it leaves (``prospects_of``), the search's own
+The expert: in positions of real visits some of the choices are played on copies of the table under execution noise, once each. A choice is
+worth its points and, if the visit goes on, the value, by the rule of thumb, of the position it leaves (``prospects_of``), the search's own
 measure. The learner: state value + TEMPERATURE * (log-probability - its mean) is fitted to these worths by least squares, all tries of a
 position at once. So the policy becomes the softmax of what its choices are worth, and the critic their mean under it. The visits are
 played by the learner, so it learns where it will be (DAgger, Ross et al. 2011), and half of the tries are its own best.

@@ -1,4 +1,4 @@
-"""Whose is a run's folder? The process's that holds its lock; nobody's once that process has ended, whatever ended it."""
+"""Which process owns a run's folder? The one that holds its lock; none once that process has ended, whatever ended it."""
 
 import os
 import platform

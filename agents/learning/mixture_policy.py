@@ -35,7 +35,7 @@ LINE_ENTRIES = 6
 LEAST_TOLERANCE = 5e-4
 """Exploring more finely [rad] than a professional can aim (0.03 degrees) shows nothing."""
 THROW_UNIT = 0.3
-"""Unit of the learned turn of the line of centres [rad]: some times the largest throw, for Adam's steps are of one size whatever the unit,
+"""Unit of the learned turn of the line of centres [rad]: a few times the largest throw: Adam's steps are of one size whatever the unit,
 and what throws is learned from whether a ball went in."""
 
 

@@ -110,7 +110,7 @@ class ForesightReader(TableReader):
 
 
 class OutcomeHead(nn.Module):
-    """What ``ForesightReader`` gives -> a score for each of all choices; only those looked at may be played."""
+    """What ``ForesightReader`` gives -> a score for each of all choices; only the simulated ones may be played."""
 
     def __init__(self):
         super().__init__()

@@ -79,7 +79,7 @@ def save_checkpoint(out, settings, model, seconds, curve, imitation, teaching=No
 
 
 def stale(out):
-    """The complaint about a checkpoint that cannot be used."""
+    """The ValueError for a checkpoint that cannot be used."""
     wanted = "must be a whole checkpoint of today's train.py: this one is broken or older, start the run anew"
     return refuse("resume", str(out / CHECKPOINT), wanted)
 

@@ -11,7 +11,7 @@ import numpy as np
 from snooker_env.planning import Positions
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, TOPS, choice_of
 
-from ..features.lookahead_features import PICKS, ForesightView, worth_by_hand
+from ..features.lookahead_features import PICKS, ForesightView, worth_by_rule
 from .aim_search import Aimer
 
 DISCRETE = {"action": "discrete"}
@@ -58,7 +58,7 @@ class Lookahead:
         """The stroke that promises most at each table going."""
         at, picks = Positions.of(tables)[going], np.zeros(len(going), np.int64)
         masks = tables.action_masks()[going][:, PICKS]
-        picks[going] = PICKS[worth_by_hand(self._foresight.ahead(tables, at, masks)).argmax(1)]
+        picks[going] = PICKS[worth_by_rule(self._foresight.ahead(tables, at, masks)).argmax(1)]
         return picks
 
 

@@ -1,11 +1,11 @@
-"""What is the best of the choices, found by trying them out? Monte Carlo by simulation under execution noise, two shots deep.
+"""Which stroke is best, when strokes are simulated before one is chosen? A Monte Carlo search under execution noise, two shots deep.
 
-From the true state of a table many copies are played, each with errors of its own. A shot is worth its points and, if the
-visit goes on, the value of the position it leaves. Sequential halving [Karnin, Koren & Somekh 2013] spends the budget: all candidates are
-tried a little, the better part a little more, and so on. The last few are judged by the second shot: from positions that they left, the
-best next shot is sought without errors, worth the chance to make it times what it brings.
+Strokes are simulated many times from the state of the table, each time with other execution errors. A shot is worth its points and, if
+the visit goes on, the value of the position that it leaves. Sequential halving [Karnin, Koren & Somekh 2013] spends the budget: all
+candidates are simulated a few times, the better ones more often, and so on. The finalists are compared two shots deep: from positions that
+they left, the best next shot is searched without errors; it counts by the chance to make it times what it brings.
 
-All candidates of a round meet the same errors (common random numbers): they differ by their own merits, not by luck.
+All candidates of a round meet the same noise samples (common random numbers): they differ by their own merits, not by luck.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -18,7 +18,7 @@ from snooker_env.planning import Planner, Positions, action_masks, pots, process
 from snooker_env.tasks import STROKES, TOPS, choice_of
 
 from ..features.pot_features import with_pots
-from ..features.prospects import BY_HAND, SURE, prospects_of, spread_of
+from ..features.prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 
 KEEP = 3
 """Of a round's candidates one in so many goes on to the next."""
@@ -26,14 +26,14 @@ FINALISTS = 6
 DEEP = 0.4
 """Share of the budget for the second shot."""
 NEXT_SHOTS = 16
-"""Shots tried from each position that a finalist left."""
+"""Shots simulated from each position that a finalist left."""
 
 
 class Search:
-    """Searches the best shot with ``budget`` simulated shots a decision, at least two.
+    """Searches for the best shot with ``budget`` simulated shots a decision, at least two.
 
-    ``value``: worth [points] of flat observations with pots (``pot_features.with_pots``), (m, n) -> (m,), in place of the value by hand;
-    ``threads``: tables thought about at once, with the same shots found for any number.
+    ``value``: worth [points] of flat observations with pots (``pot_features.with_pots``), (m, n) -> (m,), in place of the rule of thumb;
+    ``threads``: tables searched at once; any number of them gives the same shots.
     """
 
     options = {"aim": "absolute"}  # noqa: RUF012 - a player's options are read, never changed
@@ -42,32 +42,32 @@ class Search:
         self.budget, self.value = budget, value
         self._seed, self._decisions, self._threads = seed, 0, threads or processors()
         self._tables: Any = None
-        self._minds: list[_Mind] = []
+        self._workers: list[_Worker] = []
 
     @property
     def shots(self):
         """Shots simulated so far."""
-        return sum(mind.noisy.shots + mind.exact.shots for mind in self._minds)
+        return sum(worker.noisy.shots + worker.exact.shots for worker in self._workers)
 
     def act(self, tables, observations, going):
         """The shot found for each table that is going."""
         if self._tables is not tables:
-            self._tables, self._minds = tables, [_Mind(self, tables) for _ in range(self._threads)]
+            self._tables, self._workers = tables, [_Worker(self, tables) for _ in range(self._threads)]
         actions, positions = np.zeros((tables.num_envs, 4), np.float32), Positions.of(tables)
 
-        def think(mind, own):
+        def search(worker, own):
             for k in own:
-                actions[k] = mind.best(positions[k : k + 1], np.random.default_rng((self._seed, self._decisions, k)))
+                actions[k] = worker.best(positions[k : k + 1], np.random.default_rng((self._seed, self._decisions, k)))
 
         wanted = np.flatnonzero(going).tolist()
         with ThreadPoolExecutor(self._threads) as pool:
-            list(pool.map(think, self._minds, (wanted[i :: self._threads] for i in range(self._threads))))
+            list(pool.map(search, self._workers, (wanted[i :: self._threads] for i in range(self._threads))))
         self._decisions += 1
         return actions
 
 
-class _Mind:
-    """The thinking of one thread."""
+class _Worker:
+    """The search at one table after the other, in one thread."""
 
     def __init__(self, search, tables):
         self.budget, self._value = search.budget, search.value
@@ -77,7 +77,7 @@ class _Mind:
 
     def _values(self, left, observations):
         """What the positions left are worth [points], and the chances of their widest pots."""
-        values, chances = prospects_of(left, self._spread, SURE if self._sure else BY_HAND)
+        values, chances = prospects_of(left, self._spread, SURE if self._sure else RULE_OF_THUMB)
         return values if self._value is None else np.asarray(self._value(with_pots(observations)), np.float64), chances
 
     def best(self, at, rng):
@@ -111,7 +111,7 @@ class _Mind:
         return candidates[np.argmax(scores)]
 
     def _exactly(self, at, rng):
-        """The same without errors: one try says everything, so each candidate is played once and many go into the second shot."""
+        """The best action without execution noise: one simulation of a candidate is enough, so more of them are searched two shots deep."""
         candidates = self._candidates(at, max(1, self.budget // 2), self.budget, rng)
         n = len(candidates)
         points, goes_on, left, seen = self.exact.play(at, np.zeros(n, np.int64), candidates)
@@ -124,10 +124,10 @@ class _Mind:
             return candidates[keep[np.argmax(better)]]
         return candidates[np.argmax(scores)]
 
-    def _candidates(self, at, most, wild, rng):
-        """At most so many strokes at the direct pots, evenly from all pots; where there is none, so many wild shots at the balls on."""
+    def _candidates(self, at, most, without_pots, rng):
+        """At most so many strokes at the direct pots, evenly from all pots; where there is none, so many random shots at the balls on."""
         if pots(at, most=1).ball[0, 0] < 0:
-            return _at_balls(at.positions[0], np.flatnonzero(at.balls_on[0]), wild, rng)
+            return _at_balls(at.positions[0], np.flatnonzero(at.balls_on[0]), without_pots, rng)
         picks = np.flatnonzero(action_masks(at)[0])
         if len(picks) > most:
             picks = rng.permutation(picks)
@@ -155,7 +155,7 @@ class _Mind:
         return points.mean(axis=1) + goes_on.mean(axis=1) * mean
 
     def _next_shots(self, chances, rng):
-        """Choices (m, NEXT_SHOTS) to try next where the widest pots have these chances: the strokes that are played most."""
+        """Choices (m, NEXT_SHOTS) for the second shot where the pots have these chances: usual strokes at the two likeliest."""
         order = np.argsort(-chances, axis=1, kind="stable")
         half = NEXT_SHOTS // 2
         widest = np.concatenate([np.repeat(order[:, :1], half, 1), np.repeat(order[:, 1:2], NEXT_SHOTS - half, 1)], axis=1)

@@ -6,6 +6,7 @@ centred, some rattle and some miss.
 """
 
 from dataclasses import dataclass
+from math import radians, sqrt
 
 import numpy as np
 
@@ -13,6 +14,7 @@ import snooker_env as sn
 from snooker_env.game.layouts import layout as deal
 from snooker_env.game.pots import pots
 from snooker_env.geometry import POCKET_AIMS
+from snooker_env.physics.cue import MAX_ELEVATION
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.table import UNBOUNDED
 from snooker_env.tasks.noise import Noise
@@ -43,10 +45,20 @@ class Shots:
         v, w = np.zeros((n, b, 2)), np.zeros((n, b, 3))
         noise, rng = Noise.of("none" if seed is None else errors), np.random.default_rng(seed)
         for k, (speed, line, side, top) in enumerate(self.stroke):
-            speed, side, top, line, elevation = noise.draw(rng, speed, side, top, line, 0.0, R)
+            speed, side, top, line, elevation = _executed(speed, side, top, line, noise, rng)
             v3, w[k, 0] = sn.strike(speed, line + aim, side, top, elevation, self.physics)
             v[k, 0] = v3[:2]
         return v, w
+
+
+def _executed(speed, side, top, aim, noise, rng):
+    """A level stroke with the errors of a ``Noise``, five numbers of ``rng``; its elevation comes last."""
+    if noise.silent:
+        return speed, side, top, aim, 0.0
+    z, tip = rng.standard_normal(5), 1e-3 * noise.offset_mm / R
+    speed = max(0.0, speed + z[0] * sqrt(noise.speed_abs**2 + (noise.speed_rel * speed) ** 2))
+    elevation = min(MAX_ELEVATION, max(0.0, z[4] * radians(noise.elevation_deg)))
+    return speed, side + z[1] * tip, top + z[2] * tip, aim + z[3] * radians(noise.aim_deg), elevation
 
 
 def _inside(place, margin=0.01):

@@ -13,7 +13,7 @@ import numpy as np
 
 import snooker_env as sn
 
-from .windows import Pocket, windows
+from .windows import LonePocket, windows
 
 INCH = 0.0254
 PHYSICS = {"R": 1.125 * INCH, "sin_theta": 0.27}
@@ -149,7 +149,7 @@ def pocket(kind):
         noses = [(0, 1, 0.0, -pool.L / 2 * INCH, -half), (0, 1, 0.0, half, pool.L / 2 * INCH)]
     hole = (pool.R_h + pool.b) * INCH * u
     table = sn.Table(f"pool {kind}", np.array(noses), np.array(jaws), np.array([(*hole, pool.R_h * INCH)]))
-    return Pocket(table, (0.0, 0.0), axis)
+    return LonePocket(table, (0.0, 0.0), axis)
 
 
 def sizes(kind, engines):

@@ -38,7 +38,7 @@ class Engine:
 
 
 @dataclass(frozen=True)
-class Pocket:
+class LonePocket:
     """One pocket alone: a ball that comes out of it meets nothing that could send it back."""
 
     table: sn.Table
@@ -61,7 +61,7 @@ def alone(table, pocket):
         ends.append(near(np.where(noses[:, 0] == 0, level, noses[:, end]), np.where(noses[:, 0] == 0, noses[:, end], level)))
     jaws = table.jaws[near(table.jaws[:, 0], table.jaws[:, 1])]
     here = sn.Table(f"pocket {pocket} alone", noses[ends[0] | ends[1]], jaws, table.falls[[pocket]])
-    return Pocket(here, (float(ax), float(ay)), float(np.arctan2(uy, ux)))
+    return LonePocket(here, (float(ax), float(ay)), float(np.arctan2(uy, ux)))
 
 
 def along(pocket, x, y, direction):

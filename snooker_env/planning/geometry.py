@@ -3,13 +3,15 @@
 Straight lines only: no throw, no spin, no cushion. ``pot_aim`` corrects a line for what a ball does.
 """
 
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .._check import array, integer
 from .._jit import entry, kernel
+from .._types import Integers, Vectors
 from ..game.balls import N_BALLS, balls_on_kernel, bits
 from ..game.frame_columns import BALL_ON
 from ..game.paths import clear_path, full_ball_path
@@ -17,7 +19,7 @@ from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_PO
 from ..game.snookered import segment_distance
 from ..geometry import BALL_RADIUS
 from ..tasks.discrete_actions import POTS
-from .positions import Positions, rows_of
+from .positions import Positions, PositionsLike, rows_of
 
 
 class Pots(NamedTuple):
@@ -70,7 +72,7 @@ def _pots(positions, on_table, game, ball, pocket, ghost, cut, tolerance):
             cut[k, j], tolerance[k, j] = np.arccos(min(1.0, found[j, COS_CUT])), found[j, TOLERANCE]
 
 
-def pots(positions: Any, most: int = POTS) -> Pots:
+def pots(positions: PositionsLike, most: int = POTS) -> Pots:
     """The direct pots of balls on that straight lines offer, no other ball in the way.
 
     Parameters
@@ -110,7 +112,9 @@ def _obstructions(positions, on_table, rows, starts, ends, reach, out):
         _beside(positions[k], on_table[k], starts[i, 0], starts[i, 1], ends[i, 0], ends[i, 1], reach, out[i])
 
 
-def obstructions(positions: Any, rows: ArrayLike, starts: ArrayLike, ends: ArrayLike, *, ignore: ArrayLike = ()) -> NDArray[np.bool_]:
+def obstructions(
+    positions: PositionsLike, rows: Integers, starts: Vectors, ends: Vectors, *, ignore: Sequence[int] = ()
+) -> NDArray[np.bool_]:
     """Which balls are in the way of a ball that runs straight from one place to another: their centres are nearer than 2 R to its path.
 
     Parameters
@@ -149,7 +153,8 @@ def obstructions(positions: Any, rows: ArrayLike, starts: ArrayLike, ends: Array
     _obstructions(at.positions, at.on_table, which, a, b, 2.0 * BALL_RADIUS * (1.0 - 1e-9), out)
     if left_out.size:
         each = np.broadcast_to(left_out, (n, left_out.shape[-1]))
-        integer("ignore", int(each.min()), 0, N_BALLS - 1), integer("ignore", int(each.max()), 0, N_BALLS - 1)
+        for ball in (each.min(), each.max()):
+            integer("ignore", int(ball), 0, N_BALLS - 1)
         out[np.arange(n)[:, None], each] = False
     return out
 
@@ -162,7 +167,7 @@ def _clear_paths(positions, on_table, game, any_part, full_ball):
         full_ball[k] = on_table[k, 0] and full_ball_path(positions[k], on_table[k], on, BALL_RADIUS)
 
 
-def clear_paths(positions: Any) -> Paths:
+def clear_paths(positions: PositionsLike) -> Paths:
     """Whether the cue ball, rolling straight from where it lies, can reach a ball on before any other.
 
     Parameters

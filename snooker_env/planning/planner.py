@@ -2,23 +2,24 @@
 
 import copy
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .._check import integer, refuse_what
+from .._types import Environment, Integers, Scalars, Vectors
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..tasks.noise import Noise
+from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
 from ..tasks.threads import Threads, processors
 from ..tasks.visit import Visits
 from . import strokes
-from .positions import Positions, bare, check_played, rows_of
+from .positions import Positions, PositionsLike, bare, check_played, rows_of
 
 
 class Outcomes(NamedTuple):
@@ -78,7 +79,9 @@ class Planner:
     ((3,), 60)
     """
 
-    def __init__(self, env_or_options: Any, *, noise: Any = None, threads: int | None = None):
+    def __init__(
+        self, env_or_options: Environment | Options | Mapping[str, Any], *, noise: NoiseLike | None = None, threads: int | None = None
+    ):
         rules = _rules_of(env_or_options)
         errors = rules.noise if noise is None else Noise.of(noise)
         self._rules = replace(rules, noise=errors, reward=REWARDS[0], opponent=None)
@@ -122,7 +125,9 @@ class Planner:
         """Whether actions are choices (``action="discrete"``)."""
         return self._rules.actions.size == 1
 
-    def play(self, positions: Any, rows: ArrayLike, actions: ArrayLike, keys: ArrayLike | None = None) -> Outcomes:
+    def play(
+        self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers, keys: Integers | Sequence[Integers] | None = None
+    ) -> Outcomes:
         """Play n strokes, each on a copy of its position.
 
         Parameters
@@ -174,7 +179,7 @@ class Planner:
         visits.step(actions, np.zeros(n, np.bool_), out, self._threads)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
 
-    def as_actions(self, positions: Any, rows: ArrayLike, choices: ArrayLike) -> NDArray[np.float32]:
+    def as_actions(self, positions: PositionsLike, rows: Integers, choices: Integers) -> NDArray[np.float32]:
         """``snooker_env.planning.as_actions`` in this planner's world.
 
         Parameters
@@ -190,8 +195,8 @@ class Planner:
         return strokes.solved_choices(Positions.of(positions), rows, choices, (self.physics, self._rules.fidelity))
 
     def pot_aim(
-        self, positions: Any, rows: ArrayLike, balls: ArrayLike, targets: ArrayLike, speeds: ArrayLike, *, side: ArrayLike = 0.0,
-        top: ArrayLike = 0.0, elevation: ArrayLike = 0.0, ghosts: ArrayLike | None = None,
+        self, positions: PositionsLike, rows: Integers, balls: Integers, targets: Vectors, speeds: Scalars, *, side: Scalars = 0.0,
+        top: Scalars = 0.0, elevation: Scalars = 0.0, ghosts: Vectors | None = None,
     ) -> NDArray[np.float64]:  # fmt: skip
         """``snooker_env.planning.pot_aim`` in this planner's world.
 
@@ -226,7 +231,7 @@ def _rules_of(source: Any) -> Rules:
     return options.rules
 
 
-def _streams(keys: ArrayLike | None, n: int, silent: bool) -> NDArray[np.uint64]:
+def _streams(keys: Integers | Sequence[Integers] | None, n: int, silent: bool) -> NDArray[np.uint64]:
     """The random stream of each stroke, key and counter: uint64 (n, 2)."""
     streams = np.zeros((n, 2), np.uint64)
     if keys is None and silent:

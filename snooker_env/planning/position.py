@@ -5,9 +5,10 @@ from dataclasses import InitVar, asdict, dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .._check import array, integer, refuse, refuse_what, truth
+from .._types import Flags, Integers, Place, Vectors
 from ..game.balls import (
     COLOUR_NAMES,
     CUE,
@@ -71,14 +72,14 @@ class Position:
     ValueError: black = (0.0, -0.62): overlaps cue at (0.0, -0.6) by 0.0325 m, at most 1e-06 is allowed
     """
 
-    cue: tuple[float, float] | None = None
-    reds: Sequence[tuple[float, float]] = ()
-    yellow: tuple[float, float] | None = None
-    green: tuple[float, float] | None = None
-    brown: tuple[float, float] | None = None
-    blue: tuple[float, float] | None = None
-    pink: tuple[float, float] | None = None
-    black: tuple[float, float] | None = None
+    cue: Place | None = None
+    reds: Sequence[Place] = ()
+    yellow: Place | None = None
+    green: Place | None = None
+    brown: Place | None = None
+    blue: Place | None = None
+    pink: Place | None = None
+    black: Place | None = None
     on: str | None = None
     in_hand: bool = False
     points: int = 0
@@ -134,7 +135,7 @@ class Position:
         return *self._layout(), game
 
     @classmethod
-    def of_arrays(cls, positions: ArrayLike, on_table: ArrayLike, game: ArrayLike) -> "Position":
+    def of_arrays(cls, positions: Vectors, on_table: Flags, game: Integers) -> "Position":
         """The position in words that these arrays of one table stand for, see ``arrays``. Reds are numbered anew."""
         places, there = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]

@@ -1,13 +1,14 @@
 """Which positions are strokes tried on? ``Positions``: arrays with a row for each, taken from environments, states or words."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any, overload
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, TypeAlias, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .._check import array, refuse, refuse_what
 from .._jit import entry
+from .._types import Batches, Environment, FlagRows, Integers
 from ..game.balls import CUE, N_BALLS, BallOn, balls_on_kernel, bits, mask_of_present
 from ..game.frame import MOST_BREAK
 from ..game.frame_columns import BALL_ON, FREE_BALL, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
@@ -62,7 +63,7 @@ class Positions:
 
     __slots__ = ("game", "on_table", "positions")
 
-    def __init__(self, positions: ArrayLike, on_table: ArrayLike, game: ArrayLike):
+    def __init__(self, positions: Batches, on_table: FlagRows, game: Sequence[Integers] | NDArray[np.integer[Any]]):
         self.positions: NDArray[np.float64] = _floats("positions", positions, (-1, N_BALLS, 2))
         m = len(self.positions)
         there, columns = np.asarray(on_table), np.asarray(game)
@@ -74,7 +75,7 @@ class Positions:
         self.game: NDArray[np.int64] = np.ascontiguousarray(columns, np.int64)
 
     @classmethod
-    def of(cls, source: Any) -> "Positions":
+    def of(cls, source: "PositionsLike") -> "Positions":
         """Positions of whatever holds some; copies, but for ``Positions``, which come back as they are.
 
         Parameters
@@ -178,7 +179,7 @@ class Positions:
         return out
 
 
-def _floats(field: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+def _floats(field: str, values: Any, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """``_check.array`` without a copy of what is sound already."""
     a = np.asarray(values)
     sound = a.dtype == np.float64 and a.ndim == len(shape) and a.shape[1:] == shape[1:] and a.flags.c_contiguous and np.isfinite(a).all()
@@ -213,7 +214,11 @@ def _of_tables(tables: Tables) -> Positions:
     return Positions(tables.positions.copy(), tables.on_table.copy(), game)
 
 
-def rows_of(at: Positions, rows: ArrayLike, n: int | None = None) -> NDArray[np.int64]:
+PositionsLike: TypeAlias = Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
+"""What users may pass as ``positions``, see ``Positions.of``."""
+
+
+def rows_of(at: Positions, rows: Integers, n: int | None = None) -> NDArray[np.int64]:
     """``rows`` as an int64 array (n,); ValueError unless each is a row of the positions."""
     a = np.asarray(rows)
     if a.size == 0:

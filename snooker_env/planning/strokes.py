@@ -7,10 +7,11 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .._check import array, integer, number, refuse, refuse_what
 from .._jit import entry
+from .._types import Fidelity, Integers, Scalars, Vector, Vectors
 from ..game.balls import N_BALLS, balls_on_kernel, bits
 from ..game.frame_columns import BALL_ON
 from ..game.pots import POT_COLUMNS
@@ -19,22 +20,22 @@ from ..physics.cloth import COLUMNS
 from ..physics.cue import MAX_ELEVATION, squirt
 from ..physics.impact.contact import parse_fidelity
 from ..physics.impact.polynomial import WORK
-from ..physics.parameters import Physics
+from ..physics.parameters import Physics, PhysicsLike
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.discrete_actions import POTS, SIZE, chosen, masks
 from ..tasks.pot_aim import solved_aim
-from .positions import Positions, rows_of
+from .positions import Positions, PositionsLike, rows_of
 
 World = tuple[Physics, tuple[int, int]]
 """Physics, and a fidelity as ``parse_fidelity`` gives it."""
 
 
-def world_of(physics: Any, fidelity: str) -> World:
+def world_of(physics: PhysicsLike, fidelity: Fidelity) -> World:
     """What users say of a world, checked."""
     return Physics.of(physics), parse_fidelity(fidelity)
 
 
-def action_masks(positions: Any) -> NDArray[np.bool_]:
+def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
     """Which choices of ``action="discrete"`` there are.
 
     Parameters
@@ -57,7 +58,7 @@ def action_masks(positions: Any) -> NDArray[np.bool_]:
     return out
 
 
-def actions_of(speeds: ArrayLike, aims: ArrayLike, side: ArrayLike = 0.0, top: ArrayLike = 0.0) -> NDArray[np.float32]:
+def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars = 0.0) -> NDArray[np.float32]:
     """Actions of ``aim="absolute"``.
 
     Parameters
@@ -112,7 +113,7 @@ def _as_actions(positions, on_table, game, rows, picks, phys, end_mass_ratio, fi
 
 
 def as_actions(
-    positions: Any, rows: ArrayLike, choices: ArrayLike, *, physics: Any = None, fidelity: str = "standard"
+    positions: PositionsLike, rows: Integers, choices: Integers, *, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
 ) -> NDArray[np.float32]:
     """Choices of ``action="discrete"`` as actions of ``aim="absolute"``: the same strokes, to the rounding of float32.
 
@@ -145,7 +146,7 @@ def as_actions(
     return solved_choices(Positions.of(positions), rows, choices, world_of(physics, fidelity))
 
 
-def solved_choices(at: Positions, rows: ArrayLike, choices: ArrayLike, world: World) -> NDArray[np.float32]:
+def solved_choices(at: Positions, rows: Integers, choices: Integers, world: World) -> NDArray[np.float32]:
     """``as_actions`` in a world that was checked."""
     which = rows_of(at, rows)
     picks = _integers("choices", choices, len(which), 0, SIZE - 1)
@@ -167,9 +168,19 @@ def _pot_aim(positions, rows, balls, targets, ghosts, strokes, phys, end_mass_ra
 
 
 def pot_aim(
-    positions: Any, rows: ArrayLike, balls: ArrayLike, targets: ArrayLike, speeds: ArrayLike, *, side: ArrayLike = 0.0,
-    top: ArrayLike = 0.0, elevation: ArrayLike = 0.0, ghosts: ArrayLike | None = None, physics: Any = None, fidelity: str = "standard",
-) -> NDArray[np.float64]:  # fmt: skip
+    positions: PositionsLike,
+    rows: Integers,
+    balls: Integers,
+    targets: Vectors,
+    speeds: Scalars,
+    *,
+    side: Scalars = 0.0,
+    top: Scalars = 0.0,
+    elevation: Scalars = 0.0,
+    ghosts: Vectors | None = None,
+    physics: PhysicsLike = None,
+    fidelity: Fidelity = "standard",
+) -> NDArray[np.float64]:
     """In which direction the cue ball must leave to send a ball to a point: throw, swerve and the ball's own curve included.
 
     The cue ball and that ball alone are played on unbounded cloth until the ball rolls, and the direction is corrected in secant steps
@@ -219,8 +230,8 @@ def pot_aim(
 
 
 def solved_aims(
-    at: Positions, rows: ArrayLike, balls: ArrayLike, targets: ArrayLike, speeds: ArrayLike, side: ArrayLike, top: ArrayLike,
-    elevation: ArrayLike, ghosts: ArrayLike | None, world: World,
+    at: Positions, rows: Integers, balls: Integers, targets: Vectors, speeds: Scalars, side: Scalars, top: Scalars,
+    elevation: Scalars, ghosts: Vectors | None, world: World,
 ) -> NDArray[np.float64]:  # fmt: skip
     """``pot_aim`` in a world that was checked."""
     which = rows_of(at, rows)
@@ -237,7 +248,8 @@ def solved_aims(
         behind = array("ghosts", ghosts, (n, 2))
     strokes = np.empty((n, 4))
     high = (np.inf, physics.max_offset, physics.max_offset, MAX_ELEVATION)
-    for c, (name, value) in enumerate({"speeds": speeds, "side": side, "top": top, "elevation": elevation}.items()):
+    given: dict[str, Any] = {"speeds": speeds, "side": side, "top": top, "elevation": elevation}
+    for c, (name, value) in enumerate(given.items()):
         strokes[:, c] = array(name, value, (n,) if np.ndim(value) else ())
         low = -high[c] if name in ("side", "top") else 0.0
         if n and not (low <= strokes[:, c].min() and strokes[:, c].max() <= high[c]):
@@ -247,7 +259,7 @@ def solved_aims(
     return out
 
 
-def _integers(field: str, values: ArrayLike, n: int, low: int, high: int) -> NDArray[np.int64]:
+def _integers(field: str, values: Any, n: int, low: int, high: int) -> NDArray[np.int64]:
     """An int64 array (n,), each number in [low, high]."""
     a = np.asarray(values)
     if a.shape != (n,) or (a.dtype.kind not in "iu" and n):

@@ -5,7 +5,7 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.pockets import openings, pool_tables, rail_paths
-from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, Pocket, alone, drops, windows
+from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, LonePocket, alone, drops, windows
 from snooker_env.game import pots
 from tests.kernels import from_python
 
@@ -144,6 +144,6 @@ def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():
         ends = [np.where(table.noses[:, :1] == 0, np.stack([level, e], 1), np.stack([e, level], 1)) for e in table.noses[:, 3:].T]
         near = np.any([np.hypot(*(end - mouth).T) < 0.1 for end in ends], axis=0)
         assert near.sum() == 2
-        here = Pocket(sn.Table(kind, table.noses[near], jaws, fall[None]), tuple(mouth), float(axis))
+        here = LonePocket(sn.Table(kind, table.noses[near], jaws, fall[None]), tuple(mouth), float(axis))
         found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, world).width / pool_tables.INCH
         assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)

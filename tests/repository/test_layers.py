@@ -19,28 +19,29 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
-BASE = {"_jit", "_check", "geometry"}
+BASE = {"_jit", "_check", "_types", "geometry"}
 ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
     "_jit": {"_cache", "_notices"},
     "_registration": set(),
     "_autoregister": set(),
-    "_check": set(),
+    "_types": set(),
+    "_check": {"_types"},
     "checks": {"_check", "physics"},
     "kernels": {"_jit", "game", "tasks"},
-    "geometry": {"_check"},
+    "geometry": {"_check", "_types"},
     "physics": BASE,
     "simulation": BASE | {"physics"},
     "game": BASE,
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
-    "render": {"_check", "geometry", "physics.table", "physics.engine", "game.balls", "simulation"},
+    "render": {"_check", "_types", "geometry", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
-    "match": {"envs"},
+    "match": {"_types", "envs", "tasks"},
     "_warmup": {"_jit", "_notices", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {"geometry", "physics", "simulation", "planning", "envs", "match", "_warmup", "_registration"},
+    "__init__": {"geometry", "physics", "simulation", "tasks", "planning", "envs", "match", "_warmup", "_registration"},
 }
 OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}

@@ -29,7 +29,7 @@ def test_counts_of_a_visit_by_hand():
     s = rollouts.Strokes(
         visits=2, visit=np.array([0, 1, 0, 0, 0]), number=np.array([0, 0, 1, 2, 3]), points=np.array([1.0, 0, 7, 1, 0]),
         foul=np.array([False, False, False, False, True]), ball_on=np.array([BallOn.RED, BallOn.RED, BallOn.ANY_COLOUR, BallOn.RED, 0]),
-        cleared=np.zeros(5, bool), cue=np.zeros((5, 2)), tolerance=np.array([1e-2, 0, 1e-3, 1e-2, 0]), thinking=0.0,
+        cleared=np.zeros(5, bool), cue=np.zeros((5, 2)), tolerance=np.array([1e-2, 0, 1e-3, 1e-2, 0]), decision_seconds=0.0,
     )  # fmt: skip
     assert s.following.tolist() == [2, -1, 3, 4, -1]
     c = {name: values.tolist() for name, values in metrics.counts(s).items()}
@@ -47,7 +47,7 @@ def a_clearance_a_foul_and_a_miss():
     return rollouts.Strokes(
         visits=3, visit=np.array([0, 1, 2, 0]), number=np.array([0, 0, 0, 1]), points=np.array([95.0, 0, 0, 7]),
         foul=np.array([False, True, False, False]), ball_on=np.array([BallOn.ANY_COLOUR, BallOn.BLACK, BallOn.BLACK, BallOn.BLACK]),
-        cleared=np.array([False, True, False, True]), cue=np.zeros((4, 2)), tolerance=np.zeros(4), thinking=0.0,
+        cleared=np.array([False, True, False, True]), cue=np.zeros((4, 2)), tolerance=np.zeros(4), decision_seconds=0.0,
     )  # fmt: skip
 
 

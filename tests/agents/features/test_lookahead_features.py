@@ -37,7 +37,7 @@ def test_foresight_shows_what_happens_without_errors():
         assert not row[:, lookahead_features.SPREAD].any() and np.array_equal(row[:, lookahead_features.SCORED] > 0, rewards > 0)
         cue = exact.tables.positions[:, 0] / (pot_features.HALF_WIDTH, pot_features.HALF_LENGTH)
         assert np.allclose(row[~ended, lookahead_features.CUE_X : lookahead_features.CUE_Y + 1], cue[~ended], atol=1e-6)
-        assert np.allclose(lookahead_features.worth_by_hand(rows)[ended, stroke], rewards[ended], atol=1e-5)
+        assert np.allclose(lookahead_features.worth_by_rule(rows)[ended, stroke], rewards[ended], atol=1e-5)
     part = look(env, observations[[1, 3]], np.array([False, True, False, True, False]))
     assert np.array_equal(part, seen[[1, 3]])
     assert look.masks(env).sum() == (rows[:, :, 0] > 0).sum() and look.masks(env).shape == (5, SIZE)
@@ -99,7 +99,7 @@ def test_worth_by_hand():
         (1.0, 1 / 7, 1.0),
         (0.0, 0.5, 1.0),
     )
-    assert np.allclose(lookahead_features.worth_by_hand(rows), [[7.0, 13.5, -np.inf]])
+    assert np.allclose(lookahead_features.worth_by_rule(rows), [[7.0, 13.5, -np.inf]])
 
 
 def test_looks_are_even():
@@ -119,7 +119,7 @@ def test_lookahead_plays_the_stroke_that_promises_most():
     player = player_of("lookahead")
     picks = player.act(env, None, going)
     rows = rows_of(lookahead_features.ForesightView()(env, env.reset(seed=0)[0]))
-    assert np.array_equal(picks[going], lookahead_features.PICKS[lookahead_features.worth_by_hand(rows).argmax(1)][going]) and picks[1] == 0
+    assert np.array_equal(picks[going], lookahead_features.PICKS[lookahead_features.worth_by_rule(rows).argmax(1)][going]) and picks[1] == 0
     far = play(player, 60, first_seed=5)
     plain = play(GhostBall(), 60, first_seed=5)
     assert summary(far)["points_a_visit"] > 2.0 * summary(plain)["points_a_visit"]

@@ -61,7 +61,7 @@ def by_hand(positions, on_table, ball_on, spread, follows, second, third, far):
 
 
 @pytest.mark.parametrize("ball_on", [BallOn.RED, BallOn.ANY_COLOUR])
-@pytest.mark.parametrize("constants", [prospects.BY_HAND, prospects.SURE, (8.0, 0.4, 0.3, 0.5)])
+@pytest.mark.parametrize("constants", [prospects.RULE_OF_THUMB, prospects.SURE, (8.0, 0.4, 0.3, 0.5)])
 def test_prospects_recomputed(ball_on, constants):
     env = tables(30, layout="random:3", seed=2)
     at = Positions.of(env)

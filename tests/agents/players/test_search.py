@@ -8,7 +8,7 @@ from agents.evaluation.rollouts import play, summary
 from agents.features import pot_features, prospects
 from agents.players.built_in import DISCRETE, GhostBall, Random
 from agents.players.by_name import player_of
-from agents.players.search import Search, _Mind
+from agents.players.search import Search, _Worker
 from snooker_env.planning import Positions, action_masks
 from snooker_env.tasks.discrete_actions import STROKES
 from snooker_env.tasks.noise import Noise
@@ -68,7 +68,7 @@ def test_random_plays_only_what_is_there():
 def thought():
     """A table, and a mind that thinks about it with 2,000 shots."""
     env = tables(1, seed=5, noise="professional", aim="absolute")
-    return Positions.of(env), _Mind(Search(2000), env)
+    return Positions.of(env), _Worker(Search(2000), env)
 
 
 def test_the_second_shot_decides(thought, monkeypatch):
@@ -81,7 +81,7 @@ def test_the_second_shot_decides(thought, monkeypatch):
         asked.append((len(scores), budget))
         return -scores
 
-    monkeypatch.setattr(_Mind, "_second", turned_round)
+    monkeypatch.setattr(_Worker, "_second", turned_round)
     assert not np.array_equal(mind.best(at, np.random.default_rng(1)), own)
     ((finalists, budget),) = asked
     assert finalists == 6 and budget >= 800
