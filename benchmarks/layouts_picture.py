@@ -3,6 +3,8 @@
 python -m benchmarks.layouts_picture [--seed 4] [--json FILE] [--out FOLDER]
 """
 
+from typing import Any
+
 import numpy as np
 
 from snooker_env.game.balls import NAMES, REDS_MASK
@@ -34,7 +36,7 @@ SHOWN = {
 def picture(name, says, seed):
     """One layout with its name; a single pot with its line and ghost ball."""
     positions, on_table = layout(name, np.random.default_rng(seed))
-    overlay = {}
+    overlay: dict[str, Any] = {}
     if name.startswith("pots:"):
         ghost = pots(positions, on_table, REDS_MASK, most=1)[0, [GHOST_X, GHOST_Y]]
         overlay = {"aim": np.array([positions[0], ghost]), "ghost": ghost}

@@ -20,11 +20,13 @@ from gymnasium.envs import registration as _gymnasium
 from ._registration import register as _register
 from ._warmup import warmup
 from .geometry import POCKETS, Pocket
+from .impacts import collide_balls, collide_cushion, strike
 from .match import match_env
 from .physics.engine import EventKind
 from .physics.parameters import Physics
 from .physics.table import Table
-from .simulation import Shot, ShotBatch, SimulationError, collide_balls, collide_cushion, simulate, simulate_batch, strike
+from .shot import Shot, ShotBatch, SimulationError
+from .simulation import simulate, simulate_batch
 
 if _typing.TYPE_CHECKING:
     from . import planning

@@ -2,7 +2,8 @@
 
 from ._jit import ENTRIES
 from ._notices import warming_up
-from .simulation import collide_balls, collide_cushion, simulate
+from .impacts import collide_balls, collide_cushion
+from .simulation import simulate
 
 
 def warmup() -> None:
@@ -10,6 +11,10 @@ def warmup() -> None:
 
     Call it in the parent before worker processes start: otherwise each of them compiles for itself. Nothing is said where all comes from
     the cache, or with ``SNOOKER_ENV_QUIET=1``.
+
+    Returns
+    -------
+    None
     """
     from .envs.snooker import SnookerEnv
     from .game.balls import REDS_MASK

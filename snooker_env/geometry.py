@@ -69,14 +69,33 @@ class Pocket:
     A jaw leaves the straight nose at its ``start``, turns away from it on an arc, and goes on straight (its facing). Where the arc ends
     over the fall no facing is made: a ball that has come so far is lost.
 
-    Fields, in metres unless said:
+    Parameters
+    ----------
+    is_middle : bool
+        For the middles of the long sides, or for the corners?
+    start : float
+        Where the jaws leave the nose [m]: the distance along the rail from the corner (where the nose lines meet), or from the
+        middle.
+    jaw_radius : float
+        Radius of the arc [m]; 0: a sharp point, as in pool.
+    turn : float
+        How far a jaw turns from the nose [degrees]: 45 at a corner and 90 in the middle make the facings parallel.
+    fall_depth : float
+        How far the centre of the slate's circle lies [m] behind the nose line (behind both at a corner).
+    fall_radius : float
+        Radius of that circle [m]; a ball begins to drop where its centre crosses the circle.
 
-    * is_middle: For the middles of the long sides, or for the corners?
-    * start: Where the jaws leave the nose: the distance along the rail from the corner (where the nose lines meet), or from the middle.
-    * jaw_radius: Radius of the arc; 0: a sharp point, as in pool.
-    * turn: How far a jaw turns from the nose [degrees]: 45 at a corner and 90 in the middle make the facings parallel.
-    * fall_depth: How far the centre of the slate's circle lies behind the nose line (behind both at a corner).
-    * fall_radius: Its radius; a ball begins to drop where its centre crosses the circle.
+    Raises
+    ------
+    ValueError
+        If a size is out of range, or if they leave no opening or a way past the fall.
+
+    Examples
+    --------
+    >>> from snooker_env import Pocket
+    >>> pocket = Pocket.corner(mouth=0.115, shelf=0.03, fall_radius=0.07, cut=142.0)
+    >>> round(pocket.mouth, 3), round(pocket.shelf, 3)
+    (0.115, 0.03)
     """
 
     is_middle: bool
@@ -117,6 +136,10 @@ class Pocket:
         jaw_radius : float
             Radius of the arc by which a jaw leaves the nose [m], in [0, 1]; 0 for a sharp point.
 
+        Returns
+        -------
+        Pocket
+
         Raises
         ------
         ValueError
@@ -131,7 +154,24 @@ class Pocket:
 
     @classmethod
     def middle(cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 90.0, jaw_radius: float = 0.0) -> "Pocket":
-        """A middle (side) pocket by its published sizes: as ``corner``, with cut in [90, 180), 90 for parallel facings, WPA 104."""
+        """A middle (side) pocket by its published sizes.
+
+        Parameters
+        ----------
+        mouth, shelf, fall_radius, jaw_radius : float
+            As in ``corner``.
+        cut : float
+            Angle between nose and facing [degrees], in [90, 180): 90 for parallel facings, WPA 104.
+
+        Returns
+        -------
+        Pocket
+
+        Raises
+        ------
+        ValueError
+            As ``corner``.
+        """
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
         return cls(

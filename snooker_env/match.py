@@ -12,13 +12,40 @@ else:  # neither PettingZoo nor the environments are loaded before they are aske
 
 
 def match_env(options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any) -> "_MatchEnv":
-    """A frame of snooker between "player_0" and "player_1": a PettingZoo AEC environment (``snooker_env.envs.match.MatchEnv``).
+    """A frame of snooker between "player_0" and "player_1", as a PettingZoo AEC environment.
 
-    The arguments are those of ``Snooker-v0`` with ``task="frame"``, as keywords or as ``Options``, but for an opponent. As keywords,
-    placement in the D and the decision after a foul are part of the action unless switched off (of ``action="discrete"`` they never
-    are). After ``max_strokes`` strokes of both together (1000, None for never) the referee stops the frame, both players are truncated.
+    After ``max_strokes`` strokes of both together (1000, None for never) the referee stops the frame and both players are truncated.
 
-    Raises ImportError without PettingZoo, ValueError on a bad argument.
+    Parameters
+    ----------
+    options : Options, optional
+        How the game is played: ``task="frame"``, no opponent. None: it is made of the keywords.
+    render_mode : {"human", "rgb_array", "ansi"}, optional
+        How ``render`` shows the table.
+    **given
+        The keywords of ``Options``, in place of ``options``. Placement in the D and the decision after a foul are part of the action
+        unless they are switched off; with ``action="discrete"`` they never are.
+
+    Returns
+    -------
+    snooker_env.envs.match.MatchEnv
+        Its docstring is the specification.
+
+    Raises
+    ------
+    ImportError
+        Without PettingZoo.
+    ValueError
+        On a bad argument.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> env = sn.match_env(noise="club")
+    >>> env.reset(seed=1)
+    >>> env.step(env.action_space(env.agent_selection).sample())
+    >>> env.agents
+    ['player_0', 'player_1']
     """
     try:
         from .envs.match import MatchEnv

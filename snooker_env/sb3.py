@@ -29,13 +29,29 @@ __all__ = ["SnookerVecEnv"]
 
 
 class SnookerVecEnv(VecEnv):
-    """``num_envs`` tables as SB3 takes them; all other arguments are those of ``SnookerVectorEnv``.
-
-    ``seed``: an int, table k then begins with seed + k, as after ``seed(seed)``.
+    """Many tables as Stable-Baselines3 takes them.
 
     A step that ends a visit starts the next one. Its info holds ``terminal_observation``, ``TimeLimit.truncated`` and, as a ``Monitor``
     around each table would give it, ``episode`` with the reward "r", the length "l" and the time "t" [s]. Other infos are left out, ten
     entries for each table at each step being slow, but for those named in ``info_keys``.
+
+    Parameters
+    ----------
+    num_envs : int
+        How many tables.
+    seed : int, optional
+        Table k begins with seed + k, as after ``seed(seed)``.
+    info_keys : sequence of str
+        Keys of the environment's infos to hand on.
+    **kwargs
+        All other arguments of ``SnookerVectorEnv``, but for ``autoreset_mode``.
+
+    Raises
+    ------
+    ValueError
+        For a bad argument.
+    ImportError
+        Without Stable-Baselines3, when this module is imported.
     """
 
     tables: SnookerVectorEnv
@@ -61,6 +77,10 @@ class SnookerVecEnv(VecEnv):
         """New visits on all tables, with the seeds and options set before: ``set_options([{"state": ...}, ...])`` starts from states.
 
         These hold their random numbers; with ``seed`` called too, those of the seeds take their place.
+
+        Returns
+        -------
+        float32 (num_envs, k) or dict of arrays
         """
         options = None
         if any(self._options):
@@ -76,11 +96,24 @@ class SnookerVecEnv(VecEnv):
         return observation
 
     def step_async(self, actions: Any) -> None:
-        """Note the actions."""
+        """Note the actions that ``step_wait`` plays.
+
+        Parameters
+        ----------
+        actions : array_like, float (num_envs, k) or int (num_envs,)
+        """
         self._actions = actions
 
     def step_wait(self) -> tuple[Observation, Singles, Bools, list[dict[str, Any]]]:
-        """Play them: observations, rewards (float32), ends, infos."""
+        """Play the actions.
+
+        Returns
+        -------
+        observations : float32 (num_envs, k) or dict of arrays
+        rewards : float32 (num_envs,)
+        dones : bool (num_envs,)
+        infos : list of dict
+        """
         observation, rewards, terminated, truncated, info = self.tables.step(self._actions)
         done = terminated | truncated
         self._returns += rewards
@@ -107,7 +140,23 @@ class SnookerVecEnv(VecEnv):
         return self.tables.render()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """An attribute of the tables asked for: what all share, or of each its own, as ``points``."""
+        """An attribute of the tables asked for: what all share, or of each its own, as ``points``.
+
+        Parameters
+        ----------
+        attr_name : str
+        indices : int, sequence of int, optional
+            Which tables; None: all.
+
+        Returns
+        -------
+        list
+
+        Raises
+        ------
+        AttributeError
+            For what no table has.
+        """
         if hasattr(self.tables, attr_name) and attr_name not in ("np_random", "np_random_seed"):
             return [getattr(self.tables, attr_name) for _ in self._get_indices(indices)]
         try:
@@ -121,7 +170,18 @@ class SnookerVecEnv(VecEnv):
         raise AttributeError(f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv")
 
     def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
-        """``get_state`` or ``action_masks`` of the tables asked for; no other method belongs to one table."""
+        """What ``get_state`` or ``action_masks`` gives of the tables asked for; no other method belongs to one table.
+
+        Parameters
+        ----------
+        method_name : {"get_state", "action_masks"}
+        indices : int, sequence of int, optional
+            Which tables; None: all.
+
+        Returns
+        -------
+        list
+        """
         choice("method_name", method_name, ("get_state", "action_masks"))
         states = getattr(self.tables, method_name)()
         return [states[k] for k in self._get_indices(indices)]

@@ -1,24 +1,19 @@
-"""How do I call the physics? One impact, one strike, one shot, many shots: checked input in, plain arrays and ``Shot`` out."""
+"""How do I play shots? One shot or many: checked input in, ``Shot`` and ``ShotBatch`` out. Single impacts are in ``impacts``."""
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ._check import array, flags, integer, refuse, refuse_what
-from ._jit import entry
-from ._types import Batches, Bools, Fidelity, FlagRows, Flags, Floats, Ints, Real, Solver, Vector, Vectors
-from .physics import cloth, cue, engine, trajectory
+from ._check import array, flags, integer, refuse_what
+from ._types import Batches, Bools, Fidelity, FlagRows, Flags, Floats, Solver, Vectors
+from .physics import cloth, engine
 from .physics.events import EventKind, Status
 from .physics.impact import contact
-from .physics.impact.polynomial import WORK
-from .physics.parameters import FASTEST, FASTEST_IMPACT, MOST_SPIN, MOST_SPIN_IMPACT, P_E_B, Physics, PhysicsLike
+from .physics.parameters import FASTEST, MOST_SPIN, Physics, PhysicsLike
 from .physics.table import Table, TableLike
-
-EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
-"""One logged event; ``kind`` is an ``EventKind``."""
+from .shot import EVENT, Shot, ShotBatch, SimulationError
 
 MAX_EVENTS = 100_000
 MAX_BALLS = 4096
@@ -26,149 +21,6 @@ MAX_BALLS = 4096
 FARTHEST = 1e6
 """Balls lie within this [m] of the origin: there places are still known to 1e-10 m."""
 _FIRST_LOG = 512
-
-
-class SimulationError(RuntimeError):
-    """A shot that could not be computed; the message names the shot, its last event and what to try."""
-
-
-@entry(what="the impact of two balls", uses=(contact.collide_balls,))
-def _collide_balls(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
-    return contact.collide_balls(v1, w1, v2, w2, nx, ny, phys, phys[P_E_B], fidelity, n_steps, np.empty(WORK))
-
-
-@entry(what="the impact with a cushion", uses=(contact.collide_cushion,))
-def _collide_cushion(v, w, nx, ny, phys, fidelity, n_steps):
-    e = contact.cushion_restitution(v[0] * nx + v[1] * ny, phys)
-    return contact.collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, np.empty(WORK))
-
-
-def _unit_normal(normal):
-    nx, ny, nz = array("normal", normal, (3,)).tolist()
-    if abs(nz) > 1e-9 or abs(np.hypot(nx, ny) - 1.0) > 1e-6:
-        length = (nx * nx + ny * ny + nz * nz) ** 0.5
-        raise refuse("normal", (nx, ny, nz), f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {length:.7g})")
-    size = float(np.hypot(nx, ny))
-    return nx / size, ny / size
-
-
-def _velocity(name, value):
-    return tuple(array(name, value, (3,), FASTEST_IMPACT, "m/s").tolist())
-
-
-def _spin(name, value):
-    return tuple(array(name, value, (3,), MOST_SPIN_IMPACT, "rad/s").tolist())
-
-
-def collide_balls(
-    v1: Vector, w1: Vector, v2: Vector, w2: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """The frictional impact of two balls standing on the cloth (Mathavan, Jackson & Parkin 2014, 2.1 to 2.4).
-
-    v1, v2: velocities [m/s], w1, w2: spins [rad/s], each (3,), no number beyond 1e6 m/s and 1e9 rad/s; normal: horizontal unit
-    vector from ball 1 to ball 2. Returns v1, w1, v2, w2 after the impact, (3,) float64 each, the vertical velocity of the lifted ball
-    included. Balls that do not close (zero or parting normal speed) come back unchanged. ``fidelity``: "fast" (closed form, free
-    spheres), "standard", "reference", or "euler:N" (the paper's own scheme with N of eq. 14).
-
-    Raises ValueError on bad shapes, numbers not finite or beyond these, a normal that is not horizontal and unit, an unknown fidelity or
-    physics.
-    """
-    physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
-    args = _velocity("v1", v1), _spin("w1", w1), _velocity("v2", v2), _spin("w2", w2)
-    v1_after, w1_after, v2_after, w2_after, solved = _collide_balls(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
-    if not solved:
-        raise SimulationError(f"the impact of v1, w1, v2, w2 = {args} did not end at fidelity {fidelity!r}; try another fidelity")
-    return np.array(v1_after), np.array(w1_after), np.array(v2_after), np.array(w2_after)
-
-
-def collide_cushion(
-    v: Vector, w: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
-) -> tuple[Floats, Floats]:
-    """The impact of a ball with a cushion's nose (Mathavan, Jackson & Parkin 2010, with Coulomb's law at zero slip).
-
-    v: velocity [m/s], w: spin [rad/s], (3,) each, bounded as in ``collide_balls``; normal: horizontal unit vector INTO the cushion.
-    Returns v, w after the impact; a ball that does not move into the cushion comes back unchanged. Fidelities as in ``collide_balls``;
-    "fast" integrates with a loose tolerance (no closed form keeps the cloth's reaction, worth 7 % of the rebound). Raises ValueError as
-    ``collide_balls`` does.
-    """
-    physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
-    args = _velocity("v", v), _spin("w", w)
-    v_after, w_after, solved = _collide_cushion(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
-    if not solved:
-        raise SimulationError(f"the cushion impact of v, w = {args} did not end at fidelity {fidelity!r}; try another fidelity")
-    return np.array(v_after), np.array(w_after)
-
-
-def strike(
-    speed: Real, aim: Real, side: Real = 0.0, top: Real = 0.0, elevation: Real = 0.0, physics: PhysicsLike = None
-) -> tuple[Floats, Floats]:
-    """The cue ball's velocity (3,) [m/s] and spin (3,) [rad/s] just after the cue has struck it.
-
-    speed in [0, 1000]: the speed the cue gives [m/s], along the cue; aim: direction of the cue [rad], anticlockwise from +x; side, top: tip
-    offset over R, + right, + up as the player sees it; elevation of the butt [rad] in [0, 1.5]. Side spin deflects the ball off the
-    aim (squirt, to the left for right side); an elevated cue with side gives the spin of a swerve or masse, and the cloth takes the
-    downward part of the speed: the ball leaves along the cloth with speed cos(elevation).
-
-    Raises ValueError on a miscue (offset beyond ``physics.max_offset`` R, 0.5 by default), a negative speed, non-finite numbers.
-    """
-    v, w = cue.strike(speed, aim, side, top, elevation, Physics.of(physics))
-    return np.array(v), np.array(w)
-
-
-@dataclass(frozen=True, eq=False)
-class Shot:
-    """One simulated shot. All arrays are fresh and the caller's own.
-
-    Fields:
-
-    * positions: (n, 2) [m] at rest; of a potted ball: where its centre crossed the fall, or where its flight over the pocket ended.
-    * potted: (n,) int: pocket index, or -1 if not potted in this shot. ``Table.pockets`` names them: on a table with six pockets
-      ``snooker_env.POCKETS``.
-    * on_table: (n,) bool: still in play.
-    * duration: Time [s] until everything is at rest, spin included (with ``spin_decel`` 0, which ends no spin: until no ball moves across
-      the table).
-    * events: Structured array of ``time`` [s], ``kind`` (EventKind), ``i``, ``j``, in order.
-    """
-
-    positions: Floats
-    potted: Ints
-    on_table: Bools
-    duration: float
-    events: NDArray[np.void]
-    segments: Floats = field(repr=False)
-    physics: Physics = field(repr=False)
-
-    def at(self, t: Real | Vector) -> tuple[Floats, Floats, Floats]:
-        """Positions (n, 2) [m], velocities (n, 2) [m/s] and spins (n, 3) [rad/s] at time t [s], finite and not negative.
-
-        t may be an array of shape (m,): then a leading axis m is added to each. At the time of an impact: just after it. From ``duration``
-        on, however late, everything is at rest: the positions are ``positions``, velocities and spins zero (with ``spin_decel`` 0 a spin
-        about the vertical stays as it is). A potted ball lies still in its place of ``positions``, without spin, from its pot on, and
-        one that was not on the table where it was given. A ball in the air over a pocket has the mean velocity from event to event.
-        """
-        single = np.ndim(np.asarray(t)) == 0
-        times = array("t", [t] if single else t, (-1,))
-        if times.size and times.min() < 0:
-            raise refuse("t", float(times.min()), "must not be negative")
-        n, m = len(self.positions), len(times)
-        out = np.zeros((m, n, 2)), np.zeros((m, n, 2)), np.zeros((m, n, 3))
-        segments = np.require(self.segments, np.float64, ["C", "W"])  # as compiled for; a shot that came from elsewhere may be read-only
-        trajectory.states_at(segments, n, times, self.physics.pack(), *out)
-        if self.physics.spin_decel > 0:
-            out[2][times >= self.duration] = 0.0  # rounding may leave 1e-14 of a spin at the very time at which it ends
-        return (out[0][0], out[1][0], out[2][0]) if single else out
-
-
-@dataclass(frozen=True, eq=False)
-class ShotBatch:
-    """Many simulated shots: the fields of ``Shot`` with a leading axis b. ``events``: one array a shot if asked for, else None."""
-
-    positions: Floats
-    potted: Ints
-    on_table: Bools
-    duration: Floats
-    event_count: Ints
-    events: list[NDArray[np.void]] | None = None
 
 
 def _balls(positions, velocities, spins, on_table, batch):
@@ -194,16 +46,47 @@ def simulate(
     on_table: Flags | None = None,
     max_events: int = MAX_EVENTS,
 ) -> Shot:
-    """Play one shot until everything is at rest.
+    """Play one shot until everything is at rest. The same input gives the same bits.
 
-    positions (n, 2) [m], velocities (n, 2) [m/s] and spins (n, 3) [rad/s] of n balls in the world frame (origin at the table's centre, +y
-    to the black end), each number within 1,000 m/s and 100,000 rad/s; table: a preset's name ("match", "tight", "uk8", "pool9", "carom",
-    each for the balls of its game: physics.R must be ``Table.preset(name).ball_radius``), a ``Table``, or None for unbounded cloth;
-    on_table (n,) bool: balls to leave out are False. All balls are equal. Balls may touch each other and the cushions (to within 1e-6 m).
-    The same input gives the same bits.
+    Parameters
+    ----------
+    positions : array_like, float (n, 2)
+        Centres [m] in the world frame: origin at the table's centre, +x to the yellow side, +y to the black end. Balls may touch each
+        other and the cushions, to within 1e-6 m. All balls are equal.
+    velocities : array_like, float (n, 2)
+        [m/s], each number within 1,000.
+    spins : array_like, float (n, 3)
+        [rad/s], each number within 100,000.
+    table : str, Table or None
+        A preset's name ("match", "tight", "uk8", "pool9", "carom", each for the balls of its game: ``physics.R`` must be
+        ``Table.preset(name).ball_radius``), a ``Table``, or None for unbounded cloth.
+    physics : None, str, dict or Physics
+        The world, see ``Physics.of``; "paper" if it is None.
+    fidelity : str
+        How impacts are solved, as in ``collide_balls``.
+    on_table : array_like, bool (n,), optional
+        Balls to leave out are False.
+    max_events : int
+        Most events of the shot.
 
-    Returns a ``Shot``. Raises ValueError on bad input (field, value, what is allowed), SimulationError if the shot does not come to rest
-    within ``max_events`` events.
+    Returns
+    -------
+    Shot
+
+    Raises
+    ------
+    ValueError
+        On bad input; the message names the field, its value and what is allowed.
+    SimulationError
+        If the shot does not come to rest within ``max_events`` events.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> v, w = sn.strike(speed=3.0, aim=1.5708)
+    >>> shot = sn.simulate([(0.0, -1.2), (0.0, 0.6)], [v[:2], (0.0, 0.0)], [w, (0.0, 0.0, 0.0)], physics="match")
+    >>> shot.positions.shape, shot.on_table.tolist()
+    ((2, 2), [True, True])
     """
     physics, table, solver = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=False)
@@ -255,10 +138,42 @@ def simulate_batch(
     events: bool = False,
     max_events: int = MAX_EVENTS,
 ) -> ShotBatch:
-    """Play b shots on b tables at once: positions (b, n, 2), velocities (b, n, 2), spins (b, n, 3), on_table (b, n) bool or None.
+    """Play b shots on b tables at once.
 
-    threads: how many to use, None for one per core; results do not depend on it. events: also return each shot's event log.
-    Returns a ``ShotBatch``. Errors as in ``simulate``.
+    Parameters
+    ----------
+    positions : array_like, float (b, n, 2)
+        [m], as in ``simulate``.
+    velocities : array_like, float (b, n, 2)
+        [m/s]
+    spins : array_like, float (b, n, 3)
+        [rad/s]
+    table, physics, fidelity, max_events
+        As in ``simulate``, the same for all shots.
+    on_table : array_like, bool (b, n), optional
+        Balls to leave out are False.
+    threads : int, optional
+        How many to use; None: one for each core. Results do not depend on it.
+    events : bool
+        Whether to return each shot's log of events too.
+
+    Returns
+    -------
+    ShotBatch
+
+    Raises
+    ------
+    ValueError, SimulationError
+        As ``simulate``; the messages name the shot.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> velocities = np.array([[(1.0, 0.0)], [(2.0, 0.0)]])
+    >>> batch = sn.simulate_batch(np.zeros((2, 1, 2)), velocities, np.zeros((2, 1, 3)))
+    >>> batch.positions.shape, batch.events is None
+    ((2, 1, 2), True)
     """
     physics, table, solver = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=True)

@@ -8,6 +8,8 @@ centred, some rattle and some miss.
 from dataclasses import dataclass
 from math import radians, sqrt
 
+from typing import Any
+
 import numpy as np
 
 import snooker_env as sn
@@ -38,7 +40,7 @@ class Shots:
     """(n,) the ball to be potted or hit."""
     physics: sn.Physics
 
-    def struck(self, seed=None, aim=0.0, errors: str | Noise = "professional"):
+    def struck(self, seed=None, aim=0.0, errors: Any = "professional"):
         """Velocities (n, b, 2) and spins (n, b, 3) just after the strokes, each turned by ``aim`` [rad]; if seeded, with execution
         errors: any ``noise``."""
         n, b = self.positions.shape[:2]

@@ -24,7 +24,7 @@ SPEEDS, DISTANCES = (0.5, 1.0, 2.0, 4.0, 6.0, 9.0), (0.3, 1.0, 1.7)
 QUICK_SPEEDS, QUICK_DISTANCES = (0.5, 1.0, 6.0), (0.3, 1.0)
 ANGLES = {"corner": (0, 20, 40), "middle": (0, 30, 45, 60)}
 INDEX = {"corner": CORNER, "middle": MIDDLE}
-PLACES = (("match", "corner"), ("match", "middle"), ("tight", "corner"))
+PLACES: tuple[tuple[Literal["match", "tight"], str], ...] = (("match", "corner"), ("match", "middle"), ("tight", "corner"))
 """The middle pockets of both tables are the same."""
 BALLS, MEASURES = ("rolling", "struck"), {"mm": 1e3, "deg": float(np.degrees(1.0))}
 CLEAN_SPEEDS = (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0)

@@ -118,7 +118,7 @@ def shots(kind, n, seed=0):
                 if far.min() > 2 * R + 1e-3 and (np.abs(p[k, :, 1]) > 0.1).all():
                     break
             speed, aim, tip = rng.uniform(0.5, 6), rng.uniform(-np.pi, np.pi), rng.uniform(-0.35, 0.35, 2)
-        v3, w[k, 0] = sn.strike(speed, aim, *tip)
+        v3, w[k, 0] = sn.strike(speed, aim, tip[0], tip[1])
         v[k, 0] = v3[:2]
     return p, v, w
 

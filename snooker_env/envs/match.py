@@ -138,19 +138,61 @@ class MatchEnv(AECEnv[str, Any, Any]):
         return self.action_spaces[agent]
 
     def observe(self, agent: str) -> Observation:
-        """What ``agent`` sees now; a fresh array (or dict of arrays)."""
+        """What a player sees now.
+
+        Parameters
+        ----------
+        agent : str
+            "player_0" or "player_1".
+
+        Returns
+        -------
+        float32 (k,) or dict of arrays
+            Fresh.
+        """
         rows = self.tables.observe(np.zeros(1, np.int64), PLAYERS.index(agent))
         return observations.shaped(self.options.observation, rows[0])
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
-        """With ``action="discrete"``: which choices ``agent`` has, int8 (n,); none unless it is his turn."""
+        """With ``action="discrete"``: which choices a player has; none unless it is his turn.
+
+        Parameters
+        ----------
+        agent : str
+
+        Returns
+        -------
+        int8 (n,)
+
+        Raises
+        ------
+        ValueError
+            With ``action="box"``.
+        """
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         there = agent == self.agent_selection and not self.tables.ended()[0]
         return (self.tables.action_masks()[0] & there).astype(np.int8)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
-        """A new frame. options: None or {"state": a state of ``get_state``}; other keys are not read, PettingZoo's own test gives some."""
+        """A new frame.
+
+        Parameters
+        ----------
+        seed : int, optional
+            Of all random numbers to come; None: they go on.
+        options : dict, optional
+            {"state": a state of ``get_state``} starts from there. Other keys are not read: PettingZoo's own test gives some.
+
+        Returns
+        -------
+        None
+
+        Raises
+        ------
+        ValueError
+            For a state that is not sound.
+        """
         if options is not None and not isinstance(options, dict):
             raise refuse("options", options, 'must be None or {"state": ...}')
         given = None
@@ -186,7 +228,24 @@ class MatchEnv(AECEnv[str, Any, Any]):
         self.infos = {name: self._info(frame, k) for k, name in enumerate(PLAYERS)}
 
     def step(self, action: Action) -> None:
-        """The selected player's action, None once he has terminated. ValueError if it is not finite, of the right shape and in [-1, 1]."""
+        """Play the selected player's action.
+
+        Parameters
+        ----------
+        action : array_like, float (k,), int or None
+            Within [-1, 1], or a choice; None once the player has terminated or is truncated.
+
+        Returns
+        -------
+        None
+
+        Raises
+        ------
+        ValueError
+            If the action is not in the action space; then nothing is played.
+        gymnasium.error.ResetNeeded
+            If no player is left.
+        """
         if not self.agents:
             raise gymnasium.error.ResetNeeded("the frame is over: call reset() before step()")
         name = self.agent_selection
@@ -227,13 +286,31 @@ class MatchEnv(AECEnv[str, Any, Any]):
         return info
 
     def get_state(self) -> dict[str, Any]:
-        """The whole state as JSON types: table, frame, strokes and random numbers."""
+        """The whole state: table, frame, strokes and random numbers.
+
+        Returns
+        -------
+        dict
+            Of JSON types.
+        """
         return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state: dict[str, Any]) -> None:
-        """Take over a state from ``get_state``; the next stroke plays on identically. Rewards not yet collected are zero.
+        """Take over a state; the next stroke plays on identically. Rewards not yet collected are zero.
 
-        ValueError if it is not sound, and then nothing has changed.
+        Parameters
+        ----------
+        state : dict
+            As ``get_state`` gives it.
+
+        Returns
+        -------
+        None
+
+        Raises
+        ------
+        ValueError
+            If it is not sound; then nothing has changed.
         """
         self._take(self.tables.checked(state, self.np_random, either=True), seeded=False)
 
@@ -247,7 +324,13 @@ class MatchEnv(AECEnv[str, Any, Any]):
         self._begin()
 
     def render(self) -> Picture:
-        """The table with the cue ball's last path: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise."""
+        """The table with the cue ball's last path.
+
+        Returns
+        -------
+        uint8 (H, W, 3), str or None
+            By the render mode: "rgb_array", "ansi", another.
+        """
         return self._pictures.render(self.tables.positions[0], self.tables.on_table[0], self.last_shot, self.tables.text(0))
 
     def _show(self, *, film):

@@ -87,7 +87,9 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
     |---|---|---|
     | task | "visit" | build a break until the first miss or foul; "frame": see Description |
     | layout | "default" | see Starting state |
-    | opponent, miss, decision | "none", "off", False | of a frame only; miss: "off" or "clear_path" (``snooker_env.game.frame``) |
+    | opponent | "none" | of a frame only: see Description |
+    | miss | "off" | of a frame only; or "clear_path": the rule for a foul and a miss (``snooker_env.game.frame``) |
+    | decision | False | of a frame only: see Action space |
     | max_strokes | 1000 | of a frame only: see Episode end; None: it is never stopped |
     | trust | False | of a frame only; may the code in an opponent's ``.zip`` run? |
     | action | "box" | or "discrete": one number means a pot, speed, side and top, the aim solved; ``snooker_env.tasks.discrete_actions`` |
@@ -99,6 +101,7 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
     | physics | "paper" | "match", or a dict of overrides of ``snooker_env.Physics`` (not R) |
     | table | "match" | or "tight", or a ``Table`` of your own whose noses are where theirs are |
     | fidelity | "standard" | "fast", "reference", "euler:N" |
+    | options | None | an ``Options`` that holds all of the above, in place of them |
     | render_mode | None | "human", "rgb_array", "ansi" |
 
     ## Info
@@ -198,11 +201,44 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         return self.options.rules.noise
 
     def get_state(self) -> dict[str, Any]:
-        """The whole state as JSON types: table, game and random numbers. ``set_state`` brings it back exactly."""
+        """The whole state between two shots: table, game and random numbers. ``set_state`` brings it back exactly.
+
+        Returns
+        -------
+        dict
+            Of JSON types. In a visit: "positions" (22, 2) [m], "on_table" (22,), "ball_on", "in_hand", "points", "over", "stream", "rng";
+            in a frame: "positions", "on_table", "frame" (``Frame.to_dict``), "strokes", "stream", "rng".
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> env = sn.SnookerEnv()
+        >>> _ = env.reset(seed=1)
+        >>> state = env.get_state()
+        >>> first = env.step([0.0, 0.0, 0.0, 0.5])[0]
+        >>> env.set_state(state)
+        >>> bool((env.step([0.0, 0.0, 0.0, 0.5])[0] == first).all())
+        True
+        """
         return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state: dict[str, Any]) -> None:
-        """Take over a state from ``get_state``; the next shot plays on identically. ValueError if it is not sound, with nothing changed."""
+        """Take over a state; the next shot plays on identically.
+
+        Parameters
+        ----------
+        state : dict
+            As ``get_state`` gives it.
+
+        Returns
+        -------
+        None
+
+        Raises
+        ------
+        ValueError
+            If it is not sound; then nothing has changed.
+        """
         self._take(self.tables.checked(state, self.np_random), seed=None)
 
     def _take(self, sound: Any, *, seed: int | None) -> None:
@@ -217,7 +253,34 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
-        """A new visit or frame. options: None or {"state": a state of ``get_state``}; with a seed too, see States."""
+        """A new visit or frame.
+
+        Parameters
+        ----------
+        seed : int, optional
+            Of all random numbers to come; None: they go on.
+        options : dict, optional
+            {"state": a state of ``get_state``} starts from there; with a seed too, see States.
+
+        Returns
+        -------
+        observation : float32 (k,) or dict
+            See Observation space.
+        info : dict
+            See Info.
+
+        Raises
+        ------
+        ValueError
+            For other options, or a state that is not sound or has no shot left.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> observation, info = sn.SnookerEnv().reset(seed=1)
+        >>> observation.shape, info["points"]
+        ((121,), 0.0)
+        """
         if options is not None and not isinstance(options, dict):
             raise refuse("options", options, 'must be None or {"state": ...}')
         for key in options or {}:
@@ -237,7 +300,42 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         return observations.shaped(self.options.observation, out.observations[0]), self.tables.info(out, 0)
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Play one shot. ValueError if the action is not finite and within [-1, 1]."""
+        """Play one shot; in a frame also all that the opponent plays after it.
+
+        Parameters
+        ----------
+        action : array_like, float (k,), or int
+            Within [-1, 1]; with ``action="discrete"`` a choice.
+
+        Returns
+        -------
+        observation : float32 (k,) or dict
+            See Observation space.
+        reward : float
+            See Rewards.
+        terminated, truncated : bool
+            See Episode end.
+        info : dict
+            See Info.
+
+        Raises
+        ------
+        ValueError
+            If the action is not in the action space; then nothing is played.
+        gymnasium.error.ResetNeeded
+            If the episode is over or has not begun.
+        SimulationError
+            If the shot cannot be computed; then the balls are left as they lay.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> env = sn.SnookerEnv(aim="target")
+        >>> _ = env.reset(seed=1)
+        >>> observation, reward, terminated, truncated, info = env.step([0.2, 0.0, 0.0, 0.0])
+        >>> observation.shape, truncated
+        ((121,), False)
+        """
         a = self.options.rules.actions.check(action)
         tables = self.tables
         if tables.ended()[0]:
@@ -252,7 +350,17 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         return observation, float(out.rewards[0]), bool(out.terminated[0]), bool(out.truncated[0]), tables.info(out, 0)
 
     def action_masks(self) -> Bools:
-        """With ``action="discrete"``: which choices there are, bool (n,), as sb3-contrib's maskable algorithms ask for them."""
+        """With ``action="discrete"``: which choices there are, as sb3-contrib's maskable algorithms ask for them.
+
+        Returns
+        -------
+        bool (n,)
+
+        Raises
+        ------
+        ValueError
+            With ``action="box"``.
+        """
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.tables.action_masks()[0]
@@ -268,7 +376,13 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
             self._show(film=True)
 
     def render(self) -> Picture:
-        """The table with the cue ball's last path: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise."""
+        """The table with the cue ball's last path.
+
+        Returns
+        -------
+        uint8 (H, W, 3), str or None
+            By the render mode: "rgb_array", "ansi", another.
+        """
         return self._pictures.render(self.positions, self.on_table, self.last_shot, self.tables.text(0))
 
     def close(self) -> None:

@@ -4,6 +4,7 @@ gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry
 """
 
 import copy
+from collections.abc import Collection
 from typing import Any, Literal
 
 import gymnasium
@@ -19,6 +20,7 @@ from ..tasks.discrete_actions import Choices
 from ..tasks.options import NEVER, Options, options_of
 from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
+from .given_arrays import OUTPUTS, arrays_given
 from .pictures import Picture, Pictures
 from .snooker import TABLES, SnookerEnv
 
@@ -31,27 +33,10 @@ NOT_OF_A_TABLE = {
 """What ``call`` does not do for single tables, and what there is instead: the tables play, end and begin together."""
 
 
-OUTPUTS = {"observations": "observations", "rewards": "rewards", "terminations": "terminated", "truncations": "truncated"}
-"""What a step can write into arrays that it is given, and what ``StepOutput`` calls it."""
-DTYPES: dict[str, type[np.generic]] = {"observations": np.float32, "rewards": np.float64, "terminations": np.bool_, "truncations": np.bool_}
-
-
-def _check_out(name, a, shape, dtype):
-    """The array ``out[name]``; ValueError unless results can be written right into it."""
-    fits = isinstance(a, np.ndarray) and a.shape == shape and a.dtype == dtype
-    if not fits or not (a.flags.c_contiguous and a.flags.writeable and a.flags.aligned):
-        found = f"array of {a.dtype} and shape {a.shape}" if isinstance(a, np.ndarray) else type(a).__name__
-        raise refuse_what(f'out["{name}"]', found, f"must be a C-contiguous, writeable array of {np.dtype(dtype)} and shape {shape}")
-    return a
-
-
 class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
-    ``num_envs`` tables; ``autoreset_mode``: NEXT_STEP, SAME_STEP or DISABLED (of ``gymnasium.vector.AutoresetMode``, or its value);
-    ``threads``: how many to use, None for one per core, results do not depend on it; ``max_episode_steps``: steps after which an episode
-    is truncated. All other arguments are those of ``SnookerEnv``: keywords, or ``options``, which holds them all. Pictures show the balls
-    as they lie, without paths; a window ("human") shows one environment only.
+    Pictures show the balls as they lie, without paths; a window ("human") shows one environment only.
 
     In a frame the opponents "random" and "ghost_ball" play as kernels. A callable is asked in Python, table by table; one that has a method
     ``many(observations, generators, masks) -> actions`` is called once for all tables that wait for it, and so is a saved model (whose
@@ -63,6 +48,37 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     ``reset`` and ``step`` write into arrays that they are given: ``out={"observations": ..., "rewards": ..., "terminations": ...,
     "truncations": ...}``, any of them, of the right shape and dtype, C-contiguous (shared memory, for instance); these are returned.
+
+    Parameters
+    ----------
+    num_envs : int
+        How many tables.
+    options : Options, optional
+        How the game is played, as for ``SnookerEnv``; None: it is made of the keywords.
+    max_episode_steps : int, optional
+        Steps after which an episode is truncated; None: never.
+    render_mode : {"rgb_array", "ansi"}, optional
+    autoreset_mode : gymnasium.vector.AutoresetMode or its value
+        NEXT_STEP, SAME_STEP or DISABLED.
+    threads : int, optional
+        How many to use; None: one for each core. Results do not depend on it.
+    **given
+        The keywords of ``Options``, in place of ``options``.
+
+    Raises
+    ------
+    ValueError, TypeError
+        For a bad argument, for an unknown one.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> envs = sn.SnookerVectorEnv(8, noise="club", threads=1)
+    >>> observations, infos = envs.reset(seed=1)
+    >>> observations, rewards, terminations, truncations, infos = envs.step(np.zeros((8, 4)))
+    >>> observations.shape, rewards.shape
+    ((8, 121), (8,))
     """
 
     metadata: dict[str, Any] = SnookerEnv.metadata
@@ -70,24 +86,13 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     num_envs: int
     options: Options
     autoreset_mode: AutoresetMode
-    single_action_space: Any
-    single_observation_space: Any
-    action_space: Any
-    observation_space: Any
     tables: Tables
-    """The tables: ``tasks.tables.Tables``."""
 
     def __init__(
-        self,
-        num_envs: int = 1,
-        options: Options | None = None,
-        *,
-        max_episode_steps: int | None = None,
-        render_mode: Literal["rgb_array", "ansi"] | None = None,
-        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
-        threads: int | None = None,
-        **given: Any,
-    ):
+        self, num_envs: int = 1, options: Options | None = None, *, max_episode_steps: int | None = None,
+        render_mode: Literal["rgb_array", "ansi"] | None = None, autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        threads: int | None = None, **given: Any,
+    ):  # fmt: skip
         self.num_envs = integer("num_envs", num_envs, 1, 2**24)
         threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
         self.autoreset_mode = autoreset_mode if isinstance(autoreset_mode, AutoresetMode) else AutoresetMode(autoreset_mode)
@@ -98,9 +103,10 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode = render_mode
         self._one = SnookerEnv(self.options, render_mode=render_mode)
-        self.single_action_space, self.single_observation_space = self._one.action_space, self._one.observation_space
-        self.action_space = batch_space(self.single_action_space, self.num_envs)
-        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.single_action_space: Any = self._one.action_space
+        self.single_observation_space: Any = self._one.observation_space
+        self.action_space: Any = batch_space(self.single_action_space, self.num_envs)
+        self.observation_space: Any = batch_space(self.single_observation_space, self.num_envs)
         self.tables = TABLES[self.options.task](self.options.rules, self.num_envs, limit=limit)
         self._pictures = Pictures(self.options.rules.table, render_mode)
         self._generators: list[Any] = [None] * self.num_envs
@@ -115,7 +121,29 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None, out: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """New visits or frames on all tables, or on those of ``options["reset_mask"]``."""
+        """New visits or frames on all tables, or on some.
+
+        Parameters
+        ----------
+        seed : int, list or None
+            Table k draws from seed + k, or from the k-th of the list; None: the random numbers go on.
+        options : dict, optional
+            "reset_mask", "state" or "states", see above.
+        out : dict of arrays, optional
+            {"observations": where to write them}.
+
+        Returns
+        -------
+        observations : float32 (num_envs, k) or dict
+        infos : dict
+
+        Raises
+        ------
+        ValueError
+            For other options, and states that are not sound.
+        gymnasium.error.ResetNeeded
+            If a table that is not reset has never been.
+        """
         options = {} if options is None else options
         if not isinstance(options, dict):
             raise refuse("options", options, "must be None or a dict")
@@ -149,7 +177,32 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return self._shaped(written, out), self.tables.infos(written.reals, written.counts, wanted)
 
     def step(self, actions: Any, *, out: dict[str, Any] | None = None) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
-        """One step of each table. ValueError, before anything is played, if an action is not finite and within [-1, 1]."""
+        """One step of each table.
+
+        Parameters
+        ----------
+        actions : array_like, float (num_envs, k) or int (num_envs,)
+            Within [-1, 1], or choices.
+        out : dict of arrays, optional
+            Where to write results, see above.
+
+        Returns
+        -------
+        observations : float32 (num_envs, k) or dict
+        rewards : float64 (num_envs,)
+        terminations, truncations : bool (num_envs,)
+        infos : dict
+            An array for each key, and "_key" which tables it is about; with SAME_STEP also "final_obs" and "final_info".
+
+        Raises
+        ------
+        ValueError
+            If an action is not in the action space, or an array of ``out`` does not fit; then nothing is played.
+        gymnasium.error.ResetNeeded
+            Before the first reset, and with DISABLED where an episode is over.
+        SimulationError
+            If a shot cannot be computed; all tables then need a reset.
+        """
         a = self.options.rules.actions.check_many(actions, self.num_envs)
         given = self._given(out, OUTPUTS)
         if not self._begun.all():
@@ -179,14 +232,43 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return self._shaped(written, out), written.rewards, written.terminated, written.truncated, infos
 
     def action_masks(self) -> Bools:
-        """With ``action="discrete"``: which choices there are on each table, bool (num_envs, n)."""
+        """With ``action="discrete"``: which choices there are on each table.
+
+        Returns
+        -------
+        bool (num_envs, n)
+
+        Raises
+        ------
+        ValueError
+            With ``action="box"``.
+        """
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.tables.action_masks()
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """For each table what ``SnookerEnv`` calls ``name``, an attribute or a method (which gets the arguments): a tuple, as
-        ``SyncVectorEnv.call`` gives it. ValueError for what does not belong to one table, AttributeError for what is not there."""
+        """For each table what ``SnookerEnv`` calls ``name``, as ``SyncVectorEnv.call`` gives it.
+
+        Parameters
+        ----------
+        name : str
+            An attribute, or a method.
+        *args, **kwargs
+            What the method gets.
+
+        Returns
+        -------
+        tuple
+            One for each table.
+
+        Raises
+        ------
+        ValueError
+            For what does not belong to one table.
+        AttributeError
+            For what is not there.
+        """
         if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
             instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
             raise refuse("name", name, "must be something public that a table has for itself" + (f"; use {instead}" if instead else ""))
@@ -208,7 +290,13 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return env
 
     def render(self) -> tuple[Picture, ...]:
-        """A picture of each table: uint8 (H, W, 3) for "rgb_array", str for "ansi"."""
+        """A picture of each table.
+
+        Returns
+        -------
+        tuple of uint8 (H, W, 3) or str
+            With "rgb_array", with "ansi".
+        """
         t = self.tables
         return tuple(self._pictures.render(t.positions[k], t.on_table[k], None, t.text(k)) for k in range(self.num_envs))
 
@@ -240,7 +328,12 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     # states ----------------------------------------------------------------------------------------------------------------
 
     def get_state(self) -> list[dict[str, Any]]:
-        """The state of each table, as ``SnookerEnv.get_state`` gives it; strokes towards ``max_episode_steps`` are not part of it."""
+        """The state of each table, as ``SnookerEnv.get_state`` gives it; steps towards ``max_episode_steps`` are not part of it.
+
+        Returns
+        -------
+        list of dict
+        """
         return [self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)]
 
     def _set_state(self, k: int, state: Any, *, seeded: bool) -> None:
@@ -282,25 +375,11 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         generator = self.np_random[0]
         return [self.tables.checked(state, generator, to_play=True) for state in states] * each
 
-    def _given(self, out, names):
-        """The arrays to write into, by the names of ``StepOutput``. Raises ValueError unless they are what is written."""
-        if out is None:
-            return {}
-        if not isinstance(out, dict):
-            raise refuse("out", type(out).__name__, f"must be None or a dict of {', '.join(names)}")
-        for name in out:
-            choice("out", name, names)
-        n, found = self.num_envs, {}
-        for name, a in out.items():
-            if name == "observations" and self.options.observation != "flat":
-                if not isinstance(a, dict) or set(a) != {"balls", "state"}:
-                    raise refuse('out["observations"]', type(a).__name__, 'must be a dict of "balls" and "state"')
-                for part, box in self.observation_space.spaces.items():  # type: ignore[attr-defined]
-                    _check_out(f"observations.{part}", a[part], box.shape, np.float32)
-                continue
-            shape = (n, self.tables.SIZE) if name == "observations" else (n,)
-            found[OUTPUTS[name]] = _check_out(name, a, shape, DTYPES[name])
-        return found
+    def _given(self, out: Any, names: Collection[str]) -> dict[str, Any]:
+        """The arrays to write into, checked."""
+        flat = self.options.observation == "flat"
+        boxes = None if flat else {part: box.shape for part, box in self.observation_space.spaces.items()}
+        return arrays_given(out, names, self.num_envs, self.tables.SIZE, boxes)
 
     def _shaped(self, written, out):
         """The observations as the environment's kind; in the arrays of ``out`` if these are given."""

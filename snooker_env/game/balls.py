@@ -35,12 +35,18 @@ ALL_MASK = 0x3FFFFF
 
 
 class BallOn(IntEnum):
-    """What the striker must hit first. From RED on, the number is the points that the ball on is worth."""
+    """What the striker must hit first. From RED on, the number is the points that the ball on is worth.
+
+    ============== ==== ==========================================================================
+    NOTHING        -1   The frame is over.
+    ANY_COLOUR     0    A red was just potted: any one colour, which the striker nominates.
+    RED            1    A red.
+    YELLOW         2    The yellow; so on with GREEN 3, BROWN 4, BLUE 5, PINK 6, BLACK 7.
+    ============== ==== ==========================================================================
+    """
 
     NOTHING = -1
-    """The frame is over."""
     ANY_COLOUR = 0
-    """A red was just potted: any one colour, which the striker nominates."""
     RED = 1
     YELLOW = 2
     GREEN = 3

@@ -21,26 +21,55 @@ AUTO = -1
 
 
 class Flag(IntFlag):
-    """What else was seen of a stroke: input of ``ruling``."""
+    """What else was seen of a stroke: input of ``ruling``.
+
+    ================= ==================================================================================================
+    JUMP              An illegal jump: the cue ball passed over part of a ball before it struck one, or landed on the far
+                      side of the ball struck.
+    PUSH              A push stroke.
+    DOUBLE_HIT        The tip struck the cue ball twice.
+    OUTSIDE_D         In hand, but not played from on or within the lines of the D.
+    FEET              Both feet off the floor.
+    OUT_OF_TURN       Played out of turn.
+    SEVEN             An act that costs 7 whatever is on: wrong cue ball, a ball off the table used, measuring, no
+                      declaration on request ...
+    SNOOKERED         After the stroke, colours respotted, the next striker is snookered on the next ball on.
+    BEHIND_FREE_BALL  ... and the effective snookering ball is the free ball just nominated.
+    ================= ==================================================================================================
+    """
 
     JUMP = 1
-    """An illegal jump: the cue ball passed over part of a ball before it struck one, or landed on the far side of the ball struck."""
     PUSH = 2
     DOUBLE_HIT = 4
     OUTSIDE_D = 8
-    """In hand, but not played from on or within the lines of the D."""
     FEET = 16
     OUT_OF_TURN = 32
     SEVEN = 64
-    """An act that costs 7 whatever is on: wrong cue ball, a ball off the table used, measuring, no declaration on request ..."""
     SNOOKERED = 128
-    """After the stroke, colours respotted, the next striker is snookered on the next ball on."""
     BEHIND_FREE_BALL = 256
-    """... and the effective snookering ball is the free ball just nominated."""
 
 
 class Foul(IntFlag):
-    """Which rules a stroke broke: output of ``ruling``."""
+    """Which rules a stroke broke: output of ``ruling``.
+
+    ================= ==================================================================================================
+    NO_CONTACT        The cue ball struck no ball.
+    WRONG_FIRST       It first struck a ball that was not on.
+    WRONG_POT         A ball was potted that was not on.
+    CUE_POTTED        The cue ball was potted.
+    CUE_OFF           The cue ball left the table.
+    BALL_OFF          An object ball left the table.
+    JUMP              An illegal jump shot.
+    PUSH              A push stroke.
+    DOUBLE_HIT        The tip struck the cue ball twice.
+    OUTSIDE_D         In hand, and played from outside the D.
+    FEET              Both feet off the floor.
+    OUT_OF_TURN       Played out of turn.
+    BEHIND_FREE_BALL  A snooker was laid behind the free ball.
+    NO_NOMINATION     A foul on a colour that was never nominated; reds played in successive strokes are of this kind.
+    SEVEN             An act that costs 7 whatever is on.
+    ================= ==================================================================================================
+    """
 
     NO_CONTACT = 1
     WRONG_FIRST = 2
@@ -56,29 +85,42 @@ class Foul(IntFlag):
     OUT_OF_TURN = 2048
     BEHIND_FREE_BALL = 4096
     NO_NOMINATION = 8192
-    """A foul on a colour that was never nominated; reds played in successive strokes are of this kind."""
     SEVEN = 16384
 
 
 class VisitEnd(IntEnum):
-    """Why the striker's visit ended with this stroke."""
+    """Why the striker's visit ended with this stroke.
+
+    ========== ===================================
+    CONTINUES  It goes on.
+    MISS       A fair stroke that potted nothing.
+    FOUL       A foul.
+    CLEARANCE  No object ball is left.
+    ========== ===================================
+    """
 
     CONTINUES = 0
     MISS = 1
-    """A fair stroke that potted nothing."""
     FOUL = 2
     CLEARANCE = 3
-    """No object ball is left."""
 
 
 class Outcome(IntEnum):
-    """What the stroke did to the frame."""
+    """What the stroke did to the frame.
+
+    =============== ==================================================================================================
+    PLAYING         It goes on.
+    STRIKER_WINS    The striker has won it.
+    OPPONENT_WINS   The opponent has won it.
+    RESPOTTED_BLACK Level with no ball to play for: the black comes back, the cue ball is in hand, a lot decides who
+                    chooses to play first.
+    =============== ==================================================================================================
+    """
 
     PLAYING = 0
     STRIKER_WINS = 1
     OPPONENT_WINS = 2
     RESPOTTED_BLACK = 3
-    """Level with no ball to play for: the black comes back, the cue ball is in hand, a lot decides who chooses to play first."""
 
 
 def _plain(enum):

@@ -41,33 +41,61 @@ _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
 class Physics:
     """The constants and laws of one world (SI units). ``Physics()`` is the ``"paper"`` preset; see ``preset``.
 
-    Raises ``ValueError`` (field, value, what is allowed) on anything outside the ranges stated here.
+    Parameters
+    ----------
+    R : float
+        Ball radius [m], of all balls, in [0.001, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3].
+    M : float
+        Ball mass [kg], of all balls, > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal.
+    g : float
+        Gravity [m/s^2], > 0.
+    mu_s : float
+        Sliding friction ball-cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
+    mu_r : float
+        Rolling resistance, deceleration over g, in [0, 1] (measured deceleration 0.124 to 0.126 m/s^2, that is 0.0127 g).
+    spin_decel : float
+        Decay of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21]. With 0 nothing ends such a
+        spin: a shot ends when no ball moves across the table, and what spin is left then stays.
+    nap : float
+        Acceleration of a rolling ball along +y [m/s^2] by the cloth's nap, which runs from baulk to the black end; 0 for none,
+        else below mu_r g in size, so that a ball at rest stays there. Not measured; 0.001 is the most that the range of mu_r
+        allows (``python -m benchmarks.nap``).
+    e_b : float
+        Energetic restitution ball-ball, in [0, 1] [MJP14 2.4.2].
+    mu_bb : float, "marlow" or (float, float, float)
+        Ball-ball friction: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) for mu(s) = a + b exp(-c s), s in m/s.
+    e_c : float
+        Energetic restitution ball-cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
+    e_c_knee : float
+        Speed straight into the cushion [m/s] above which its restitution falls, >= 0, and >= 0.001 where e_c_power > 0.
+    e_c_power : float
+        Exponent of that fall, in [0, 0.8]: e(v) = e_c for v <= e_c_knee, e_c (v / e_c_knee)^(-e_c_power) above; 0: constant. So v
+        e(v) rises with v in every world, and for mu_c, mu_s and sin_theta up to 0.5 so does the rebound of a rolling or a stunned
+        ball. A power of 1/4 is that of an impact that loses its energy by yielding (Johnson, Contact Mechanics, 1985, 11.5);
+        rubber may differ.
+    e_j : float, optional
+        Energetic restitution ball-jaw, the same at every speed, in [0, 1]; None: the same as e_c, so without the fall with speed
+        that a rail has. There is no measurement. A rail loses energy because its rubber deforms; at a jaw the rubber is cut thin
+        over wood.
+    mu_c : float
+        Sliding friction ball-cushion, in [0, 1] [MJP10].
+    sin_theta : float
+        Height of the nose above the ball's centre over R, in [0, 0.95]; nose height 7R/5 gives 0.4 [MJP10].
+    end_mass_ratio : float
+        Ball mass over the cue's effective end mass, for squirt, >= 0 [TP A.31].
+    max_offset : float
+        Tip offset over R beyond which the tip slips (miscue), in (0, 1) [TP A.30].
 
-    Fields:
+    Raises
+    ------
+    ValueError
+        On anything outside these ranges; the message names the field, its value and what is allowed.
 
-    * R: Ball radius [m], of all balls, in [0.001, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3].
-    * M: Ball mass [kg], of all balls, > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal.
-    * g: Gravity [m/s^2], > 0.
-    * mu_s: Sliding friction ball-cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
-    * mu_r: Rolling resistance, deceleration over g, in [0, 1] (measured deceleration 0.124 to 0.126 m/s^2, that is 0.0127 g).
-    * spin_decel: Decay of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21]. With 0 nothing ends such
-      a spin: a shot ends when no ball moves across the table, and what spin is left then stays.
-    * nap: Acceleration of a rolling ball along +y [m/s^2] by the cloth's nap, which runs from baulk to the black end; 0 for none, else
-      below mu_r g in size, so that a ball at rest stays there. Not measured; 0.001 is the most that the range of mu_r allows
-      (``python -m benchmarks.nap``).
-    * e_b: Energetic restitution ball-ball, in [0, 1] [MJP14 2.4.2].
-    * mu_bb: Ball-ball friction: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) for mu(s) = a + b exp(-c s), s in m/s.
-    * e_c: Energetic restitution ball-cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
-    * e_c_knee: Speed straight into the cushion [m/s] above which its restitution falls, >= 0, and >= 0.001 where e_c_power > 0.
-    * e_c_power: Exponent of that fall, in [0, 0.8]: e(v) = e_c for v <= e_c_knee, e_c (v / e_c_knee)^(-e_c_power) above; 0: constant. So
-      v e(v) rises with v in every world, and for mu_c, mu_s and sin_theta up to 0.5 so does the rebound of a rolling or a stunned ball.
-      A power of 1/4 is that of an impact that loses its energy by yielding (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
-    * e_j: Energetic restitution ball-jaw, the same at every speed, in [0, 1]; None: the same as e_c, so without the fall with speed that a
-      rail has. There is no measurement. A rail loses energy because its rubber deforms; at a jaw the rubber is cut thin over wood.
-    * mu_c: Sliding friction ball-cushion, in [0, 1] [MJP10].
-    * sin_theta: Height of the nose above the ball's centre over R, in [0, 0.95]; nose height 7R/5 gives 0.4 [MJP10].
-    * end_mass_ratio: Ball mass over the cue's effective end mass, for squirt, >= 0 [TP A.31].
-    * max_offset: Tip offset over R beyond which the tip slips (miscue), in (0, 1) [TP A.30].
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> sn.Physics(mu_bb=0.06).e_b
+    0.89
     """
 
     R: float = BALL_RADIUS
@@ -112,19 +140,60 @@ class Physics:
 
     @classmethod
     def preset(cls, name: PhysicsName = "paper", **fields: Any) -> "Physics":
-        """A named world, with any field replaced: ``Physics.preset("paper", mu_bb=0.06)``.
+        """A named world, with any field replaced.
 
         ``"paper"``: the constants of [MJP14] and [MJP10]. ``"match"``: measured snooker, that is e_b 0.94, Marlow's mu_bb(s) and a
         cushion whose restitution falls as v^-0.31 above 2.17 m/s: fitted to the rebounds of Fig. 7a of [MJP10], 19 speeds from 0.26 to
         3.40 m/s (``python -m benchmarks.fit_cushion``). Beyond 3.4 m/s the law is extrapolated: the 95 % interval of the power is 0.21
         to 0.46, that of e 0.70 to 0.80 at 5 m/s, 0.60 to 0.75 at 7 and 0.51 to 0.69 at 10, if it is a power law there.
+
+        Parameters
+        ----------
+        name : {"paper", "match"}
+        **fields
+            Fields of ``Physics`` to replace.
+
+        Returns
+        -------
+        Physics
+
+        Raises
+        ------
+        ValueError
+            For an unknown name or field, or a value out of range.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> sn.Physics.preset("match", e_c=0.9).e_c
+        0.9
         """
         return cls._replaced(PRESETS[choice("physics", name, PRESETS)], fields)
 
     @classmethod
     def of(cls, physics: "PhysicsLike" = None) -> "Physics":
-        """What users may pass as ``physics``: None (paper), a preset's name, a dict of overrides (its ``"preset"`` key picks
-        the base, else ``"paper"``), or a ``Physics``."""
+        """What users may pass as ``physics``.
+
+        Parameters
+        ----------
+        physics : None, str, dict or Physics
+            None is "paper"; a str is a preset's name; a dict replaces fields of the preset that its key "preset" names, else of "paper".
+
+        Returns
+        -------
+        Physics
+
+        Raises
+        ------
+        ValueError
+            For anything else.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> sn.Physics.of({"preset": "match", "mu_s": 0.2}).mu_s
+        0.2
+        """
         if isinstance(physics, cls):
             return physics
         if physics is None or isinstance(physics, str):
@@ -142,7 +211,17 @@ class Physics:
         return cls(**{**base, **fields})
 
     def check_stopping(self) -> None:
-        """Raise ValueError if balls in this world would never come to rest, or stop in no time."""
+        """Check that balls in this world come to rest, and not in no time.
+
+        Returns
+        -------
+        None
+
+        Raises
+        ------
+        ValueError
+            If they would not.
+        """
         for name in ("mu_s", "mu_r"):
             if not _LEAST_DECELERATION <= getattr(self, name) * self.g <= _MOST_DECELERATION:
                 bounds = f"times g = {self.g:g} in [{_LEAST_DECELERATION:g}, {_MOST_DECELERATION:g}] m/s^2"
@@ -163,7 +242,13 @@ class Physics:
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
 
     def pack(self) -> Floats:
-        """The constants as the kernels read them: float64, places ``P_*`` of this module."""
+        """The constants as the kernels read them.
+
+        Returns
+        -------
+        float64 (17,)
+            Places ``P_*`` of this module.
+        """
         return np.array([
             self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law,
             self.e_c, self.e_c_knee, self.e_c_power, self.mu_c, self.sin_theta, self.e_c if self.e_j is None else self.e_j, self.nap,

@@ -14,6 +14,7 @@ from .._check import array, choice, number, refuse, refuse_what
 from .._jit import entry
 from .._types import Batches, FlagRows, Flags, Floats, TableName, Vectors
 from ..geometry import PRESETS, Bed, Pocket, parts
+from .bounds import bounds_of, deepest, narrowest
 from .columns import (
     FALL_RADIUS,
     FALL_X,
@@ -30,6 +31,7 @@ from .columns import (
     NOSE_LOW,
     NOSE_SIDE,
 )
+from .shapes import check_fit, check_shapes
 
 MOUTH = 0.012
 """How far past the line of the noses [m] a ball may lie still, unless a table's pockets let it lie deeper: just so far between the jaw and
@@ -47,24 +49,51 @@ class Table:
     """A table's shape: one with a name, ``Table.preset("match")``, a rectangular one, ``Table.rectangular``, or any from the arrays below.
 
     A preset is the one object of its name, also after pickling and copying; a table of your own stays what it is whatever it is called.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in messages.
+    noses : float64 (k, 5)
+        Straight noses: axis (0: x, 1: y), side (+-1), level [m], and the range lo, hi [m] along the other axis. The ball touches where
+        side * coordinate = level - R.
+    jaws : float64 (k, 6)
+        Jaw arcs: centre x, y, radius [m], unit vector to the arc's middle, cosine of its half angle.
+    falls : float64 (k, 3)
+        Falls: centre x, y, radius [m] of the slate's edge; a ball whose centre crosses it begins to drop. Index = pocket.
+    ball_radius : float, optional
+        The ball [m] that it is made for, which ``physics.R`` must then be; None: any ball.
+    pockets : tuple of str
+        The names of its pockets, one a fall, or ().
+
+    Attributes
+    ----------
+    bounds : float64 (2, 2)
+        Between which lines [m] the balls lie: of x and of y the levels of the outermost noses, infinite where there is none.
+
+    Raises
+    ------
+    ValueError
+        If an array has another shape, or holds a nose, jaw or fall that makes no sense.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> wall = sn.Table("wall", np.array([(0, 1, 0.5, -1.0, 1.0)]), np.empty((0, 6)), np.empty((0, 3)))  # a nose at x = 0.5
+    >>> bool(sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)], wall).positions[0, 0] < 0.47)
+    True
     """
 
     name: str
     noses: Floats
-    """(k, 5) straight noses: axis (0: x, 1: y), side (+-1), level [m], and the range lo, hi [m] along the other axis.
-    The ball touches where side * coordinate = level - R."""
     jaws: Floats
-    """(k, 6) jaw arcs: centre x, y, radius [m], unit vector to the arc's middle, cosine of its half angle."""
     falls: Floats
-    """(k, 3) falls: centre x, y, radius [m] of the slate's edge; a ball whose centre crosses it begins to drop. Index = pocket."""
     ball_radius: float | None = field(default=None, kw_only=True)
-    """The ball [m] that it is made for, which ``physics.R`` must then be; None: any ball."""
     pockets: tuple[str, ...] = field(default=(), kw_only=True)
-    """The names of its pockets, one a fall, or ()."""
     bounds: Floats = field(init=False, repr=False)
-    """(2, 2) [m] between which lines the balls lie: of x and of y the levels of the outermost noses, infinite where there is none."""
     _narrowest: tuple[float, int, int] = field(init=False, repr=False)
-    _reaches: dict[float, np.ndarray] = field(init=False, repr=False)
+    _reaches: dict[float, Floats] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -73,40 +102,51 @@ class Table:
             a = array(f"table.{name}", getattr(self, name), (-1, columns))
             a.setflags(write=False)
             object.__setattr__(self, name, a)
-        _check_shapes(self.noses, self.jaws, self.falls)
+        check_shapes(self.noses, self.jaws, self.falls)
         if self.ball_radius is not None:
             object.__setattr__(self, "ball_radius", number("table.ball_radius", self.ball_radius, 1e-3, 1))
         names = self.pockets
         if not isinstance(names, tuple) or not all(isinstance(name, str) for name in names) or len(names) not in (0, len(self.falls)):
             raise refuse("table.pockets", names, f"must be a tuple of {len(self.falls)} names, one a fall, or ()")
-        bounds = _bounds(self.noses)
+        bounds = bounds_of(self.noses)
         bounds.setflags(write=False)
         object.__setattr__(self, "bounds", bounds)
-        object.__setattr__(self, "_narrowest", _narrowest(self.noses))
+        object.__setattr__(self, "_narrowest", narrowest(self.noses))
         object.__setattr__(self, "_reaches", {})
 
     @classmethod
     def preset(cls, name: TableName = "match") -> "Table":
-        """A table by its name; each is made for the balls of its game, see ``ball``.
+        """A table by its name. Each is made for the balls of its game, see ``ball``.
 
-        Snooker: ``"match"`` (throat of the corners 86.0 mm) and ``"tight"`` (80.14 mm), 3.569 x 1.778 m, balls of 52.5 mm. ``"uk8"``: UK
-        8-ball pool, 7 ft x 3 ft 6 in, balls of 2 in; its pockets are an estimate. ``"pool9"``: pool, 100 x 50 in, balls of 2 1/4 in.
-        ``"carom"``: 2.84 x 1.42 m, no pockets, balls of 61.5 mm. Sources: ``snooker_env.geometry``.
+        Parameters
+        ----------
+        name : {"match", "tight", "uk8", "pool9", "carom"}
+            Snooker: "match" (throat of the corners 86.0 mm) and "tight" (80.14 mm), 3.569 x 1.778 m, balls of 52.5 mm. "uk8": UK 8-ball
+            pool, 7 ft x 3 ft 6 in, balls of 2 in; its pockets are an estimate. "pool9": pool, 100 x 50 in, balls of 2 1/4 in. "carom":
+            2.84 x 1.42 m, no pockets, balls of 61.5 mm. Sources: ``snooker_env.geometry``.
+
+        Returns
+        -------
+        Table
+
+        Raises
+        ------
+        ValueError
+            For an unknown name.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> sn.Table.preset("pool9").pockets[0]
+        'bottom left'
         """
         return _PRESETS[choice("table", name, PRESETS)]
 
     @classmethod
     def rectangular(
-        cls,
-        length: float,
-        width: float,
-        *,
-        pockets: Literal[6, 4, 0] = 6,
-        corner: Pocket | None = None,
-        middle: Pocket | None = None,
-        ball_radius: float | None = None,
-        name: str = "rectangular",
-    ) -> "Table":
+        cls, length: float, width: float, *, pockets: Literal[6, 4, 0] = 6, corner: Pocket | None = None, middle: Pocket | None = None,
+        ball_radius: float | None = None, name: str = "rectangular",
+    ) -> "Table":  # fmt: skip
         """A rectangular table of your own with straight noses on its four sides.
 
         Parameters
@@ -122,6 +162,10 @@ class Table:
             The ball [m] that it is made for, in [0.001, 1]: shots with another ``physics.R`` are refused. None: any ball.
         name : str
             What it is called in messages.
+
+        Returns
+        -------
+        Table
 
         Raises
         ------
@@ -149,12 +193,27 @@ class Table:
         if ball_radius is not None:
             ball_radius = number("table.ball_radius", ball_radius, 1e-3, 1)
         bed = Bed(length=length, width=width, corner=shapes[0], middle=shapes[1], ball={})
-        _check_fit(bed, ball_radius)
+        check_fit(bed, ball_radius)
         return cls(name, *parts(bed), ball_radius=ball_radius, pockets=bed.pockets)
 
     @classmethod
     def of(cls, table: "TableLike") -> "Table":
-        """What users may pass as ``table``: a preset's name, a ``Table``, or None for unbounded cloth."""
+        """What users may pass as ``table``.
+
+        Parameters
+        ----------
+        table : str, Table or None
+            A preset's name, a table, or None: unbounded cloth.
+
+        Returns
+        -------
+        Table
+
+        Raises
+        ------
+        ValueError
+            For anything else.
+        """
         if table is None:
             return UNBOUNDED
         if isinstance(table, cls):
@@ -173,6 +232,10 @@ class Table:
         """Fields of ``Physics`` for the balls that it is made for, as in ``Physics.preset("match", **table.ball)``; {} for any ball.
 
         A preset knows R, M and sin_theta (the height of its noses), a table of your own R.
+
+        Returns
+        -------
+        dict of str to float
         """
         if self.is_preset:
             return dict(PRESETS[self.name].ball)
@@ -188,12 +251,25 @@ class Table:
     def _reach(self, R):
         """(2, 2) the bounds, wider by as much as a ball of radius R may lie past them in a pocket's mouth; kept for each radius."""
         if R not in self._reaches:
-            past = max(MOUTH, _deepest(self.jaws, self.falls, self.bounds, R))
+            past = max(MOUTH, deepest(self.jaws, self.falls, self.bounds, R))
             self._reaches[R] = self.bounds + np.array([-past, past])
         return self._reaches[R]
 
     def unfit(self, positions: Floats, R: float) -> list[int]:
-        """Which of the layouts (b, n, 2), all balls on the table, are not sound here: their indices, in order."""
+        """Which layouts are not sound here.
+
+        Parameters
+        ----------
+        positions : float64 (b, n, 2)
+            Places [m]; all balls are on the table.
+        R : float
+            Radius of the balls [m].
+
+        Returns
+        -------
+        list of int
+            Their indices, in order.
+        """
         here, found, first = np.ones(positions.shape[:2], bool), [], 0
         while True:
             k, _, fault, _ = _first_fault(positions[first:], here[first:], self._reach(R), self.noses, self.jaws, self.falls, float(R))
@@ -203,9 +279,27 @@ class Table:
             found.append(first - 1)
 
     def check(self, positions: Batches | Vectors, R: float, field: str = "positions", on_table: FlagRows | Flags | None = None) -> None:
-        """Raise ValueError unless every layout is sound: no ball off the table, in a cushion, jaw or other ball, or over a pocket.
+        """Check that layouts are sound: no ball off the table, in a cushion, jaw or other ball, or over a pocket.
 
-        positions (n, 2) or, of many tables at once, (b, n, 2); on_table (n,) or (b, n) bool: balls that do not count are False.
+        Parameters
+        ----------
+        positions : array_like, float (n, 2) or (b, n, 2)
+            Places [m] of one layout, or of b.
+        R : float
+            Radius of the balls [m].
+        field : str
+            What messages call the positions.
+        on_table : array_like, bool (n,) or (b, n), optional
+            Balls that do not count are False.
+
+        Returns
+        -------
+        None
+
+        Raises
+        ------
+        ValueError
+            That says which ball of which layout is wrong, and why.
         """
         own = self.ball_radius
         if own is not None and abs(R - own) > SAME_BALL:
@@ -240,37 +334,7 @@ class Table:
         raise refuse_what(field, f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
 
 
-TableLike: TypeAlias = Table | TableName | None
-"""What users may pass as ``table``, see ``Table.of``."""
-
-
-def _check_shapes(noses, jaws, falls):
-    """Raise ValueError for a nose, jaw or fall that no kernel could make sense of."""
-    for k, (axis, side, _, low, high) in enumerate(noses.tolist()):
-        if axis not in (0, 1) or side not in (-1, 1) or not low <= high:
-            raise refuse(f"table.noses[{k}]", tuple(noses[k].tolist()), "must be axis 0 or 1, side -1 or 1, level, and lo <= hi")
-    for k, (_, _, radius, ux, uy, cos_half) in enumerate(jaws.tolist()):
-        if radius < 0 or abs(hypot(ux, uy) - 1.0) > 1e-6 or abs(cos_half) > 1:
-            allowed = "must be x, y, radius >= 0, a unit vector (to 1e-6), and a cosine"
-            raise refuse(f"table.jaws[{k}]", tuple(jaws[k].tolist()), allowed)
-    for k, radius in enumerate(falls[:, FALL_RADIUS].tolist()):
-        if radius <= 0:
-            raise refuse(f"table.falls[{k}]", tuple(falls[k].tolist()), "must be x, y, and a radius > 0")
-
-
-def _check_fit(bed, ball_radius):
-    """Raise ValueError unless a rectangular table's pockets fit its sides and let its ball through."""
-    end = bed.corner.start if bed.corner else 0.0
-    middle = bed.middle.start if bed.middle else 0.0
-    for name, half, taken in (("width", bed.width / 2, end), ("length", bed.length / 2, end + middle)):
-        if not half > taken:
-            raise refuse(f"table.{name}", 2 * half, f"must be more than {2 * taken:.6g}, which the jaws of the pockets take of that side")
-    if ball_radius is None:
-        return
-    for name, pocket in (("corner", bed.corner), ("middle", bed.middle)):
-        if pocket is not None and not pocket.throat > 2 * ball_radius:
-            allowed = f"must be less than {pocket.throat / 2:.6g}, half the throat of the {name} pockets"
-            raise refuse("table.ball_radius", ball_radius, allowed)
+TableLike: TypeAlias = Table | TableName | None  # what users may pass as ``table``
 
 
 def _again(name, noses, jaws, falls, ball_radius, pockets):
@@ -282,58 +346,11 @@ def _quoted(name):
     return f'"{name}"'
 
 
-def _bounds(noses):
-    """``Table.bounds`` of its noses."""
-    bounds = np.full((2, 2), inf)
-    for axis in (0, 1):
-        for end, side in enumerate((-1, 1)):
-            levels = noses[(noses[:, NOSE_AXIS] == axis) & (noses[:, NOSE_SIDE] == side), NOSE_LEVEL]
-            bounds[axis, end] = side * max(levels, default=inf)
-    return bounds
-
-
-def _deepest(jaws, falls, bounds, R):
-    """How far past the line of the noses [m] a ball of radius R can lie between a jaw and the fall, and a little more."""
-    deepest = 0.0
-    for x, y, edge in falls:
-        for jx, jy, radius, ux, uy, cos_half in jaws:
-            # where the ball's centre is on the fall's edge and the ball at the jaw: two circles cross
-            dx, dy, reach = jx - x, jy - y, radius + R
-            far = hypot(dx, dy)
-            if not abs(reach - edge) < far < reach + edge:
-                continue
-            along = (far * far + edge * edge - reach * reach) / (2.0 * far)
-            off = sqrt(edge * edge - along * along)
-            for side in (-1.0, 1.0):
-                px, py = x + (along * dx - side * off * dy) / far, y + (along * dy + side * off * dx) / far
-                on_arc = (px - jx) * ux + (py - jy) * uy >= cos_half * reach
-                if on_arc and not _in_a_jaw(px, py, jaws, R):
-                    past = max(bounds[0, 0] - px, px - bounds[0, 1], bounds[1, 0] - py, py - bounds[1, 1])
-                    deepest = max(deepest, past + 5e-4)
-    return deepest
-
-
-def _in_a_jaw(x, y, jaws, R):
-    dx, dy = x - jaws[:, JAW_X], y - jaws[:, JAW_Y]
-    far = np.hypot(dx, dy)
-    return bool(np.any((far < jaws[:, JAW_RADIUS] + R - 1e-6) & (dx * jaws[:, JAW_UX] + dy * jaws[:, JAW_UY] >= jaws[:, JAW_COS] * far)))
-
-
-def _range(name, low, high):
+def _range(name: str, low: float, high: float) -> str | None:
     """A range in words; None of one without ends."""
     if low == -inf and high == inf:
         return None
     return f"|{name}| <= {high:.6g}" if low == -high else f"{low:.6g} <= {name} <= {high:.6g}"
-
-
-def _narrowest(noses):
-    """The least distance [m] of two facing noses that a ball can touch both at once, and which they are."""
-    found = (np.inf, -1, -1)
-    for a, (axis, side, level, low, high) in enumerate(noses):
-        for b, (other_axis, other_side, other_level, other_low, other_high) in enumerate(noses):
-            if a < b and axis == other_axis and side != other_side and low <= other_high and other_low <= high:
-                found = min(found, (float(level + other_level), a, b))
-    return found
 
 
 _SOUND, _OFF, _IN_NOSE, _OVER_POCKET, _IN_JAW, _IN_BALL = range(6)

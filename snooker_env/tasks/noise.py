@@ -67,13 +67,29 @@ def executed(speed, side, top, aim, elevation, noise, stream):
 class Noise:
     """Standard deviations of one shot's execution, all >= 0.
 
-    Fields:
+    Parameters
+    ----------
+    aim_deg : float
+        Aim [deg].
+    speed_rel : float
+        Speed, as a share of the speed.
+    speed_abs : float
+        Speed [m/s], added to the relative part in squares.
+    offset_mm : float
+        Tip offset, each of side and height [mm].
+    elevation_deg : float
+        Elevation [deg].
 
-    * aim_deg: Aim [deg].
-    * speed_rel: Speed, as a share of the speed.
-    * speed_abs: Speed [m/s], added to the relative part in squares.
-    * offset_mm: Tip offset, each of side and height [mm].
-    * elevation_deg: Elevation [deg].
+    Raises
+    ------
+    ValueError
+        If a number is negative or not finite.
+
+    Examples
+    --------
+    >>> from snooker_env.tasks import LEVELS, Noise
+    >>> LEVELS["club"].aim_deg, Noise(speed_rel=0.02).silent
+    (0.08, False)
     """
 
     aim_deg: float = 0.0
@@ -88,7 +104,28 @@ class Noise:
 
     @classmethod
     def of(cls, noise: "NoiseLike") -> "Noise":
-        """A level's name, or a dict of the fields above (others 0)."""
+        """What users may pass as ``noise``.
+
+        Parameters
+        ----------
+        noise : str, dict or Noise
+            A level's name, or a dict of fields of ``Noise``, the others 0.
+
+        Returns
+        -------
+        Noise
+
+        Raises
+        ------
+        ValueError
+            For anything else.
+
+        Examples
+        --------
+        >>> from snooker_env.tasks import Noise
+        >>> Noise.of({"aim_deg": 0.1}).speed_rel
+        0.0
+        """
         if isinstance(noise, cls):
             return noise
         if isinstance(noise, dict):
@@ -105,18 +142,38 @@ class Noise:
         return not (self.aim_deg or self.speed_rel or self.speed_abs or self.offset_mm or self.elevation_deg)
 
     def direction_deg(self, physics: PhysicsLike = None) -> float:
-        """Total error of the cue ball's direction, standard deviation [deg]: the aim's and that of the tip's squirt, added in squares.
+        """Total error of the cue ball's direction: the aim's and that of the tip's squirt, added in squares.
 
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a small offset [TP A.31]: with the
-        usual ratio of 30 by 0.163 deg for each millimetre. For strokes without intended side; the swerve of a nearly level cue is left
-        out. ``physics``: as ``Physics.of`` takes it.
+        usual ratio of 30 by 0.163 deg for each millimetre. For strokes without intended side; the swerve of a nearly level cue is left out.
+
+        Parameters
+        ----------
+        physics : None, str, dict or Physics
+            As ``Physics.of`` takes it.
+
+        Returns
+        -------
+        float
+            Standard deviation [deg].
         """
         world = Physics.of(physics)
         tip = self.offset_mm * 1e-3 / world.R
         return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + world.end_mass_ratio)))
 
     def pack(self, R: float) -> Floats:
-        """What the kernels must know: float64, places ``N_*`` of this module; R the ball's radius [m]."""
+        """What the kernels must know.
+
+        Parameters
+        ----------
+        R : float
+            The ball's radius [m].
+
+        Returns
+        -------
+        float64 (6,)
+            Places ``N_*`` of this module.
+        """
         tip = self.offset_mm * 1e-3 / R
         return np.array([self.silent, self.speed_abs, self.speed_rel, tip, radians(self.aim_deg), radians(self.elevation_deg)], np.float64)
 

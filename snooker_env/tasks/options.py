@@ -68,9 +68,62 @@ class Rules:
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """What may be chosen of a game; the fields are the keywords of ``gymnasium.make("Snooker-v0", ...)``, explained in ``SnookerEnv``.
+    """What may be chosen of a game. The fields are the keywords of ``gymnasium.make("Snooker-v0", ...)``; an ``Options`` never changes.
 
-    Raises ValueError, naming the field, for whatever is unknown, of the wrong type, or does not go with another.
+    Parameters
+    ----------
+    task : {"visit", "frame"}
+        Build a break until the first miss or foul, or play a whole frame.
+    layout : str
+        How tables are dealt: "opened", "held_out", "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy",
+        "pots:medium", "pots:hard". "default": "opened" in a visit, "break_off" in a frame.
+    action : {"box", "discrete"}
+        Numbers in [-1, 1], or one number that means a pot, a speed, a side and a top (``snooker_env.tasks.discrete_actions``).
+    aim : {"absolute", "target"}
+        What the aim of a box action is measured from: +x, or the best potting line.
+    observation : {"flat", "balls"}
+        One array, or a dict of two.
+    noise : str, dict or Noise
+        Errors of execution: a level's name, or standard deviations; see ``snooker_env.tasks.Noise``.
+    reward : {"points", "points_and_fouls", "pots", "win"}
+        The first three in a visit, "points" and "win" in a frame.
+    elevation : bool
+        Whether a box action holds the cue's elevation.
+    placement : bool
+        Whether a box action holds the place in the D of a cue ball in hand.
+    physics : str, dict, Physics or None
+        As ``Physics.of`` takes it, with snooker's ball radius.
+    table : str or Table
+        "match", "tight", or a table with snooker's bed.
+    fidelity : str
+        "fast", "standard", "reference" or "euler:N": how impacts are solved.
+    opponent : str, path or callable
+        Of a frame: "none", "random", "ghost_ball", a model's ``.zip``, or ``opponent(observation, rng) -> action``.
+    miss : {"off", "clear_path"}
+        Of a frame: the rule for a foul and a miss (``snooker_env.game.frame``).
+    decision : bool
+        Of a frame: whether a box action holds the decision after a foul of the other player.
+    max_strokes : int, optional
+        Of a frame: after how many strokes of both players together the referee stops it; None: never.
+    trust : bool
+        Of a frame: whether the code in an opponent's ``.zip`` may run.
+
+    Attributes
+    ----------
+    rules : Rules
+        The same as the kernels need it, made when the options are.
+
+    Raises
+    ------
+    ValueError
+        For whatever is unknown, of the wrong type, or does not go with another. The message names the field.
+
+    Examples
+    --------
+    >>> from snooker_env import Options
+    >>> options = Options(task="frame", noise="club")
+    >>> options.layout, options.but(noise="none").noise
+    ('break_off', 'none')
     """
 
     task: Literal["visit", "frame"] = "visit"
@@ -91,7 +144,6 @@ class Options:
     max_strokes: int | None = MAX_STROKES
     trust: bool = False
     rules: Rules = field(init=False, repr=False, compare=False)
-    """The same, read."""
 
     def __post_init__(self) -> None:
         frame = choice("task", self.task, TASKS) == "frame"
@@ -139,7 +191,22 @@ class Options:
                 raise refuse(name, value, f'must be {usual[name]!r} with task="visit"; it belongs to task="frame"')
 
     def but(self, **changes: Any) -> "Options":
-        """The same with some options changed."""
+        """The same with some options changed.
+
+        Parameters
+        ----------
+        **changes
+            Fields and their new values.
+
+        Returns
+        -------
+        Options
+
+        Raises
+        ------
+        ValueError
+            As for the options themselves.
+        """
         return replace(self, **changes)
 
 

@@ -32,7 +32,9 @@ ALLOWED = {
     "kernels": {"_jit", "game", "tasks"},
     "geometry": {"_check", "_types"},
     "physics": BASE,
-    "simulation": BASE | {"physics"},
+    "shot": BASE | {"physics"},
+    "impacts": BASE | {"physics", "shot"},
+    "simulation": BASE | {"physics", "shot"},
     "game": BASE,
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
@@ -40,8 +42,8 @@ ALLOWED = {
     "render": {"_check", "_types", "geometry", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
-    "_warmup": {"_jit", "_notices", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {"geometry", "physics", "simulation", "tasks", "planning", "envs", "match", "_warmup", "_registration"},
+    "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
+    "__init__": {"geometry", "physics", "impacts", "shot", "simulation", "tasks", "planning", "envs", "match", "_warmup", "_registration"},
 }
 OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}

@@ -1,0 +1,46 @@
+"""Which arrays may a step write its results into? ``out`` of the vector environment, checked: each fits what is written, as it lies."""
+
+from collections.abc import Collection
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._check import choice, refuse, refuse_what
+
+OUTPUTS = {"observations": "observations", "rewards": "rewards", "terminations": "terminated", "truncations": "truncated"}
+"""What a step can write into arrays that it is given, and what ``StepOutput`` calls it."""
+DTYPES: dict[str, type[np.generic]] = {"observations": np.float32, "rewards": np.float64, "terminations": np.bool_, "truncations": np.bool_}
+
+
+def arrays_given(out: Any, names: Collection[str], n: int, size: int, boxes: dict[str, tuple[int, ...]] | None) -> dict[str, NDArray[Any]]:
+    """The arrays of n tables to write into, by the names of ``StepOutput``; ``size``: numbers in a flat observation.
+
+    ``boxes``: the shapes of the parts of observations that are dicts, which are written later; None: observations are flat.
+    Raises ValueError unless the arrays are what is written.
+    """
+    if out is None:
+        return {}
+    if not isinstance(out, dict):
+        raise refuse("out", type(out).__name__, f"must be None or a dict of {', '.join(names)}")
+    for name in out:
+        choice("out", name, names)
+    found = {}
+    for name, a in out.items():
+        if name == "observations" and boxes is not None:
+            if not isinstance(a, dict) or set(a) != set(boxes):
+                raise refuse('out["observations"]', type(a).__name__, "must be a dict of " + " and ".join(f'"{part}"' for part in boxes))
+            for part, shape in boxes.items():
+                _check_out(f"observations.{part}", a[part], shape, np.float32)
+            continue
+        found[OUTPUTS[name]] = _check_out(name, a, (n, size) if name == "observations" else (n,), DTYPES[name])
+    return found
+
+
+def _check_out(name: str, a: Any, shape: tuple[int, ...], dtype: type[np.generic]) -> NDArray[Any]:
+    """The array ``out[name]``; ValueError unless results can be written right into it."""
+    fits = isinstance(a, np.ndarray) and a.shape == shape and a.dtype == dtype
+    if not fits or not (a.flags.c_contiguous and a.flags.writeable and a.flags.aligned):
+        found = f"array of {a.dtype} and shape {a.shape}" if isinstance(a, np.ndarray) else type(a).__name__
+        raise refuse_what(f'out["{name}"]', found, f"must be a C-contiguous, writeable array of {np.dtype(dtype)} and shape {shape}")
+    return a

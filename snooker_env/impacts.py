@@ -1,0 +1,169 @@
+"""How does one impact end, or one strike of the cue? Of two balls, of a ball and a cushion: checked input in, plain arrays out."""
+
+import numpy as np
+
+from ._check import array, refuse
+from ._jit import entry
+from ._types import Fidelity, Floats, Real, Vector
+from .physics import cue
+from .physics.impact import contact
+from .physics.impact.polynomial import WORK
+from .physics.parameters import FASTEST_IMPACT, MOST_SPIN_IMPACT, P_E_B, Physics, PhysicsLike
+from .shot import SimulationError
+
+
+@entry(what="the impact of two balls", uses=(contact.collide_balls,))
+def _collide_balls(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
+    return contact.collide_balls(v1, w1, v2, w2, nx, ny, phys, phys[P_E_B], fidelity, n_steps, np.empty(WORK))
+
+
+@entry(what="the impact with a cushion", uses=(contact.collide_cushion,))
+def _collide_cushion(v, w, nx, ny, phys, fidelity, n_steps):
+    e = contact.cushion_restitution(v[0] * nx + v[1] * ny, phys)
+    return contact.collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, np.empty(WORK))
+
+
+def _unit_normal(normal):
+    nx, ny, nz = array("normal", normal, (3,)).tolist()
+    if abs(nz) > 1e-9 or abs(np.hypot(nx, ny) - 1.0) > 1e-6:
+        length = (nx * nx + ny * ny + nz * nz) ** 0.5
+        raise refuse("normal", (nx, ny, nz), f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {length:.7g})")
+    size = float(np.hypot(nx, ny))
+    return nx / size, ny / size
+
+
+def _velocity(name, value):
+    return tuple(array(name, value, (3,), FASTEST_IMPACT, "m/s").tolist())
+
+
+def _spin(name, value):
+    return tuple(array(name, value, (3,), MOST_SPIN_IMPACT, "rad/s").tolist())
+
+
+def collide_balls(
+    v1: Vector, w1: Vector, v2: Vector, w2: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """The frictional impact of two balls standing on the cloth (Mathavan, Jackson & Parkin 2014, 2.1 to 2.4).
+
+    Parameters
+    ----------
+    v1, w1, v2, w2 : array_like, float (3,)
+        Velocities [m/s] and spins [rad/s] of ball 1 and ball 2, no number beyond 1e6 m/s and 1e9 rad/s.
+    normal : array_like, float (3,)
+        Horizontal unit vector from ball 1 to ball 2.
+    physics : None, str, dict or Physics
+        The world, see ``Physics.of``; "paper" if it is None.
+    fidelity : str
+        "fast" (closed form, free spheres), "standard", "reference", or "euler:N" (the paper's own scheme with N of eq. 14).
+
+    Returns
+    -------
+    v1, w1, v2, w2 : float64 (3,)
+        After the impact; the vertical velocity of the lifted ball is included. Balls that do not close come back unchanged.
+
+    Raises
+    ------
+    ValueError
+        On bad shapes, numbers not finite or beyond these, a normal that is not horizontal and unit, an unknown fidelity or physics.
+    SimulationError
+        If the impact does not end.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> v1, w1, v2, w2 = sn.collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
+    >>> bool(v2[0] > 0.9 and v1[0] < 0.1)
+    True
+    """
+    physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
+    args = _velocity("v1", v1), _spin("w1", w1), _velocity("v2", v2), _spin("w2", w2)
+    v1_after, w1_after, v2_after, w2_after, solved = _collide_balls(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
+    if not solved:
+        raise SimulationError(f"the impact of v1, w1, v2, w2 = {args} did not end at fidelity {fidelity!r}; try another fidelity")
+    return np.array(v1_after), np.array(w1_after), np.array(v2_after), np.array(w2_after)
+
+
+def collide_cushion(
+    v: Vector, w: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
+) -> tuple[Floats, Floats]:
+    """The impact of a ball with a cushion's nose (Mathavan, Jackson & Parkin 2010, with Coulomb's law at zero slip).
+
+    Parameters
+    ----------
+    v, w : array_like, float (3,)
+        Velocity [m/s] and spin [rad/s], bounded as in ``collide_balls``.
+    normal : array_like, float (3,)
+        Horizontal unit vector INTO the cushion.
+    physics : None, str, dict or Physics
+        The world, see ``Physics.of``; "paper" if it is None.
+    fidelity : str
+        As in ``collide_balls``. "fast" integrates with a loose tolerance: no closed form keeps the cloth's reaction, worth 7 % of the
+        rebound.
+
+    Returns
+    -------
+    v, w : float64 (3,)
+        After the impact. A ball that does not move into the cushion comes back unchanged.
+
+    Raises
+    ------
+    ValueError, SimulationError
+        As ``collide_balls``.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> v, w = sn.collide_cushion((1, 0, 0), (0, 0, 0), (1, 0, 0))
+    >>> bool(v[0] < 0)
+    True
+    """
+    physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
+    args = _velocity("v", v), _spin("w", w)
+    v_after, w_after, solved = _collide_cushion(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
+    if not solved:
+        raise SimulationError(f"the cushion impact of v, w = {args} did not end at fidelity {fidelity!r}; try another fidelity")
+    return np.array(v_after), np.array(w_after)
+
+
+def strike(
+    speed: Real, aim: Real, side: Real = 0.0, top: Real = 0.0, elevation: Real = 0.0, physics: PhysicsLike = None
+) -> tuple[Floats, Floats]:
+    """The cue ball's velocity and spin just after the cue has struck it.
+
+    Side spin deflects the ball off the aim (squirt, to the left for right side). An elevated cue with side gives the spin of a swerve or
+    masse. The cloth takes the downward part of the speed: the ball leaves along the cloth with speed cos(elevation).
+
+    Parameters
+    ----------
+    speed : float
+        The speed that the cue gives, along the cue [m/s], in [0, 1000].
+    aim : float
+        Direction of the cue [rad], anticlockwise from +x.
+    side, top : float
+        Tip offset over R, + right and + up as the player sees it.
+    elevation : float
+        Of the butt [rad], in [0, 1.5].
+    physics : None, str, dict or Physics
+        The world, see ``Physics.of``; "paper" if it is None.
+
+    Returns
+    -------
+    v : float64 (3,)
+        Velocity [m/s].
+    w : float64 (3,)
+        Spin [rad/s].
+
+    Raises
+    ------
+    ValueError
+        On a miscue (an offset beyond ``Physics.max_offset`` R, 0.5 by default), a speed or elevation out of range, numbers not finite.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> v, w = sn.strike(2.0, 0.0)
+    >>> v.tolist(), w.tolist()
+    ([2.0, 0.0, 0.0], [0.0, 0.0, 0.0])
+    """
+    v, w = cue.strike(speed, aim, side, top, elevation, Physics.of(physics))
+    return np.array(v), np.array(w)

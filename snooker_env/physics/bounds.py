@@ -1,0 +1,55 @@
+"""How far can a ball get on a table, and what is its narrowest place? Found from noses, jaws and falls, as ``table.Table`` holds them."""
+
+from math import hypot, inf, sqrt
+
+import numpy as np
+
+from .._types import Floats
+from .columns import JAW_COS, JAW_RADIUS, JAW_UX, JAW_UY, JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
+
+
+def bounds_of(noses: Floats) -> Floats:
+    """``Table.bounds`` of its noses."""
+    bounds = np.full((2, 2), inf)
+    for axis in (0, 1):
+        for end, side in enumerate((-1, 1)):
+            levels = noses[(noses[:, NOSE_AXIS] == axis) & (noses[:, NOSE_SIDE] == side), NOSE_LEVEL]
+            bounds[axis, end] = side * max(levels, default=inf)
+    return bounds
+
+
+def deepest(jaws: Floats, falls: Floats, bounds: Floats, R: float) -> float:
+    """How far past the line of the noses [m] a ball of radius R can lie between a jaw and the fall, and a little more."""
+    deepest = 0.0
+    for x, y, edge in falls:
+        for jx, jy, radius, ux, uy, cos_half in jaws:
+            # where the ball's centre is on the fall's edge and the ball at the jaw: two circles cross
+            dx, dy, reach = jx - x, jy - y, radius + R
+            far = hypot(dx, dy)
+            if not abs(reach - edge) < far < reach + edge:
+                continue
+            along = (far * far + edge * edge - reach * reach) / (2.0 * far)
+            off = sqrt(edge * edge - along * along)
+            for side in (-1.0, 1.0):
+                px, py = x + (along * dx - side * off * dy) / far, y + (along * dy + side * off * dx) / far
+                on_arc = (px - jx) * ux + (py - jy) * uy >= cos_half * reach
+                if on_arc and not _in_a_jaw(px, py, jaws, R):
+                    past = max(bounds[0, 0] - px, px - bounds[0, 1], bounds[1, 0] - py, py - bounds[1, 1])
+                    deepest = max(deepest, past + 5e-4)
+    return deepest
+
+
+def _in_a_jaw(x, y, jaws, R):
+    dx, dy = x - jaws[:, JAW_X], y - jaws[:, JAW_Y]
+    far = np.hypot(dx, dy)
+    return bool(np.any((far < jaws[:, JAW_RADIUS] + R - 1e-6) & (dx * jaws[:, JAW_UX] + dy * jaws[:, JAW_UY] >= jaws[:, JAW_COS] * far)))
+
+
+def narrowest(noses: Floats) -> tuple[float, int, int]:
+    """The least distance [m] of two facing noses that a ball can touch both at once, and which they are."""
+    found = (np.inf, -1, -1)
+    for a, (axis, side, level, low, high) in enumerate(noses):
+        for b, (other_axis, other_side, other_level, other_low, other_high) in enumerate(noses):
+            if a < b and axis == other_axis and side != other_side and low <= other_high and other_low <= high:
+                found = min(found, (float(level + other_level), a, b))
+    return found
