@@ -2,7 +2,7 @@
 
 from ._jit import ENTRIES
 from ._notices import warming_up
-from .simulation import collide_balls, collide_cushion, simulate
+from .simulation import collide_balls, collide_cushion, simulate, strike
 
 
 def warmup():
@@ -12,8 +12,12 @@ def warmup():
     the cache, or with ``SNOOKER_ENV_QUIET=1``.
     """
     from .envs.snooker import SnookerEnv
+    from .game.apply_ruling import settle_table
     from .game.balls import REDS_MASK
+    from .game.in_hand import place_cue
+    from .game.paths import paths
     from .game.pots import pots
+    from .game.referee import Situation, Stroke, judge
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
     from .planning import Planner, Positions, clear_paths, obstructions
@@ -22,6 +26,7 @@ def warmup():
 
     with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
         simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
+        strike(1.0, 0.0)
         collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
         collide_cushion((1, 0, 0), (0, 0, 0), (1, 0, 0))
         env = SnookerEnv(action="discrete")
@@ -33,12 +38,21 @@ def warmup():
         for seed in range(3):  # one of them with the opponent's break
             env.reset(seed=seed)
             env.step([0.0] * 7)
-        env = SnookerEnv(task="frame", opponent="random")
-        env.reset(seed=0)
-        env.step([0.0] * 4)
+        for options in (
+            {"opponent": lambda observation, rng: [0.0] * 4},
+            {"opponent": "random"},
+            {"opponent": "random", "action": "discrete"},
+        ):
+            env = SnookerEnv(task="frame", **options)
+            env.reset(seed=0)
+            env.step(0 if "action" in options else [0.0] * 4)
         pots(env.positions, env.on_table, REDS_MASK)
         env.options.rules.actions.shot([0.0] * 4, env.positions, env.on_table, REDS_MASK)
         line(env.positions, env.on_table, REDS_MASK)
+        paths(env.positions, env.on_table, REDS_MASK)
+        place_cue(env.positions, env.on_table, 0.0, 0.0)
+        settle_table(env.positions, env.on_table, Situation(), Stroke())
+        judge(Situation(), Stroke())
         is_snookered(env.positions, env.on_table, REDS_MASK)
         spot_colours(env.positions, env.on_table, 0)
         env.reset(seed=0)
