@@ -36,7 +36,7 @@ ALLOWED = {
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
-    "render": {"_check", "geometry", "physics.table", "physics.engine", "game.balls", "simulation"},
+    "render": {"_check", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"envs"},
     "_warmup": {"_jit", "_notices", "simulation", "game", "tasks", "planning", "envs"},
