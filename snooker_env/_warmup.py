@@ -38,14 +38,11 @@ def warmup():
         for seed in range(3):  # one of them with the opponent's break
             env.reset(seed=seed)
             env.step([0.0] * 7)
-        for options in (
-            {"opponent": lambda observation, rng: [0.0] * 4},
-            {"opponent": "random"},
-            {"opponent": "random", "action": "discrete"},
-        ):
-            env = SnookerEnv(task="frame", **options)
-            env.reset(seed=0)
-            env.step(0 if "action" in options else [0.0] * 4)
+        for opponent, action in ((lambda observation, rng: [0.0] * 4, [0.0] * 4), ("random", 0), ("random", [0.0] * 4)):
+            env = SnookerEnv(task="frame", opponent=opponent, action="discrete" if action == 0 else "box")
+            for seed in range(3):
+                env.reset(seed=seed)
+                env.step(action)
         pots(env.positions, env.on_table, REDS_MASK)
         env.options.rules.actions.shot([0.0] * 4, env.positions, env.on_table, REDS_MASK)
         line(env.positions, env.on_table, REDS_MASK)
