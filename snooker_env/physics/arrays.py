@@ -1,6 +1,6 @@
 """Which arrays does a shot work on? Named and grouped: what ``engine.run`` takes; the last two groups are its work space.
 
-The kernels below it take arrays one by one, and so does the one that Python calls: see ``engine.run`` and ``engine.run_batch`` for the cost.
+Kernels below it take arrays one by one, and so does the one that Python calls: see ``engine.run`` and ``engine.run_batch`` for the cost.
 """
 
 from typing import NamedTuple
