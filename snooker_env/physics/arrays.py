@@ -47,7 +47,7 @@ class Log(NamedTuple):
     """(k, cloth.SEGMENT): the paths."""
 
 
-class Outcome(NamedTuple):
+class Ends(NamedTuple):
     """How each of b shots ended; (b,) each."""
 
     status: np.ndarray

@@ -270,8 +270,8 @@ def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws,
               status, n_events, n_segments, duration, start, stop):  # fmt: skip
     """Shots ``start`` to ``stop`` of a batch, all arrays of the balls, the log and the outcome with a leading batch axis.
 
-    The arguments are those of ``Balls``, ``World``, ``Log`` and ``Outcome``, in their order: ``run_batch(*balls, *world, max_events, *log,
-    *outcome, start, stop)``. Given as four tuples they would cost 3 us a call, since numba then looks up the type of each array anew
+    The arguments are those of ``Balls``, ``World``, ``Log`` and ``Ends``, in their order: ``run_batch(*balls, *world, max_events, *log,
+    *ends, start, stop)``. Given as four tuples they would cost 3 us a call, since numba then looks up the type of each array anew
     (measured; a shot of two balls takes 6 us). Work space is made once.
     """
     n = positions.shape[1]
