@@ -30,8 +30,9 @@ import numpy as np
 import snooker_env as sn
 from commands import provenance
 from snooker_env import geometry, simulation
-from snooker_env.physics.engine import PART, EventKind
+from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
+from snooker_env.physics.meetings import PART
 
 from ._common import shot_sets, variants
 from ._common.command import Command, at_least, pyplot, run, save_figure, save_json

@@ -3,9 +3,10 @@
     python -m benchmarks.vector [--seconds 2] [--repeats 5] [--tables 1024] [--seed 0] [--json FILE] [--out FOLDER]
 
 Random actions on opened 22-ball tables; a step is one shot with everything around it (SAME_STEP: a visit that ends is followed by a new
-one within the step, so every step holds a shot). Steps a second are medians over ``--repeats`` rounds in which the kinds take turns, so
-that a busy machine slows all alike. Outside the engine: the same shots, from the same strikes, by the engine's kernel alone, and what is
-left of the step. Threads: what two threads give must be read against the control, plain arithmetic on two threads at the same time.
+one within the step, so every step holds a shot). Frames: the agent plays alone, from the same tables. Steps a second are medians over
+``--repeats`` rounds in which the kinds take turns, so that a busy machine slows all alike. Outside the engine: the same shots, from the
+same strikes, by the engine's kernel alone, and what is left of the step. Threads: what two threads give must be read against the control,
+plain arithmetic on two threads at the same time.
 """
 
 import os
@@ -26,6 +27,8 @@ from snooker_env.tasks.stroke import ShotBuffers
 
 from ._common.command import Command, at_least, run, save_json
 
+FRAMES, SINGLE_FRAME, GHOST = "frames, one thread", "frames, single table", "frames against ghost_ball, one thread"
+SLOWER, SINGLE_SLOWER = "a frame's step over a visit's", "the same on a single table"
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)
 
 
@@ -71,23 +74,27 @@ def stepper(env, seed):
     return lambda k: env.step(actions[k % 16])
 
 
-def single(seed):
+FRAME = {"task": "frame", "layout": "opened"}
+
+
+def single(seed, **options):
     """``step(k)`` of one ``SnookerEnv``, with a reset after each end."""
-    env = SnookerEnv()
+    env = SnookerEnv(**options)
     env.reset(seed=seed)
     actions = np.random.default_rng(seed).uniform(-1.0, 1.0, (1024, 4)).astype(np.float32)
 
     def step(k):
-        if env.step(actions[k % 1024])[2]:
+        _, _, terminated, truncated, _ = env.step(actions[k % 1024])
+        if terminated or truncated:
             env.reset()
 
     step(0)
     return step
 
 
-def native(n, threads):
+def native(n, threads, **options):
     """The vector environment of n tables."""
-    return SnookerVectorEnv(n, threads=threads, autoreset_mode=AutoresetMode.SAME_STEP)
+    return SnookerVectorEnv(n, threads=threads, autoreset_mode=AutoresetMode.SAME_STEP, **options)
 
 
 def rates(tables, seconds, repeats, seed):
@@ -97,9 +104,13 @@ def rates(tables, seconds, repeats, seed):
     kinds = {
         "one thread": (stepper(native(tables, 1), seed), tables), "two threads": (stepper(native(tables, 2), seed), tables),
         "SyncVectorEnv, 16 tables": (stepper(sync, seed), 16), "single table": (single(seed), 1),
+        FRAMES: (stepper(native(tables, 1, **FRAME), seed), tables), SINGLE_FRAME: (single(seed, **FRAME), 1),
+        GHOST: (stepper(native(tables, 1, opponent="ghost_ball", **FRAME), seed), tables),
     }  # fmt: skip
     rounds = [{name: rate(step, n, seconds) for name, (step, n) in kinds.items()} | {"control": control()} for _ in range(repeats)]
     out = {name: float(np.median([r[name] for r in rounds])) for name in rounds[0]}
+    for name, one, other in ((SLOWER, FRAMES, "one thread"), (SINGLE_SLOWER, SINGLE_FRAME, "single table")):
+        out[name] = float(np.median([r[other] / r[one] for r in rounds]))
     out["two threads over one"] = float(np.median([r["two threads"] / r["one thread"] for r in rounds]))
     return out
 
@@ -192,9 +203,10 @@ def show(found):
     """Print the figures."""
     r, o = found["rates"], found["outside"]
     print(f"\nrandom actions, opened 22-ball tables, {found['tables']} tables           steps/s")
-    for name in ("one thread", "two threads", "SyncVectorEnv, 16 tables", "single table"):
+    for name in ("one thread", "two threads", "SyncVectorEnv, 16 tables", "single table", FRAMES, SINGLE_FRAME, GHOST):
         print(f"  {name:<58}{r[name]:>9,.0f}")
     print(f"  two threads over one {r['two threads over one']:.2f} (plain arithmetic on two threads over one: {r['control']:.2f})")
+    print(f"  time of a frame's step, the agent alone, over a visit's: {r[SLOWER]:.2f}, on a single table {r[SINGLE_SLOWER]:.2f}")
     share = 100 * o["outside the engine"]
     print(f"a step {o['step [us]']:.1f} us, the engine alone {o['engine alone [us]']:.1f} us: {share:.1f} % outside it")
     print("tables:  " + "".join(f"{n:>9}" for n in found["sizes"]))

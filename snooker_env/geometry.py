@@ -15,7 +15,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ._check import number, refuse
+from ._check import number, refuse, truth
 
 __all__ = [
     "BALL_RADIUS", "BAULK_Y", "COLOUR_SPOTS", "D_RADIUS", "HALF_LENGTH", "HALF_WIDTH", "POCKETS", "POCKET_AIMS", "POCKET_PLACES", "PRESETS",
@@ -86,7 +86,7 @@ class Pocket:
     fall_radius: float
 
     def __post_init__(self):
-        name = "pocket." + ("middle" if self.is_middle else "corner")
+        name = "pocket." + ("middle" if truth("pocket.is_middle", self.is_middle) else "corner")
         straight = 90.0 if self.is_middle else 45.0
         limits = {"start": (0, 1), "jaw_radius": (0, 1), "turn": (0, straight), "fall_depth": (-1, 1), "fall_radius": (0, 1)}
         for field, (low, high) in limits.items():
@@ -101,10 +101,25 @@ class Pocket:
 
     @classmethod
     def corner(cls, *, mouth, shelf, fall_radius, cut=135.0, jaw_radius=0.0):
-        """A corner pocket by its published sizes [m, degrees].
+        """A corner pocket by its published sizes.
 
-        mouth: from jaw to jaw where they leave the noses; shelf: from the middle of the mouth to the slate's edge; fall_radius: of the
-        slate's circle; cut: the angle between nose and facing, 135 for parallel facings, WPA 142; jaw_radius: 0 for sharp points.
+        Parameters
+        ----------
+        mouth : float
+            From jaw to jaw where they leave the noses [m], in (0, 1].
+        shelf : float
+            From the middle of the mouth to the slate's edge [m], in [-1, 1]; negative where the hole begins before the mouth.
+        fall_radius : float
+            Radius of the slate's circle [m], in (0, 1].
+        cut : float
+            Angle between nose and facing [degrees], in [135, 180): 135 for parallel facings, WPA 142.
+        jaw_radius : float
+            Radius of the arc by which a jaw leaves the nose [m], in [0, 1]; 0 for a sharp point.
+
+        Raises
+        ------
+        ValueError
+            For sizes out of range, and where they leave no opening, or a way past the fall.
         """
         mouth, shelf, fall_radius = _sizes("pocket.corner", mouth, shelf, fall_radius)
         depth = (fall_radius + shelf) / sqrt(2.0) - mouth / (2.0 * sqrt(2.0))
@@ -115,7 +130,7 @@ class Pocket:
 
     @classmethod
     def middle(cls, *, mouth, shelf, fall_radius, cut=90.0, jaw_radius=0.0):
-        """A middle (side) pocket by its published sizes, as in ``corner``; cut: 90 for parallel facings, WPA 104."""
+        """A middle (side) pocket by its published sizes: as ``corner``, with cut in [90, 180), 90 for parallel facings, WPA 104."""
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
         return cls(

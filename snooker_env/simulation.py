@@ -114,7 +114,8 @@ class Shot:
     Fields:
 
     * positions: (n, 2) [m] at rest; of a potted ball: where its centre crossed the fall, or where its flight over the pocket ended.
-    * potted: (n,) int: pocket index (``snooker_env.POCKETS``), or -1 if not potted in this shot.
+    * potted: (n,) int: pocket index, or -1 if not potted in this shot. ``Table.pockets`` names them: on a table with six pockets
+      ``snooker_env.POCKETS``.
     * on_table: (n,) bool: still in play.
     * duration: Time [s] until everything is at rest, spin included (with ``spin_decel`` 0, which ends no spin: until no ball moves across
       the table).

@@ -1,6 +1,7 @@
 """Is there one geometry? One definition of table and ball, one order of pockets, sizes as published; and what fits nowhere is refused."""
 
 import ast
+import dataclasses
 import re
 import subprocess
 import sys
@@ -170,6 +171,7 @@ NUMBER = "must be a finite number in "
         case(lambda: Table.rectangular(2, 1, ball_radius=0.0), "table.ball_radius", "0.0", NUMBER + "[0.001, 1]"),
         case(lambda: Table.rectangular(2, 1, name=None), "table.name", "None", "must be a str"),
         case(lambda: Pocket.corner(**SMALL | {"mouth": -1}), "pocket.corner.mouth", "-1", NUMBER + "(0, 1]"),
+        case(lambda: dataclasses.replace(CORNER, is_middle="no"), "pocket.is_middle", "'no'", "must be True or False"),
         case(lambda: Pocket.corner(**SMALL, cut=100), "pocket.corner.cut", "100", NUMBER + "[135, 180]"),
         case(lambda: Pocket.middle(**SMALL, cut=80), "pocket.middle.cut", "80", NUMBER + "[90, 180]"),
         case(lambda: Pocket.middle(**SMALL, cut=180), "pocket.middle.turn", "0.0", NUMBER + "(0, 90]"),

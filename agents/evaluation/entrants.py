@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from commands.physics_option import physics_text
-from snooker_env import SnookerEnv, SnookerVectorEnv
+from snooker_env import Options, SnookerVectorEnv
 from snooker_env.checks import number, refuse
 
 from ..learning.hyperparameters import ACTION_OPTIONS, value_of
@@ -79,7 +79,7 @@ class Entrant:
             seconds = None if seconds is None else 3600.0 * seconds
         else:
             seconds, imitated = _number_in(results, "seconds"), model.imitated
-        usual = {"layout": SnookerEnv().options.layout, "noise": "none", "fidelity": "standard"}
+        usual = {"layout": Options().layout, "noise": "none", "fidelity": "standard"}
         return {
             "recipe": model.recipe, "shots": model.num_timesteps, "imitated": imitated, "seconds": seconds, "seed": model.seed,
             "gamma": model.gamma, **{key: model.env_options.get(key, value) for key, value in usual.items()},

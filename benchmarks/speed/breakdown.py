@@ -1,9 +1,9 @@
 """Where does the time of a shot go? The cycle counter around each piece of the engine, in a copy of the package made for that.
 
-In the copy every kernel of ``engine.py`` and ``detection.py`` gets one more argument, the address of the tally, and every statement that
-calls a function named in ``PIECES`` reads the counter before and after. A piece's time is its own: what it calls, if that is a piece too,
-is taken off. What reading costs, measured on an empty statement, is taken off as well; what then differs from the time of the
-untouched kernel on the same shots is printed as the remainder (the readings keep the compiler from merging and reordering).
+In the copy every kernel of ``engine.py``, ``detection.py`` and ``meetings.py`` gets one more argument, the address of the tally, and
+every statement that calls a function named in ``PIECES`` reads the counter before and after. A piece's time is its own: what it calls, if
+that is a piece too, is taken off. What reading costs, measured on an empty statement, is taken off as well; what then differs from the
+time of the untouched kernel on the same shots is printed as the remainder (the readings keep the compiler from merging and reordering).
 """
 
 import ast
@@ -38,7 +38,7 @@ PIECES = (
 )
 GROUPS = ("root search", "impacts", "bookkeeping")
 _NUMBER = {name: k for k, (name, _, _) in enumerate(PIECES)}
-_MODULES = ("physics/detection.py", "physics/engine.py")
+_MODULES = ("physics/detection.py", "physics/engine.py", "physics/meetings.py")
 
 _N = len(PIECES)
 _NOW, _OTHERS = 2 * _N * _N, 2 * _N * _N + 1
@@ -90,7 +90,8 @@ def leave(tally, piece, entered):
 
 
 def _is_kernel(node):
-    names = {d.id for d in getattr(node, "decorator_list", ()) if isinstance(d, ast.Name)}
+    marks = (d.func if isinstance(d, ast.Call) else d for d in getattr(node, "decorator_list", ()))
+    names = {mark.id for mark in marks if isinstance(mark, ast.Name)}
     return isinstance(node, ast.FunctionDef) and not names.isdisjoint(("kernel", "inlined", "entry"))
 
 

@@ -12,7 +12,7 @@ of constant acceleration whose ends are exact. A sliding ball does not feel the 
 A ball over a pocket (``FALLING``) moves straight and evenly, see ``pocket.py``.
 
 A ball's motion is one row of ``motion`` (float64, columns below), valid from its time T0 to T_END, and one code in ``state``. LO_X to
-HI_Y bound its whole path in that time: whatever they do not come near, the ball does not meet.
+HI_Y bound its whole path in that time: the ball meets nothing that lies outside them.
 """
 
 from math import copysign, exp, expm1, inf, log1p, sqrt
@@ -29,7 +29,7 @@ SEGMENT = COLUMNS + 2
 """Columns of a segment, a row of a shot's path log: a ball's motion, then which ball it is, and its state."""
 
 _STILL = 1e-12  # m/s: slower is at rest (it would roll 4e-24 m)
-_STRAY = 2e-6  # m; no piece of a bent path is further from it
+_STRAY = 2e-6  # m; no piece is further than this from the bent path that it stands for
 
 
 @kernel
@@ -51,7 +51,7 @@ def _faded(rate, s):
 
 @kernel
 def _bent(vx, vy, s, decel, nap):
-    """A ball rolls from (vx, vy) across the nap until ds = dt/|v| adds up to s; inf: to rest. Time, way (x, y) and velocity then.
+    """A ball rolls at (vx, vy) across the nap until the integral of ds = dt/|v| is s (inf: to rest): time, displacement and velocity then.
 
     In s the motion is linear: v_x falls as exp(-decel s), p = (|v| + v_y)/2 as exp(-(decel - nap) s) and m = (|v| - v_y)/2 as
     exp(-(decel + nap) s). Time is the integral of |v| = p + m, x that of v_x (p + m), y that of v_y (p + m) = p^2 - m^2.
@@ -66,7 +66,7 @@ def _bent(vx, vy, s, decel, nap):
 
 @kernel
 def _piece(vx, vy, decel, nap):
-    """How long, as s of ``_bent``, one piece may be that starts at (vx, vy); inf: straight to rest.
+    """The length, as s of ``_bent``, of a piece that starts at velocity (vx, vy); inf: it is straight, to rest.
 
     A piece that takes the share b c of the speed, b = decel - |nap|, strays from the path by decel |nap v_x| |v| c^3 / 40 if short, and
     by at most 1/10 of that if not (computed: tests/physics/test_nap.py).
@@ -83,7 +83,7 @@ def _roll_on_nap(motion, state, i, vx, vy, decel, nap):
     s = _piece(vx, vy, decel, nap)
     T, x, y, _, _ = _bent(vx, vy, s, decel, nap)
     state[i] = BEND
-    if s == inf:  # almost or wholly straight: right to the place where it stops
+    if s == inf:  # almost or wholly straight: one piece to the place where it stops
         state[i] = ROLL
         vx, vy = 2.0 * x / T, 2.0 * y / T
     motion[i, VX], motion[i, VY] = vx, vy
@@ -153,7 +153,8 @@ def evaluate(motion, state, i, t, phys):
 def next_phase(motion, state, i, phys):
     """Ball i has come to the end of its phase (T_END): slide -> roll or rest, bend -> bend or roll, roll -> rest.
 
-    The new phase starts exactly rolling."""
+    The new phase starts exactly rolling.
+    """
     t = motion[i, T_END]
     (x, y), (vx, vy), (_wx, _wy, wz) = evaluate(motion, state, i, t, phys)
     if state[i] == SLIDE:

@@ -2,7 +2,8 @@
 meaning.
 
 They are indices, not tunables: freezing them into a kernel is safe. Kernels read single numbers by them; a row, or a tuple of its
-numbers, is not made (see ``detection.may_meet``)."""
+numbers, is not made (see ``detection.may_meet``).
+"""
 
 NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL, NOSE_LOW, NOSE_HIGH = range(5)
 AXIS_X, AXIS_Y = 0.0, 1.0

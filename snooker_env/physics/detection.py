@@ -2,10 +2,10 @@
 
 Relative position over a phase is c(x) = c0 + c1 x + c2 x^2. A contact is the first fall of |c| through a distance d.
 
-Contact at gap zero. Two bodies that touch (gap below TOUCH) and close faster than CREEP meet at once. If they close more slowly,
-stand still, or part, the next contact is the fall of the gap through -SKIN (if it is there already: at once): bodies pressed together by
-friction from rest gain a closing speed before they meet, instead of meeting without end at speed zero, and bodies that part do not meet
-again by rounding.
+Bodies in touch. Two bodies whose gap is below TOUCH and which close faster than CREEP meet at once. If they close more slowly, stand still,
+or part, their next contact is where the gap falls through -SKIN (at once if it is there already). So bodies that friction presses together
+from rest gain a closing speed before they meet, and do not meet without end at speed zero; and bodies that part do not meet again because
+of rounding.
 """
 
 from math import inf, sqrt
@@ -35,7 +35,7 @@ from .roots import quadratic_crossing, quartic_crossing
 
 TOUCH = 1e-10  # m
 SKIN = 5e-10  # m; overlap stays under the 1e-9 that the tests allow
-_DEEP = SKIN * (1.0 - 1e-6)  # from here on an overlap is SKIN, but for rounding
+_DEEP = SKIN * (1.0 - 1e-6)  # an overlap of this or more is SKIN, up to rounding
 _MARGIN = 1e-9  # m; bodies nearer than this to a path may touch it
 STILL = 1e-12  # m/s; rounding may leave this much of a closing speed after a meeting
 CREEP = 5e-5  # m/s; the speed gained over SKIN at the largest relative acceleration on cloth, about 2 mu_s g
@@ -72,16 +72,16 @@ def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
 
 @kernel
 def _rolls_onto(dx, dy, vx, vy, ax, ay, d):
-    """How long until a ball rolling at v, slowed by a, meets a still one at (dx, dy) from it: a straight line, a chord, a quadratic."""
+    """How long until a ball that rolls at v, with deceleration a along its path, meets a still one at (dx, dy) from it; inf if never."""
     speed2 = vx * vx + vy * vy
     along, across = dx * vx + dy * vy, dx * vy - dy * vx  # times the speed
     half = d * d * speed2 - across * across
     if along <= 0.0 or half <= 0.0:
         return inf
     speed = sqrt(speed2)
-    way = (dx * dx + dy * dy - d * d) * speed / (along + sqrt(half))  # to the contact
-    left = speed2 - 2.0 * way * sqrt(ax * ax + ay * ay)
-    return 2.0 * way / (speed + sqrt(left)) if left >= 0.0 else inf
+    distance = (dx * dx + dy * dy - d * d) * speed / (along + sqrt(half))  # along the straight path to the contact
+    left = speed2 - 2.0 * distance * sqrt(ax * ax + ay * ay)  # the square of its speed there
+    return 2.0 * distance / (speed + sqrt(left)) if left >= 0.0 else inf
 
 
 @kernel
@@ -193,7 +193,7 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
         lo_x, hi_x = extent(x0, x1, motion[i, AX], best)
         lo_y, hi_y = extent(y0, y1, motion[i, AY], best)
         lo_x, hi_x, lo_y, hi_y = lo_x - _MARGIN, hi_x + _MARGIN, lo_y - _MARGIN, hi_y + _MARGIN
-    # one limit for all falls, then one for all jaws: what is found for one of them does not hang on which comes before it in the list
+    # one limit for all falls, then one for all jaws: so what is found for one does not depend on the order of the list
     T = min(T, best)
     for k in range(falls.shape[0]):
         if _apart(lo_x, hi_x, lo_y, hi_y, falls[k, FALL_X], falls[k, FALL_Y], falls[k, FALL_RADIUS]):

@@ -2,12 +2,6 @@
 
 Predictions are kept: a ball's contacts stand as long as no event changes its motion. Ties are decided by (time, kind, ball, partner),
 kinds in the order of ``EventKind``. Nothing is allocated inside the loop.
-
-Lasting contact. A spin may hold a ball against another one, or against a cushion. The cloth takes up each bounce, so the ball would
-bounce ever faster and lower, without end. Therefore no impact leaves a pair parting slower than ``PART``. If the pair closes faster than
-that, its restitution is raised as far as this takes. If it closes more slowly, the impact is without friction, and takes the energy that
-is missing from the spin of the balls, as the rubbing would that it stands for. A lasting contact is then a row of hops of about a
-micrometre, a millisecond each; energy never rises.
 """
 
 from math import inf, sqrt
@@ -22,64 +16,10 @@ from .columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_SIDE
 from .detection import TOUCH, boundary_event, clear_box, may_meet, pair_time
 from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
-from .impact.contact import collide_balls, collide_cushion, cushion_restitution
+from .impact.contact import collide_balls, collide_cushion
 from .impact.polynomial import WORK
-from .parameters import P_E_B, P_E_J, P_R, P_SIN, P_SPIN
-
-PART = 2e-3  # m/s; below what a shot can show: a ball at this speed rolls 16 micrometres
-
-
-@kernel
-def _hop(closing, spin_energy):
-    """A slow contact: the parting speed it gets and the factor left on the spins that pay for it.
-
-    Energies per unit mass of the moving mass of the contact: closing^2 / 2 before, parting^2 / 2 after."""
-    closing = max(closing, 0.0)
-    missing = min(0.5 * (PART * PART - closing * closing), 0.5 * spin_energy)
-    if missing <= 0.0:
-        return closing, 1.0
-    return sqrt(closing * closing + 2.0 * missing) * (1.0 - 1e-12), sqrt(1.0 - missing / spin_energy)
-
-
-@kernel
-def _spin_energy(w, R):
-    """(1/5) R^2 w^2, per unit mass."""
-    return 0.2 * R * R * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
-
-
-@kernel
-def _scaled(w, k):
-    return w[0] * k, w[1] * k, w[2] * k
-
-
-@inlined
-def _meet(v1, w1, v2, w2, nx, ny, world, series):
-    """Ball-ball impact inside a shot: ``collide_balls`` or, below ``PART``, a hop; the vertical velocity is dropped (as the paper does)."""
-    phys = world.phys
-    closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
-    if closing <= PART:
-        # two equal balls: the contact's moving mass is M/2, so the spin energy counts double
-        parting, k = _hop(closing, 2.0 * (_spin_energy(w1, phys[P_R]) + _spin_energy(w2, phys[P_R])))
-        dv = 0.5 * (closing + parting)
-        return (v1[0] - dv * nx, v1[1] - dv * ny), _scaled(w1, k), (v2[0] + dv * nx, v2[1] + dv * ny), _scaled(w2, k), True
-    e = max(phys[P_E_B], PART / closing)
-    v1, v2 = (v1[0], v1[1], 0.0), (v2[0], v2[1], 0.0)
-    a, wa, b, wb, solved = collide_balls(v1, w1, v2, w2, nx, ny, phys, e, world.fidelity, world.n_steps, series)
-    return (a[0], a[1]), wa, (b[0], b[1]), wb, solved
-
-
-@inlined
-def _rebound(v, w, nx, ny, jaw, world, series):
-    """Impact with a nose or a jaw inside a shot, by the same rules; (nx, ny) points into the cushion."""
-    phys = world.phys
-    closing = v[0] * nx + v[1] * ny
-    if closing <= PART:
-        parting, k = _hop(closing, _spin_energy(w, phys[P_R]))
-        dv = closing + parting
-        return (v[0] - dv * nx, v[1] - dv * ny), _scaled(w, k), True
-    e = max(phys[P_E_J] if jaw else cushion_restitution(closing, phys), PART / closing)
-    a, wa, solved = collide_cushion((v[0], v[1], 0.0), w, nx, ny, phys, e, world.fidelity, world.n_steps, series)
-    return (a[0], a[1]), wa, solved
+from .meetings import meet, rebound
+from .parameters import P_R, P_SIN, P_SPIN
 
 
 @kernel
@@ -237,7 +177,7 @@ def _balls_meet(paths, i, j, t, world, series):
     r2, v2, w2 = cloth.evaluate(motion, state, j, t, phys)
     nx, ny = r2[0] - r1[0], r2[1] - r1[1]
     d = sqrt(nx * nx + ny * ny)
-    v1, w1, v2, w2, solved = _meet(v1, w1, v2, w2, nx / d, ny / d, world, series)
+    v1, w1, v2, w2, solved = meet(v1, w1, v2, w2, nx / d, ny / d, world, series)
     _begin_again(paths, i, t, r1, v1, w1, world)
     _begin_again(paths, j, t, r2, v2, w2, world)
     return solved
@@ -254,7 +194,7 @@ def _meets_boundary(paths, i, j, t, kind, world, series):
         nx, ny = jaws[j, JAW_X] - r[0], jaws[j, JAW_Y] - r[1]
         d = sqrt(nx * nx + ny * ny)
         nx, ny = nx / d, ny / d
-    v, w, solved = _rebound(v, w, nx, ny, kind == events.JAW, world, series)
+    v, w, solved = rebound(v, w, nx, ny, kind == events.JAW, world, series)
     _begin(paths, i, t, r, v, w, world.phys)
     return solved
 

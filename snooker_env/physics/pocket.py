@@ -1,7 +1,7 @@
 """What becomes of a ball that goes over the edge of a pocket? It flies, falls, may strike a jaw or the edge, and is lost or comes back.
 
-A slow ball is lost where its centre crosses the edge. A fast one flies on: it meets the jaw beyond before it has fallen, and may bounce
-back on to the bed. Most balls have no jaw on their way and are lost at the edge at once; the others are followed here.
+A slow ball is lost where its centre crosses the edge. A fast one flies on, may meet the jaw beyond before it has fallen, and may bounce
+back on to the bed. Most balls have no jaw on their way and count as lost at the edge at once; the others are followed here.
 
 World frame; z is the drop of the centre below the height at which it rolls [m], u its rate [m/s]. In flight no cloth acts.
 
@@ -12,8 +12,8 @@ World frame; z is the drop of the centre below the height at which it rolls [m],
   sin(phi) = sin_theta + z/R. Nothing presses the ball from below, so this is the impact of a free sphere with a fixed body, in closed form:
   p = (1 + e_j) times the closing speed; friction min(mu_c p, 2/7 of the slip) against the slip at the contact. The nose is above the
   centre and drives the ball down.
-* It is lost when no jaw's arc is ahead and its line leaves the fall on the side away from where it came in; when it is below the noses, at
-  z = (1 - sin_theta) R, where the edge, too, sends it inwards; or when it touches the throat behind a jaw's arc.
+* The ball is lost in three cases: no jaw's arc is ahead, and its line leaves the fall on the side away from where it came in; it is
+  below the noses, at z = (1 - sin_theta) R, where the edge, too, pushes it inwards; or it touches the throat behind a jaw's arc.
 
 Balls meet each other in the plane, whatever their drop. ``SLOW``, ``SOFT`` and ``STEP`` are for snooker's balls under gravity.
 
@@ -36,12 +36,12 @@ SLOW = 0.4
 SOFT = 0.05
 """Closing speed [m/s] below which it bounces neither there nor on a jaw, but stays in touch."""
 STRIDE, STEP = 4e-4, 4e-4
-"""A step of the walk is so long [m] at the ball's speed, and never longer than that [s]. Measured: a quarter of both changes no window by
-more than 1.1 mm of its width, most by 0.3 mm."""
+"""A step is as long as the ball takes for this distance [m], and at most this long [s]. Measured: a quarter of both changes no window of a
+pocket (``benchmarks.pockets``) by more than 1.1 mm of its width, most by 0.3 mm."""
 SHORTEST = 1e-9
 """No leg is shorter [s]: a jaw may be met right at the edge."""
 _MOST_STEPS = 10_000
-"""A ball that hangs in the mouth for so many steps, some seconds, is counted as lost: wedged in a throat narrower than a ball."""
+"""A ball that stays in the mouth for so many steps, some seconds, counts as lost: it is wedged in a throat narrower than a ball."""
 
 
 @kernel

@@ -62,7 +62,7 @@ class Table:
     bounds: np.ndarray = field(init=False, repr=False)
     """(2, 2) [m] between which lines the balls lie: of x and of y the levels of the outermost noses, infinite where there is none."""
     _narrowest: tuple[float, int, int] = field(init=False, repr=False)
-    _reach: np.ndarray = field(init=False, repr=False)
+    _reaches: dict[float, np.ndarray] = field(init=False, repr=False)
 
     def __post_init__(self):
         if not isinstance(self.name, str):
@@ -81,8 +81,7 @@ class Table:
         bounds.setflags(write=False)
         object.__setattr__(self, "bounds", bounds)
         object.__setattr__(self, "_narrowest", _narrowest(self.noses))
-        past = max(MOUTH, _deepest(self.jaws, self.falls, bounds, self.ball_radius))
-        object.__setattr__(self, "_reach", bounds + np.array([-past, past]))
+        object.__setattr__(self, "_reaches", {})
 
     @classmethod
     def preset(cls, name="match"):
@@ -174,11 +173,18 @@ class Table:
             return Table.of, (None,)
         return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
 
+    def _reach(self, R):
+        """(2, 2) the bounds, wider by as much as a ball of radius R may lie past them in a pocket's mouth; kept for each radius."""
+        if R not in self._reaches:
+            past = max(MOUTH, _deepest(self.jaws, self.falls, self.bounds, R))
+            self._reaches[R] = self.bounds + np.array([-past, past])
+        return self._reaches[R]
+
     def unfit(self, positions, R):
         """Which of the layouts (b, n, 2), all balls on the table, are not sound here: their indices, in order."""
         here, found, first = np.ones(positions.shape[:2], bool), [], 0
         while True:
-            k, _, fault, _ = _first_fault(positions[first:], here[first:], self._reach, self.noses, self.jaws, self.falls, float(R))
+            k, _, fault, _ = _first_fault(positions[first:], here[first:], self._reach(R), self.noses, self.jaws, self.falls, float(R))
             if fault == _SOUND:
                 return found
             first += k + 1
@@ -203,7 +209,7 @@ class Table:
         if width - 2 * R < PLAY:  # it would bounce between them without end in no time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
             raise refuse_what("table.noses", f"{pair[0]} and {pair[1]}", what)
-        k, i, fault, j = _first_fault(places, here, self._reach, self.noses, self.jaws, self.falls, float(R))
+        k, i, fault, j = _first_fault(places, here, self._reach(R), self.noses, self.jaws, self.falls, float(R))
         if fault == _SOUND:
             return
         field = f"{field}[{k}]" if many else field
@@ -271,9 +277,9 @@ def _bounds(noses):
 
 
 def _deepest(jaws, falls, bounds, R):
-    """How far past the line of the noses [m] a ball of radius R can lie between a jaw and the fall, and a little more; 0 if not known."""
+    """How far past the line of the noses [m] a ball of radius R can lie between a jaw and the fall, and a little more."""
     deepest = 0.0
-    for x, y, edge in falls if R else ():
+    for x, y, edge in falls:
         for jx, jy, radius, ux, uy, cos_half in jaws:
             # where the ball's centre is on the fall's edge and the ball at the jaw: two circles cross
             dx, dy, reach = jx - x, jy - y, radius + R

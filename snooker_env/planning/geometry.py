@@ -149,7 +149,8 @@ def obstructions(positions: Any, rows: ArrayLike, starts: ArrayLike, ends: Array
     _obstructions(at.positions, at.on_table, which, a, b, 2.0 * BALL_RADIUS * (1.0 - 1e-9), out)
     if left_out.size:
         each = np.broadcast_to(left_out, (n, left_out.shape[-1]))
-        integer("ignore", int(each.min()), 0, N_BALLS - 1), integer("ignore", int(each.max()), 0, N_BALLS - 1)
+        for ball in (each.min(), each.max()):
+            integer("ignore", int(ball), 0, N_BALLS - 1)
         out[np.arange(n)[:, None], each] = False
     return out
 

@@ -40,7 +40,7 @@ ALLOWED = {
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"envs"},
     "_warmup": {"_jit", "_notices", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {"geometry", "physics", "simulation", "planning", "envs", "match", "_warmup", "_registration"},
+    "__init__": {"geometry", "physics", "simulation", "tasks", "planning", "envs", "match", "_warmup", "_registration"},
 }
 OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}

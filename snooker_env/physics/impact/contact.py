@@ -123,7 +123,8 @@ def _add(a, b):
 def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, series):
     """Impact of two equal balls, (nx, ny) the unit vector from ball 1 to ball 2 -> v1, w1, v2, w2, solved.
 
-    [MJP14] 2.1 to 2.4. ``e``: restitution to use. The vertical velocity of the lifted ball is part of the result.
+    [MJP14] 2.1 to 2.4. ``e``: the restitution; ``series``: work space, ``polynomial.WORK`` numbers. The vertical velocity of the lifted
+    ball is part of the result.
     """
     if not (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny > _NO_CLOSING:
         return v1, w1, v2, w2, True

@@ -123,7 +123,8 @@ def _creep_rates(x, near, cloth, problem):
 
     The slip keeps the direction e that the drive gives it: a' = kappa e with kappa >= 0 and F' = -mu e. So (kappa + mu k_i) e_i = q_i,
     where q, the drive without A's own friction, holds the cloth's friction, which depends on e through the load: e is found by iteration,
-    kappa in each round by |e| = 1."""
+    kappa in each round by |e| = 1.
+    """
     contact, mu_s = problem.contact, problem.mu_s
     slip = slips_after(x, problem.start, contact)
     mu = friction_coefficient(hypot(slip.a1, slip.a2), problem.law)

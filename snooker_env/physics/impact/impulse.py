@@ -20,7 +20,8 @@ like a power of |a|, is approached exponentially and is no singularity. While bo
 Taylor series spans most of an impact or all of it (``taylor.py``). The rest is rare in play: a contact that sticks or creeps, a ball that
 lifts, a cloth that may hold the ball. It is integrated by Runge-Kutta steps (``dormand_prince.py``). Either method leaves a polynomial of
 its step, in which the ends are located. ``transitions.py`` says what the contacts do next. All speeds are divided by the closing speed
-before the impact, so tolerances are relative."""
+before the impact, so tolerances are relative.
+"""
 
 from math import hypot, sqrt
 from typing import NamedTuple
@@ -114,7 +115,8 @@ class Outlook(NamedTuple):
     p_full: float
     """Its normal impulse, a guess that overshoots a little."""
     h_slip: float
-    """The longest Runge-Kutta step while A slips."""
+    """The longest Runge-Kutta step while A slips. Past three times this the method is unstable on a' = -k1 mu a, and a slip that should die
+    would hover at the size of the tolerance."""
     mu: float
     """The largest coefficient at A."""
     may_grip: bool
@@ -125,6 +127,7 @@ class Outlook(NamedTuple):
 
 @inlined
 def _outlook(problem):
+    """What the constants of the impact say."""
     contact = problem.contact
     mu = friction_coefficient(0.0, problem.law)
     p_full = -_OVERSHOOT * (1.0 + problem.e) / contact.d_n
@@ -137,7 +140,7 @@ def _outlook(problem):
 
 @kernel
 def _stick_or_creep(x, near, cloth, problem):
-    """The state of contact A without slip."""
+    """The state of contact A where its slip is zero."""
     return STICK if held(x, near, cloth, problem) else CREEP
 
 

@@ -17,7 +17,8 @@ Moore, Interval Analysis (1966), and Jorba & Zou, Experimental Mathematics 14 (2
 
 A cloth slip that starts from zero is no singularity either: b = t B e, with e_0 the direction of what drives it, and B_0 > 0. Then
 b_(k+1) stands in place of b_k. It holds e_k through the friction, G'_k = -mu_s (N_0 e_k + [N e]_k + N_k e_0), and that term goes to the
-other side: the factor of e_k becomes B_0 + K_CLOTH mu_s N_0 / (k + 1)."""
+other side: the factor of e_k becomes B_0 + K_CLOTH mu_s N_0 / (k + 1).
+"""
 
 from math import exp, log, sqrt
 

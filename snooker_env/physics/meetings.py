@@ -1,0 +1,70 @@
+"""How do bodies part that meet inside a shot? As the impact says; or by a hop, if they close so slowly that they would never part.
+
+Lasting contact. A spin may hold a ball against another one, or against a cushion. The cloth takes up each bounce, so the ball would
+bounce ever faster and lower, without end. Therefore no impact leaves a pair parting slower than ``PART``. If the pair closes faster than
+that, its restitution is raised as far as this takes. If it closes more slowly, the impact is without friction, and takes the energy that
+is missing from the spin of the balls, as the rubbing would that it stands for. A lasting contact is then a row of hops of about a
+micrometre, a millisecond each; energy never rises.
+"""
+
+from math import sqrt
+
+from .._jit import inlined, kernel
+from .impact.contact import collide_balls, collide_cushion, cushion_restitution
+from .parameters import P_E_B, P_E_J, P_R
+
+PART = 2e-3  # m/s; below what a shot can show: a ball at this speed rolls 16 micrometres
+
+
+@kernel
+def _hop(closing, spin_energy):
+    """A slow contact: the parting speed it gets and the factor left on the spins that pay for it.
+
+    Energies per unit mass of the moving mass of the contact: closing^2 / 2 before, parting^2 / 2 after.
+    """
+    closing = max(closing, 0.0)
+    missing = min(0.5 * (PART * PART - closing * closing), 0.5 * spin_energy)
+    if missing <= 0.0:
+        return closing, 1.0
+    return sqrt(closing * closing + 2.0 * missing) * (1.0 - 1e-12), sqrt(1.0 - missing / spin_energy)
+
+
+@kernel
+def _spin_energy(w, R):
+    """(1/5) R^2 w^2, per unit mass."""
+    return 0.2 * R * R * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+
+
+@kernel
+def _scaled(w, k):
+    return w[0] * k, w[1] * k, w[2] * k
+
+
+@inlined
+def meet(v1, w1, v2, w2, nx, ny, world, series):
+    """Ball-ball impact inside a shot: ``collide_balls`` or, below ``PART``, a hop; the vertical velocity is dropped (as the paper does)."""
+    phys = world.phys
+    closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
+    if closing <= PART:
+        # two equal balls: the contact's moving mass is M/2, so the spin energy counts double
+        parting, k = _hop(closing, 2.0 * (_spin_energy(w1, phys[P_R]) + _spin_energy(w2, phys[P_R])))
+        dv = 0.5 * (closing + parting)
+        return (v1[0] - dv * nx, v1[1] - dv * ny), _scaled(w1, k), (v2[0] + dv * nx, v2[1] + dv * ny), _scaled(w2, k), True
+    e = max(phys[P_E_B], PART / closing)
+    v1, v2 = (v1[0], v1[1], 0.0), (v2[0], v2[1], 0.0)
+    a, wa, b, wb, solved = collide_balls(v1, w1, v2, w2, nx, ny, phys, e, world.fidelity, world.n_steps, series)
+    return (a[0], a[1]), wa, (b[0], b[1]), wb, solved
+
+
+@inlined
+def rebound(v, w, nx, ny, jaw, world, series):
+    """Impact with a nose or a jaw inside a shot, by the same rules; (nx, ny) points into the cushion."""
+    phys = world.phys
+    closing = v[0] * nx + v[1] * ny
+    if closing <= PART:
+        parting, k = _hop(closing, _spin_energy(w, phys[P_R]))
+        dv = closing + parting
+        return (v[0] - dv * nx, v[1] - dv * ny), _scaled(w, k), True
+    e = max(phys[P_E_J] if jaw else cushion_restitution(closing, phys), PART / closing)
+    a, wa, solved = collide_cushion((v[0], v[1], 0.0), w, nx, ny, phys, e, world.fidelity, world.n_steps, series)
+    return (a[0], a[1]), wa, solved
