@@ -2,7 +2,7 @@
 
 from ._jit import ENTRIES
 from ._notices import warming_up
-from .impacts import collide_balls, collide_cushion
+from .impacts import collide_balls, collide_cushion, strike
 from .simulation import simulate
 
 
@@ -17,8 +17,12 @@ def warmup() -> None:
     None
     """
     from .envs.snooker import SnookerEnv
+    from .game.apply_ruling import settle_table
     from .game.balls import REDS_MASK
+    from .game.in_hand import place_cue
+    from .game.paths import paths
     from .game.pots import pots
+    from .game.referee import Situation, Stroke, judge
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
     from .planning import Planner, Positions, clear_paths, obstructions
@@ -27,6 +31,7 @@ def warmup() -> None:
 
     with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
         simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)]).at(0.1)
+        strike(1.0, 0.0)
         collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
         collide_cushion((1, 0, 0), (0, 0, 0), (1, 0, 0))
         env = SnookerEnv(action="discrete")
@@ -38,12 +43,18 @@ def warmup() -> None:
         for seed in range(3):  # one of them with the opponent's break
             env.reset(seed=seed)
             env.step([0.0] * 7)
-        env = SnookerEnv(task="frame", opponent="random")
-        env.reset(seed=0)
-        env.step([0.0] * 4)
+        for opponent, action in ((lambda observation, rng: [0.0] * 4, [0.0] * 4), ("random", 0), ("random", [0.0] * 4)):
+            env = SnookerEnv(task="frame", opponent=opponent, action="discrete" if action == 0 else "box")
+            for seed in range(3):
+                env.reset(seed=seed)
+                env.step(action)
         pots(env.positions, env.on_table, REDS_MASK)
         Actions("absolute", False, False, env.physics).shot([0.0] * 4, env.positions, env.on_table, REDS_MASK)
         line(env.positions, env.on_table, REDS_MASK)
+        paths(env.positions, env.on_table, REDS_MASK)
+        place_cue(env.positions, env.on_table, 0.0, 0.0)
+        settle_table(env.positions, env.on_table, Situation(), Stroke())
+        judge(Situation(), Stroke())
         is_snookered(env.positions, env.on_table, REDS_MASK)
         spot_colours(env.positions, env.on_table, 0)
         env.reset(seed=0)

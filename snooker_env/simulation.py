@@ -9,6 +9,7 @@ import numpy as np
 from ._check import array, flags, integer, refuse_what
 from ._types import Batches, Bools, Fidelity, FlagRows, Flags, Floats, Solver, Vectors
 from .physics import cloth, engine
+from .physics.arrays import Balls, Ends, Log, World
 from .physics.events import EventKind, Status
 from .physics.impact import contact
 from .physics.parameters import FASTEST, MOST_SPIN, Physics, PhysicsLike
@@ -223,11 +224,11 @@ def _run(state, physics, table, fidelity, max_events, log_size, path_size, threa
         np.zeros((b, n), np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b),
         np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT)),
     )  # fmt: skip
-    world = physics.pack(), table.noses, table.jaws, table.falls, *fidelity
-    log, outcome = (out.event_time, out.event_what, out.segments), (out.status, out.n_events, out.n_segments, out.duration)
+    balls, world = Balls(*state, out.potted), World(physics.pack(), table.noses, table.jaws, table.falls, *fidelity)
+    log, ends = Log(out.event_time, out.event_what, out.segments), Ends(out.status, out.n_events, out.n_segments, out.duration)
 
     def run(first, last):
-        engine.run_batch(*state, out.potted, *world, max_events, *log, *outcome, first, last)
+        engine.run_batch(*balls, *world, max_events, *log, *ends, first, last)
 
     threads = min(threads, b)
     if threads <= 1:

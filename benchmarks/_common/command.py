@@ -39,7 +39,9 @@ class Command(argparse.ArgumentParser):
         if pictures:
             self.add_argument("--no-pictures", action="store_true", help="draw nothing")
         if seed is not None:
-            self.add_argument("--seed", type=at_least(0), default=seed, metavar="N", help=f"seed of everything that is drawn at random [{seed}]")
+            self.add_argument(
+                "--seed", type=at_least(0), default=seed, metavar="N", help=f"seed of everything that is drawn at random [{seed}]"
+            )
 
     def options(self, argv=None):
         """The options, once it is certain that the files can be written. ``folder``: where they go; ``pictures``: whether any are drawn."""

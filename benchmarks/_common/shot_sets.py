@@ -7,7 +7,6 @@ centred, some rattle and some miss.
 
 from dataclasses import dataclass
 from math import radians, sqrt
-
 from typing import Any
 
 import numpy as np

@@ -64,5 +64,5 @@ def load():
     texts["physics/impact/contact.py"] += _ADDED
     if texts["physics/engine.py"].count(_FLIES) != 1:
         raise RuntimeError(f"engine.py has changed: {_FLIES!r} is not in it once")
-    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES} and world.fidelity != {AT_ONCE}")
+    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES} and fidelity != {AT_ONCE}")
     return package_copies.load("snooker_env_variants", texts, ["simulation"])[0]

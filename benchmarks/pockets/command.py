@@ -10,6 +10,8 @@ comes out again has missed. "before": the ball drops at once where its centre cr
 compiles a copy of the package for that (``_common/variants.py``).
 """
 
+from typing import Literal
+
 import numpy as np
 
 import snooker_env as sn

@@ -25,7 +25,7 @@ STEP, SPAN = 1e-7, 10e-3
 
 
 @dataclass(frozen=True)
-class Law:
+class ContactLaw:
     """A contact law F = k d^p + c d^q d'."""
 
     p: float
@@ -39,9 +39,9 @@ def contact_time(speed):
 
 
 LAWS = {
-    "Hertz": Law(1.5, 0.25, HERTZ),
-    "Hertz, q = 1/2": Law(1.5, 0.5, HERTZ),
-    "linear": Law(1.0, 0.0, REDUCED * (pi / contact_time(5.0)) ** 2),
+    "Hertz": ContactLaw(1.5, 0.25, HERTZ),
+    "Hertz, q = 1/2": ContactLaw(1.5, 0.5, HERTZ),
+    "linear": ContactLaw(1.0, 0.0, REDUCED * (pi / contact_time(5.0)) ** 2),
 }
 
 
@@ -168,6 +168,6 @@ def micro_steps(r, v, w, p, q, k, c, g, mu_s, friction, dt, steps):
 def compliant(r, v, w, physics, law=LAWS["Hertz"], dt=STEP, span=SPAN, stiffer=1.0):
     """Balls after ``span`` seconds of micro-steps: r (n, 2), v (n, 3), w (n, 3), energy lost (4,) [J], greatest overlap [m]."""
     r, v, w = r.copy(), np.column_stack([v, np.zeros(len(v))]), w.copy()
-    law = Law(law.p, law.q, law.k * stiffer)
+    law = ContactLaw(law.p, law.q, law.k * stiffer)
     constants = law.p, law.q, law.k, damping(law, physics.e_b), physics.g, physics.mu_s, coulomb.Law(*physics.friction_law)
     return r, v, w, *micro_steps(r, v, w, *constants, dt, round(span / dt))

@@ -1,6 +1,6 @@
-"""Which arrays does a shot work on? Named and grouped for the kernels; the last two groups only inside the engine.
+"""Which arrays does a shot work on? Named and grouped: what ``engine.run`` takes; the last two groups are its work space.
 
-Kernels pass these tuples on. A kernel that Python calls takes the arrays one by one, see ``engine.run_batch``.
+Kernels below it take arrays one by one, and so does the one that Python calls: see ``engine.run`` and ``engine.run_batch`` for the cost.
 """
 
 from typing import NamedTuple
@@ -47,7 +47,7 @@ class Log(NamedTuple):
     """(k, cloth.SEGMENT): the paths."""
 
 
-class Outcome(NamedTuple):
+class Ends(NamedTuple):
     """How each of b shots ended; (b,) each."""
 
     status: np.ndarray
@@ -57,7 +57,7 @@ class Outcome(NamedTuple):
     """[s]"""
 
 
-class Paths(NamedTuple):
+class Motions(NamedTuple):
     """How each ball moves now."""
 
     motion: np.ndarray

@@ -9,7 +9,6 @@ of rounding.
 """
 
 from math import inf, sqrt
-from typing import NamedTuple
 
 from .._jit import kernel
 from . import events
@@ -119,18 +118,9 @@ def _apart(lo_x, hi_x, lo_y, hi_y, x, y, r):
     return dx * dx + dy * dy > r * r
 
 
-class Box(NamedTuple):
-    """A rectangle in the plane of the balls' centres [m]."""
-
-    lo_x: float
-    hi_x: float
-    lo_y: float
-    hi_y: float
-
-
 @kernel
 def clear_box(noses, jaws, falls, R):
-    """Where a ball's centre meets no nose, jaw or fall; empty if there is no such rectangle."""
+    """A rectangle (lo_x, hi_x, lo_y, hi_y) in which a ball's centre meets no nose, jaw or fall; empty if there is none."""
     lo_x, hi_x, lo_y, hi_y = -inf, inf, -inf, inf
     for k in range(noses.shape[0]):
         level = noses[k, NOSE_LEVEL] - R
@@ -144,8 +134,8 @@ def clear_box(noses, jaws, falls, R):
     for k in range(falls.shape[0]):
         free = free and _apart(lo_x, hi_x, lo_y, hi_y, falls[k, FALL_X], falls[k, FALL_Y], falls[k, FALL_RADIUS] - _MARGIN)
     if not free:
-        return Box(inf, -inf, inf, -inf)
-    return Box(lo_x, hi_x, lo_y, hi_y)
+        return inf, -inf, inf, -inf
+    return lo_x, hi_x, lo_y, hi_y
 
 
 @kernel
@@ -169,7 +159,8 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
     """
     best, kind, index = inf, events.NONE, -1
     lo_x, hi_x, lo_y, hi_y = motion[i, LO_X] - _MARGIN, motion[i, HI_X] + _MARGIN, motion[i, LO_Y] - _MARGIN, motion[i, HI_Y] + _MARGIN
-    if state[i] == REST or (lo_x > clear.lo_x and hi_x < clear.hi_x and lo_y > clear.lo_y and hi_y < clear.hi_y):
+    clear_lo_x, clear_hi_x, clear_lo_y, clear_hi_y = clear
+    if state[i] == REST or (lo_x > clear_lo_x and hi_x < clear_hi_x and lo_y > clear_lo_y and hi_y < clear_hi_y):
         return best, kind, index
     T = motion[i, T_END] - motion[i, T0]
     x0, y0, x1, y1, x2, y2 = motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY], 0.5 * motion[i, AX], 0.5 * motion[i, AY]

@@ -10,7 +10,7 @@ import numpy as np
 
 from .._jit import entry, inlined, kernel
 from . import cloth, events, pocket
-from .arrays import END_VX, END_VY, FLIGHT, IN_X, IN_Y, INDEX, KIND, POCKET, U0, U1, Z0, Z1, Balls, Forecast, Log, Paths, World
+from .arrays import END_VX, END_VY, FLIGHT, IN_X, IN_Y, INDEX, KIND, POCKET, U0, U1, Z0, Z1, Balls, Forecast, Log, Motions, World
 from .cloth import AX, AY, FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, VX, VY, WX, WY, WZ, X, Y
 from .columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_SIDE
 from .detection import TOUCH, boundary_event, clear_box, may_meet, pair_time
@@ -23,18 +23,15 @@ from .parameters import P_R, P_SIN, P_SPIN
 
 
 @kernel
-def _begin(paths, i, t, r, v, w, phys):
-    cloth.begin(paths.motion, paths.state, i, t, r[0], r[1], v[0], v[1], w[0], w[1], w[2], phys)
+def _begin(motion, state, i, t, r, v, w, phys):
+    cloth.begin(motion, state, i, t, r[0], r[1], v[0], v[1], w[0], w[1], w[2], phys)
 
 
 @kernel
-def _fly(paths, i, t, x, y, z, vx, vy, u, w, world):
+def _fly(motion, state, flight, i, t, x, y, z, vx, vy, u, w, falls, jaws, phys):
     """Ball i is over a pocket, in the air: write its next leg, a straight line to where something happens to it."""
-    motion, state, flight = paths
     here = int(flight[i, POCKET])
-    end, jaw, T, x1, y1, z1, vx1, vy1, u1 = pocket.fly(
-        x, y, z, vx, vy, u, flight[i, IN_X], flight[i, IN_Y], world.falls, here, world.jaws, world.phys
-    )
+    end, jaw, T, x1, y1, z1, vx1, vy1, u1 = pocket.fly(x, y, z, vx, vy, u, flight[i, IN_X], flight[i, IN_Y], falls, here, jaws, phys)
     state[i] = FALLING
     T = max(T, pocket.SHORTEST)
     motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY] = x, y, (x1 - x) / T, (y1 - y) / T
@@ -48,15 +45,14 @@ def _fly(paths, i, t, x, y, z, vx, vy, u, w, world):
 
 
 @kernel
-def _begin_again(paths, i, t, r, v, w, world):
+def _begin_again(motion, state, flight, i, t, r, v, w, falls, jaws, phys):
     """Ball i has new velocities at time t, after a meeting with another ball: on the bed or on its way down."""
-    motion, state, flight = paths
     if state[i] == FALLING:
         s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
         z, u = flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0]), flight[i, U0] + s * (flight[i, U1] - flight[i, U0])
-        _fly(paths, i, t, r[0], r[1], z, v[0], v[1], u, w, world)
+        _fly(motion, state, flight, i, t, r[0], r[1], z, v[0], v[1], u, w, falls, jaws, phys)
     else:
-        _begin(paths, i, t, r, v, w, world.phys)
+        _begin(motion, state, i, t, r, v, w, phys)
 
 
 @kernel
@@ -71,11 +67,9 @@ def _rescan(pair, best_time, best_ball, i):
 
 
 @kernel
-def _predict(paths, i, t, world, clear, forecast):
+def _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index):
     """Ball i has a new motion at time t: predict all its events, and mend the rows of its partners."""
-    motion, state, flight = paths
-    pair, best_time, best_ball, own_time, own_kind, own_index = forecast
-    n, R = pair.shape[0], world.phys[P_R]
+    n = pair.shape[0]
     still = state[i] == REST
     time, ball = inf, -1
     for j in range(n):
@@ -97,7 +91,7 @@ def _predict(paths, i, t, world, clear, forecast):
     if state[i] == FALLING:
         own_time[i], own_kind[i], own_index[i] = motion[i, T_END], int(flight[i, KIND]), int(flight[i, INDEX])
     elif not still:
-        s, kind, index = boundary_event(motion, state, i, world.noses, world.jaws, world.falls, clear, R)
+        s, kind, index = boundary_event(motion, state, i, noses, jaws, falls, clear, R)
         if s > motion[i, T_END] or kind == events.NONE:
             s, index = motion[i, T_END], -1
             kind = events.STOP if state[i] == cloth.ROLL else events.ROLL if state[i] == cloth.SLIDE else events.BEND
@@ -105,19 +99,16 @@ def _predict(paths, i, t, world, clear, forecast):
 
 
 @kernel
-def _leave(paths, i, x, y, t, forecast):
-    """Ball i is lost at (x, y): no more events for it, and none with it."""
-    pair, best_time, best_ball = forecast.pair, forecast.best_time, forecast.best_ball
-    paths.state[i] = GONE
+def _leave(state, i, pair, best_time, best_ball, own_time):
+    """Ball i is off the table: no more events for it, and none with it."""
+    state[i] = GONE
     n = pair.shape[0]
     for j in range(n):
         pair[i, j] = pair[j, i] = inf
-    best_time[i], best_ball[i], forecast.own_time[i] = inf, -1, inf
+    best_time[i], best_ball[i], own_time[i] = inf, -1, inf
     for j in range(n):
         if best_ball[j] == i:
             _rescan(pair, best_time, best_ball, j)
-    _lie(paths.motion, i, x, y)
-    paths.motion[i, T0], paths.motion[i, T_END] = t, inf
 
 
 @kernel
@@ -154,129 +145,48 @@ def _next_event(best_time, best_ball, own_time, own_kind, own_index):
 
 
 @inlined
-def _set_up(balls, paths, forecast, world):
-    """The balls as they lie, with their velocities, at time 0; nothing is predicted yet."""
-    for i in range(balls.positions.shape[0]):
-        balls.potted[i] = -1
-        forecast.best_time[i], forecast.best_ball[i], forecast.own_time[i] = inf, -1, inf
-        for j in range(balls.positions.shape[0]):
-            forecast.pair[i, j] = inf
-        r, v, w = balls.positions, balls.velocities, balls.spins
-        if balls.on_table[i]:
-            _begin(paths, i, 0.0, (r[i, 0], r[i, 1]), (v[i, 0], v[i, 1]), (w[i, 0], w[i, 1], w[i, 2]), world.phys)
-        else:
-            paths.state[i] = GONE
-            _lie(paths.motion, i, r[i, 0], r[i, 1])
-
-
-@inlined
-def _balls_meet(paths, i, j, t, world, series):
-    """Balls i and j touch: their new motions. Was the impact solved?"""
-    motion, state, phys = paths.motion, paths.state, world.phys
-    r1, v1, w1 = cloth.evaluate(motion, state, i, t, phys)
-    r2, v2, w2 = cloth.evaluate(motion, state, j, t, phys)
-    nx, ny = r2[0] - r1[0], r2[1] - r1[1]
-    d = sqrt(nx * nx + ny * ny)
-    v1, w1, v2, w2, solved = meet(v1, w1, v2, w2, nx / d, ny / d, world, series)
-    _begin_again(paths, i, t, r1, v1, w1, world)
-    _begin_again(paths, j, t, r2, v2, w2, world)
-    return solved
-
-
-@inlined
-def _meets_boundary(paths, i, j, t, kind, world, series):
-    """Ball i, on the bed, touches nose or jaw j: its new motion. Was the impact solved?"""
-    noses, jaws = world.noses, world.jaws
-    r, v, w = cloth.evaluate(paths.motion, paths.state, i, t, world.phys)
-    if kind == events.CUSHION:
-        nx, ny = (noses[j, NOSE_SIDE], 0.0) if noses[j, NOSE_AXIS] == AXIS_X else (0.0, noses[j, NOSE_SIDE])
-    else:
-        nx, ny = jaws[j, JAW_X] - r[0], jaws[j, JAW_Y] - r[1]
-        d = sqrt(nx * nx + ny * ny)
-        nx, ny = nx / d, ny / d
-    v, w, solved = rebound(v, w, nx, ny, kind == events.JAW, world, series)
-    _begin(paths, i, t, r, v, w, world.phys)
-    return solved
-
-
-@kernel
-def _drops(paths, i, j, t, world):
-    """Ball i flies over the edge of pocket j."""
-    motion, state, flight = paths
-    r, v, w = cloth.evaluate(motion, state, i, t, world.phys)
-    flight[i, IN_X], flight[i, IN_Y], flight[i, POCKET] = r[0] - world.falls[j, FALL_X], r[1] - world.falls[j, FALL_Y], j
-    _fly(paths, i, t, r[0], r[1], 0.0, v[0], v[1], 0.0, w, world)
-
-
-@kernel
-def _leg_ends(paths, i, j, t, kind, world):
-    """Ball i, in the air, strikes jaw j or comes back."""
-    motion, state, flight = paths
-    r, _, w = cloth.evaluate(motion, state, i, t, world.phys)
-    v, u = (flight[i, END_VX], flight[i, END_VY]), flight[i, U1]
-    if kind == events.JAW:
-        z = flight[i, Z1]
-        _, nx, ny, sin_phi, _ = pocket.jaw_gap(r[0], r[1], z, world.jaws, j, world.phys[P_R], world.phys[P_SIN])
-        vx, vy, u, w = pocket.strike_jaw(v[0], v[1], u, w, nx, ny, sin_phi, world.phys)
-        _fly(paths, i, t, r[0], r[1], z, vx, vy, u, w, world)
-    else:  # back on the bed, which takes its vertical velocity
-        _begin(paths, i, t, r, v, w, world.phys)
-
-
-@kernel
-def _jaw_ahead(paths, i, j, t, world):
-    """Ball i crosses the edge of pocket j: may it meet a jaw before it is lost?"""
-    r, v, _w = cloth.evaluate(paths.motion, paths.state, i, t, world.phys)
-    return pocket.ahead(r[0], r[1], v[0], v[1], world.falls, j, world.jaws, world.phys)[0] < inf
-
-
-@inlined
-def _hand_back(balls, paths, end, at_rest, phys):
-    """The balls as they are at the end; returns when all spin, too, has ended: at rest a ball may still spin on the spot."""
-    motion, state = paths.motion, paths.state
-    for i in range(balls.positions.shape[0]):
-        if state[i] == GONE:
-            balls.positions[i, 0], balls.positions[i, 1] = motion[i, X], motion[i, Y]
-            balls.on_table[i] = False
-        else:
-            r, v, w = cloth.evaluate(motion, state, i, max(end, motion[i, T0]), phys)
-            balls.positions[i, 0], balls.positions[i, 1] = r[0], r[1]
-            balls.velocities[i, 0], balls.velocities[i, 1] = v[0], v[1]
-            balls.spins[i, 0], balls.spins[i, 1], balls.spins[i, 2] = w[0], w[1], w[2]
-            if at_rest and phys[P_SPIN] > 0.0:
-                end = max(end, motion[i, T0] + abs(motion[i, WZ]) / phys[P_SPIN])
-    return end
-
-
-@kernel
 def run(balls, world, max_events, log, paths, forecast, series):
     """One shot to rest, in place. ``paths``, ``forecast`` and ``series`` are work space.
 
     Returns status, number of events, number of segments, duration [s].
 
-    A kernel of its own: inlined into ``run_batch``, which counts references to arrays, each array read from a tuple would be counted, and a
-    shot of two balls takes 4 to 8 % longer (measured). Here the tuples cost under 2 %, the noise of ``benchmarks.speed``.
+    The tuples end here: the kernels that run at every event take the arrays one by one. With tuples all the way down shots took 4 to 7 %
+    longer at "standard" and 6 to 16 % at "fast" (measured in turn, machine code of both from the cache).
     """
-    n = balls.positions.shape[0]
-    motion, state, _flight = paths
-    _pair, best_time, best_ball, own_time, own_kind, own_index = forecast
+    positions, velocities, spins, on_table, potted = balls
+    phys, noses, jaws, falls, fidelity, n_steps = world
     time, what, segments = log
-    clear = clear_box(world.noses, world.jaws, world.falls, world.phys[P_R])
+    motion, state, flight = paths
+    pair, best_time, best_ball, own_time, own_kind, own_index = forecast
+    n = positions.shape[0]
+    R = phys[P_R]
+    clear = clear_box(noses, jaws, falls, R)
     n_segments = n_events = np.int64(0)  # (typed: a literal would have numba compile every callee twice)
-    _set_up(balls, paths, forecast, world)
     for i in range(n):
+        potted[i] = -1
+        best_time[i], best_ball[i], own_time[i] = inf, -1, inf
+        for j in range(n):
+            pair[i, j] = inf
+        if on_table[i]:
+            r, v = (positions[i, 0], positions[i, 1]), (velocities[i, 0], velocities[i, 1])
+            _begin(motion, state, i, 0.0, r, v, (spins[i, 0], spins[i, 1], spins[i, 2]), phys)
+        else:
+            state[i] = GONE
+            _lie(motion, i, positions[i, 0], positions[i, 1])
         n_segments = _record(segments, n_segments, motion, state, i)
     for i in range(n):
         if state[i] > REST:
-            _predict(paths, i, 0.0, world, clear, forecast)
+            _predict(motion, state, flight, i, 0.0, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
     status = events.OK
     end = 0.0
     while True:
         t, kind, i, j = _next_event(best_time, best_ball, own_time, own_kind, own_index)
         if t == inf:
             break
-        if kind == events.POT and state[i] != FALLING and _jaw_ahead(paths, i, j, t, world):
-            kind = np.int64(events.DROP)
+        if kind == events.POT and state[i] != FALLING:
+            r, v, w = cloth.evaluate(motion, state, i, t, phys)
+            if pocket.ahead(r[0], r[1], v[0], v[1], falls, j, jaws, phys)[0] < inf:
+                kind = np.int64(events.DROP)
         if n_events == max_events:
             status = events.TOO_MANY_EVENTS
             break
@@ -288,32 +198,70 @@ def run(balls, world, max_events, log, paths, forecast, series):
             what[n_events, events.LOG_KIND], what[n_events, events.LOG_I], what[n_events, events.LOG_J] = kind, i, j
         n_events += 1
         end = t
-        solved = True
         if kind == events.BALL_BALL:
-            solved = _balls_meet(paths, i, j, t, world, series)
+            r1, v1, w1 = cloth.evaluate(motion, state, i, t, phys)
+            r2, v2, w2 = cloth.evaluate(motion, state, j, t, phys)
+            nx, ny = r2[0] - r1[0], r2[1] - r1[1]
+            d = sqrt(nx * nx + ny * ny)
+            v1, w1, v2, w2, solved = meet(v1, w1, v2, w2, nx / d, ny / d, phys, fidelity, n_steps, series)
+            _begin_again(motion, state, flight, i, t, r1, v1, w1, falls, jaws, phys)
+            _begin_again(motion, state, flight, j, t, r2, v2, w2, falls, jaws, phys)
         elif kind == events.ROLL or kind == events.STOP or kind == events.BEND:
-            cloth.next_phase(motion, state, i, world.phys)
+            cloth.next_phase(motion, state, i, phys)
+            solved = True
         elif kind == events.POT:
-            r, _v, _w = cloth.evaluate(motion, state, i, t, world.phys)
-            balls.potted[i] = j
-            _leave(paths, i, r[0], r[1], t, forecast)
+            r, v, w = cloth.evaluate(motion, state, i, t, phys)
+            potted[i] = j
+            _leave(state, i, pair, best_time, best_ball, own_time)
+            _lie(motion, i, r[0], r[1])
+            motion[i, T0], motion[i, T_END] = t, inf
             n_segments = _record(segments, n_segments, motion, state, i)
             continue
         elif kind == events.DROP:
-            _drops(paths, i, j, t, world)
+            r, v, w = cloth.evaluate(motion, state, i, t, phys)
+            flight[i, IN_X], flight[i, IN_Y], flight[i, POCKET] = r[0] - falls[j, FALL_X], r[1] - falls[j, FALL_Y], j
+            _fly(motion, state, flight, i, t, r[0], r[1], 0.0, v[0], v[1], 0.0, w, falls, jaws, phys)
+            solved = True
         elif state[i] == FALLING:
-            _leg_ends(paths, i, j, t, kind, world)
+            r, _, w = cloth.evaluate(motion, state, i, t, phys)
+            v, u = (flight[i, END_VX], flight[i, END_VY]), flight[i, U1]
+            if kind == events.JAW:
+                z = flight[i, Z1]
+                _, nx, ny, sin_phi, _ = pocket.jaw_gap(r[0], r[1], z, jaws, j, R, phys[P_SIN])
+                vx, vy, u, w = pocket.strike_jaw(v[0], v[1], u, w, nx, ny, sin_phi, phys)
+                _fly(motion, state, flight, i, t, r[0], r[1], z, vx, vy, u, w, falls, jaws, phys)
+            else:  # back on the bed, which takes its vertical velocity
+                _begin(motion, state, i, t, r, v, w, phys)
+            solved = True
         else:
-            solved = _meets_boundary(paths, i, j, t, kind, world, series)
+            r, v, w = cloth.evaluate(motion, state, i, t, phys)
+            if kind == events.CUSHION:
+                nx, ny = (noses[j, NOSE_SIDE], 0.0) if noses[j, NOSE_AXIS] == AXIS_X else (0.0, noses[j, NOSE_SIDE])
+            else:
+                nx, ny = jaws[j, JAW_X] - r[0], jaws[j, JAW_Y] - r[1]
+                d = sqrt(nx * nx + ny * ny)
+                nx, ny = nx / d, ny / d
+            v, w, solved = rebound(v, w, nx, ny, kind == events.JAW, phys, fidelity, n_steps, series)
+            _begin(motion, state, i, t, r, v, w, phys)
         if not solved:
             status = events.IMPACT_UNSOLVED
             break
         n_segments = _record(segments, n_segments, motion, state, i)
-        _predict(paths, i, t, world, clear, forecast)
+        _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
         if kind == events.BALL_BALL:
             n_segments = _record(segments, n_segments, motion, state, j)
-            _predict(paths, j, t, world, clear, forecast)
-    end = _hand_back(balls, paths, end, status == events.OK, world.phys)
+            _predict(motion, state, flight, j, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
+    for i in range(n):
+        if state[i] == GONE:
+            positions[i, 0], positions[i, 1] = motion[i, X], motion[i, Y]
+            on_table[i] = False
+        else:
+            r, v, w = cloth.evaluate(motion, state, i, max(end, motion[i, T0]), phys)
+            positions[i, 0], positions[i, 1] = r[0], r[1]
+            velocities[i, 0], velocities[i, 1] = v[0], v[1]
+            spins[i, 0], spins[i, 1], spins[i, 2] = w[0], w[1], w[2]
+            if status == events.OK and phys[P_SPIN] > 0.0:  # at rest a ball may still spin on the spot
+                end = max(end, motion[i, T0] + abs(motion[i, WZ]) / phys[P_SPIN])
     return status, n_events, n_segments, end
 
 
@@ -322,13 +270,13 @@ def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws,
               status, n_events, n_segments, duration, start, stop):  # fmt: skip
     """Shots ``start`` to ``stop`` of a batch, all arrays of the balls, the log and the outcome with a leading batch axis.
 
-    The arguments are those of ``Balls``, ``World``, ``Log`` and ``Outcome``, in their order: ``run_batch(*balls, *world, max_events, *log,
-    *outcome, start, stop)``. Given as four tuples they would cost 3 us a call, since numba then looks up the type of each array anew
+    The arguments are those of ``Balls``, ``World``, ``Log`` and ``Ends``, in their order: ``run_batch(*balls, *world, max_events, *log,
+    *ends, start, stop)``. Given as four tuples they would cost 3 us a call, since numba then looks up the type of each array anew
     (measured; a shot of two balls takes 6 us). Work space is made once.
     """
     n = positions.shape[1]
     world = World(phys, noses, jaws, falls, fidelity, n_steps)
-    paths = Paths(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, FLIGHT)))
+    paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, FLIGHT)))
     forecast = Forecast(
         np.full((n, n), inf), np.full(n, inf), np.full(n, -1), np.full(n, inf), np.zeros(n, np.int64), np.full(n, -1)
     )  # fmt: skip

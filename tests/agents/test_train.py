@@ -15,9 +15,10 @@ from sb3_contrib import MaskablePPO
 
 import train
 from agents.evaluation import rollouts, training_summary
-from agents.learning import callback, models
+from agents.learning import callback
 from agents.players.built_in import GhostBall, Random
 from agents.players.by_name import player_of
+from agents.players.trained import load_player
 
 ROOT = Path(__file__).resolve().parents[2]
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
@@ -33,7 +34,7 @@ def run(out, *options):
 
 def weights(out):
     """Every parameter of the saved model, flat."""
-    model = models.load_player(out).model
+    model = load_player(out).model
     return np.concatenate([p.detach().numpy().ravel() for p in model.policy.parameters()])
 
 
@@ -80,7 +81,7 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
 
 @pytest.mark.parametrize("agent", AGENTS)
 def test_saved_model_plays_as_it_was_judged(finished, agent):
-    again = rollouts.summary(rollouts.play(models.load_player(finished / agent / "model.zip"), 4))
+    again = rollouts.summary(rollouts.play(load_player(finished / agent / "model.zip"), 4))
     assert again == results(finished / agent)["evaluation"]["trained"]
 
 
@@ -263,7 +264,7 @@ def test_evaluation_plays_in_the_world_trained_in(finished, monkeypatch):
 
     monkeypatch.setattr(training_summary, "play", watched)
     settings = train.Settings(agent="ppo_mask")
-    model = models.load_player(finished / "ppo_mask").model
+    model = load_player(finished / "ppo_mask").model
     training_summary.evaluate(train.recipe_of(settings), model, 2)
     world = {"noise": "club", "table": "tight", "physics": {"preset": "paper", "mu_bb": "marlow"}, "fidelity": "fast"}
     given = str({"action": "discrete", "layout": "line_up", "reward": "pots", **world})
@@ -286,8 +287,8 @@ def test_random_play_is_the_same_for_every_agent(finished):
 def test_agents_with_longer_actions_are_judged(tmp_path):
     out, given = tmp_path / "run", "env_kwargs={'aim': 'target', 'elevation': True, 'placement': True}"
     assert run(out, "--agent", "ppo_target", "--steps", "128", "--set", given) == 0
-    assert models.load_player(out).options == {"aim": "target", "elevation": True, "placement": True}
-    again = rollouts.summary(rollouts.play(models.load_player(out), 4, noise="none"))
+    assert load_player(out).options == {"aim": "target", "elevation": True, "placement": True}
+    again = rollouts.summary(rollouts.play(load_player(out), 4, noise="none"))
     assert again == results(out)["evaluation"]["trained"]
 
 
@@ -337,7 +338,7 @@ def test_only_agents_with_masks_can_imitate(tmp_path, capsys):
 def test_hyperparameters_can_be_changed(tmp_path):
     assert run(tmp_path / "run", "--set", "gamma=0", "n_steps=32") == 0
     model = MaskablePPO.load(tmp_path / "run" / "model.zip", device="cpu")  # the zip stays one of Stable-Baselines3
-    assert model.gamma == 0 and model.n_steps == 32 and models.load_player(tmp_path / "run").model.gamma == 0
+    assert model.gamma == 0 and model.n_steps == 32 and load_player(tmp_path / "run").model.gamma == 0
     assert results(tmp_path / "run")["settings"]["set"] == ["gamma=0", "n_steps=32"]
     assert results(tmp_path / "run")["command"].endswith("--agent ppo_mask --steps 512 --envs 2 --imitate 0 --set gamma=0 n_steps=32")
 
@@ -373,6 +374,6 @@ def test_whole_rollouts_are_announced_and_a_finished_run_says_so(tmp_path, capsy
 def test_it_learns(tmp_path, agent, steps, least):
     assert run(tmp_path / "run", "--agent", agent, "--steps", steps, "--envs", "64", "--eval-visits", "300") == 0
     trained = results(tmp_path / "run")["evaluation"]["trained"]
-    chance = rollouts.summary(rollouts.play(Random(models.load_player(tmp_path / "run").options), 300))  # any action of its own
+    chance = rollouts.summary(rollouts.play(Random(load_player(tmp_path / "run").options), 300))  # any action of its own
     gain = trained["points_a_visit"] - chance["points_a_visit"]
     assert gain > least and gain > 3 * trained["points_a_visit_se"]

@@ -5,9 +5,9 @@ import pytest
 from gymnasium.vector import AutoresetMode
 
 import snooker_env as sn
-from snooker_env.envs import vector
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.tasks import threads as crew
 from snooker_env.tasks.discrete_actions import SIZE
 from snooker_env.tasks.options import Options
 from tests.envs.test_vector import MODES, native, same, sync
@@ -88,7 +88,7 @@ def test_they_equal_sync_vector_env(mode, options):
 @pytest.mark.parametrize("threads", [1, 2, 3])
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball", policy])
 def test_any_number_of_threads_and_any_chunks_give_the_same(threads, opponent, monkeypatch):
-    monkeypatch.setattr(vector, "CHUNK", 16)
+    monkeypatch.setattr(crew, "CHUNK", 16)
     check_equal(50, AutoresetMode.SAME_STEP, 8, FULL | {"opponent": opponent, "layout": "random:3", "max_strokes": 9}, threads)
 
 

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 import train
-from agents.learning import callback, lock, models
+from agents.learning import callback, lock
 from agents.learning.imitation import Imitation
+from agents.players.trained import load_player
 from commands.files import write_atomic
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -141,7 +142,7 @@ def whole(tmp_path_factory):
 
 
 def weights(out):
-    model = models.load_player(out).model
+    model = load_player(out).model
     return np.concatenate([p.detach().numpy().ravel() for p in model.policy.parameters()])
 
 
@@ -165,7 +166,7 @@ def test_a_signal_saves_what_was_imitated_and_resume_goes_on_exactly(whole, tmp_
     assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
     assert "imitating the search, 40 of 64 positions" in capsys.readouterr().out
     assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
-    assert len(untimed(out)[0]) == 20 and models.load_player(out).model.imitated == 64
+    assert len(untimed(out)[0]) == 20 and load_player(out).model.imitated == 64
 
 
 def test_imitation_is_saved_at_intervals(whole, tmp_path, capsys, monkeypatch):
