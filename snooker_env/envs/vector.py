@@ -13,7 +13,7 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from .._check import choice, integer, refuse, refuse_what
+from .._check import choice, integer, refuse
 from .._types import Bools, Floats, Observation
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
@@ -22,6 +22,7 @@ from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
 from .given_arrays import OUTPUTS, arrays_given
 from .pictures import Picture, Pictures
+from .reset_options import mask_of, seeds_of, states_of
 from .snooker import TABLES, SnookerEnv
 
 PICTURES = ("rgb_array", "ansi")
@@ -149,7 +150,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             raise refuse("options", options, "must be None or a dict")
         for key in options:
             choice("options", key, ("reset_mask", "state", "states"))
-        seeds, wanted = self._seeds(seed), self._mask(options)
+        seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
         states = self._states(options)
         if not (wanted | self._begun).all():
             raise gymnasium.error.ResetNeeded(f"table {int(np.argmin(wanted | self._begun))} has no visit yet: reset all tables first")
@@ -276,11 +277,33 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return tuple(each(*args, **kwargs) if callable(each) else each for each in found)
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
-        """``call`` without arguments: an attribute of each table."""
+        """``call`` without arguments.
+
+        Parameters
+        ----------
+        name : str
+            An attribute of ``SnookerEnv``.
+
+        Returns
+        -------
+        tuple
+            One for each table.
+        """
         return self.call(name)
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Not to be had."""
+        """Not to be had: the tables share everything.
+
+        Parameters
+        ----------
+        name, values
+            Anything.
+
+        Raises
+        ------
+        AttributeError
+            Always.
+        """
         raise AttributeError(f"{name} cannot be set: the tables share everything; make another environment")
 
     def _table(self, k: int, generator: np.random.Generator) -> SnookerEnv:
@@ -344,34 +367,11 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     # parts of reset and step -----------------------------------------------------------------------------------------------
 
-    def _seeds(self, seed):
-        if seed is None:
-            return [None] * self.num_envs
-        if isinstance(seed, (int, np.integer)):
-            return [int(seed) + k for k in range(self.num_envs)]
-        if len(seed) != self.num_envs:
-            raise refuse_what("seed", f"{len(seed)} seeds", f"must be an int, None, or {self.num_envs} of them")
-        return list(seed)
-
-    def _mask(self, options):
-        if "reset_mask" not in options:
-            return np.ones(self.num_envs, np.bool_)
-        mask = options["reset_mask"]
-        if not isinstance(mask, np.ndarray) or mask.shape != (self.num_envs,) or mask.dtype != np.bool_ or not mask.any():
-            raise refuse('options["reset_mask"]', mask, f"must be a bool array of shape ({self.num_envs},), not all False")
-        return mask.copy()
-
     def _states(self, options):
         """The sound state of each table, or None."""
-        if "state" in options:
-            states, each = [options["state"]], self.num_envs
-        elif "states" in options:
-            states, each = options["states"], 1
-            if not isinstance(states, list | tuple) or len(states) != self.num_envs:
-                found = f"{type(states).__name__} of {len(states)}" if isinstance(states, list | tuple) else type(states).__name__
-                raise refuse_what('options["states"]', found, f"must be a list of {self.num_envs} states")
-        else:
+        if (given := states_of(options, self.num_envs)) is None:
             return None
+        states, each = given
         generator = self.np_random[0]
         return [self.tables.checked(state, generator, to_play=True) for state in states] * each
 

@@ -136,7 +136,19 @@ class Position:
 
     @classmethod
     def of_arrays(cls, positions: Vectors, on_table: Flags, game: Integers) -> "Position":
-        """The position in words that these arrays of one table stand for, see ``arrays``. Reds are numbered anew."""
+        """The position in words that these arrays of one table stand for. Reds are numbered anew.
+
+        Parameters
+        ----------
+        positions : array_like, float (22, 2)
+        on_table : array_like, bool (22,)
+        game : array_like, int (5,)
+            As ``arrays`` gives them.
+
+        Returns
+        -------
+        Position
+        """
         places, there = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
         named = {name: tuple(places[i]) for name, i in {"cue": CUE, **{c: colour(c) for c in COLOUR_NAMES}}.items() if there[i]}

@@ -33,7 +33,26 @@ SIZE = POTS * STROKES
 
 
 def choice_of(pot: int, speed: int, side: int, top: int) -> int:
-    """The choice with these places: of the pots, widest first, and in ``SPEEDS``, ``SIDES`` and ``TOPS``."""
+    """The choice with these places.
+
+    Parameters
+    ----------
+    pot : int
+        Of the pots, widest first, in [0, 4).
+    speed, side, top : int
+        Places in ``SPEEDS``, ``SIDES`` and ``TOPS``.
+
+    Returns
+    -------
+    int
+        In [0, 540).
+
+    Examples
+    --------
+    >>> from snooker_env.tasks import choice_of
+    >>> choice_of(0, 4, 1, 2)
+    67
+    """
     return pot * STROKES + (speed * len(SIDES) + side) * len(TOPS) + top
 
 

@@ -33,9 +33,29 @@ FRAME_SIZE = SIZE + len(FRAME_ENTRIES)
 
 
 def space(kind: ObservationKind, *, frame: bool = False) -> spaces.Box | spaces.Dict:
-    """The observation space: "flat" a Box of 22 * 5 + 11 numbers, "balls" a Dict of "balls" (22, 5) and "state" (11,).
+    """The observation space.
 
-    ``frame``: with the nine entries of a frame behind the eleven.
+    Parameters
+    ----------
+    kind : {"flat", "balls"}
+        "flat": a Box of 22 * 5 + 11 numbers; "balls": a Dict of "balls" (22, 5) and "state" (11,).
+    frame : bool
+        With the nine entries of a frame behind the eleven.
+
+    Returns
+    -------
+    gymnasium.spaces.Box or gymnasium.spaces.Dict
+
+    Raises
+    ------
+    ValueError
+        For another kind.
+
+    Examples
+    --------
+    >>> from snooker_env.tasks import observation_space
+    >>> observation_space("flat").shape
+    (121,)
     """
     choice("observation", kind, OBSERVATIONS)
     entries = len(STATE_ENTRIES) + (len(FRAME_ENTRIES) if frame else 0)
@@ -66,7 +86,19 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
 
 
 def shaped(kind: ObservationKind, rows: Singles) -> Observation:
-    """Flat observations (..., SIZE or more), which are taken over, as the observations of that kind."""
+    """Flat observations as the observations of a kind.
+
+    Parameters
+    ----------
+    kind : {"flat", "balls"}
+    rows : float32 (..., 121 or more)
+        They are taken over: with "flat" they come back as they are.
+
+    Returns
+    -------
+    float32 (..., k) or dict
+        With "balls": "balls" (..., 22, 5) and "state" (..., k - 110).
+    """
     if kind == "flat":
         return rows
     lead = rows.shape[:-1]

@@ -63,10 +63,13 @@ def part_of(name):
 
 
 def imports(name):
-    """All imports of a file: (dotted target, is it at the top level of the file?). Targets inside the package start with a dot."""
+    """All imports of a file: (dotted target, does it run when the file is imported?). Targets inside the package start with a dot."""
     tree = ast.parse((PACKAGE / name).read_text())
     here = ["snooker_env", *name.split("/")[:-1]]
     lazy = {id(inner) for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) for inner in ast.walk(node)}
+    for node in ast.walk(tree):  # what only a type checker reads never runs
+        if isinstance(node, ast.If) and ast.unparse(node.test).removeprefix("_typing.") == "TYPE_CHECKING":
+            lazy |= {id(inner) for statement in node.body for inner in ast.walk(statement)}
     found = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -86,6 +89,7 @@ def test_the_reader_of_imports_sees_every_kind():
     assert seen[".physics.cue"] and seen[".tasks.noise"] and seen["numpy"]
     assert dict(imports("envs/pictures.py"))[".render.pygame_view"] is False
     assert dict(imports("render/pygame_view.py"))["pygame"] is False
+    assert dict(imports("tasks/stroke.py"))[".tasks.options"] is False  # for type checkers alone
     assert dict(imports("__init__.py"))[".physics.engine"]
     assert len(FILES) > 25
 

@@ -1,0 +1,239 @@
+"""Are the annotations true? Pyright on right and wrong calls, what it knows of the package, hints that resolve, and what help() shows."""
+
+import dataclasses
+import inspect
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import typing
+from pathlib import Path
+
+import pytest
+
+import snooker_env as sn
+from snooker_env import planning, tasks
+from snooker_env.tasks.options import NAMES
+
+ROOT = Path(sn.__file__).resolve().parent.parent
+LEAST = 0.95
+
+HEAD = """
+import gymnasium
+import numpy as np
+import snooker_env as sn
+from snooker_env.game import BallOn
+from snooker_env.tasks import Noise, observation_space
+"""
+
+GOOD = (
+    # impacts, strikes and shots: lists, tuples, arrays of floats and integers
+    "v, w = sn.strike(2.0, 0, side=np.float32(0.1), elevation=0.1, physics='match')",
+    "v1, w1, v2, w2 = sn.collide_balls((1, 0, 0), [0.0, 0.0, 0.0], np.zeros(3), (0, 0, 0), (1, 0, 0), fidelity='euler:200')",
+    "n, m = sn.collide_cushion((1.0, 0, 0), np.zeros(3, int), np.array([1.0, 0.0, 0.0]), physics={'e_c': 0.9}, fidelity='fast')",
+    "shot = sn.simulate([(0.0, 0.0), (0.0, 0.5)], [v[:2], (0.0, 0.0)], [w, (0.0, 0.0, 0.0)], 'tight', on_table=[True, False])",
+    "cloth = sn.simulate(np.zeros((1, 2)), np.ones((1, 2), np.float32), [[0, 0, 0]], None, sn.Physics(), 'reference')",
+    "places: tuple[int, ...] = shot.positions.shape",
+    "moved = shot.at(0.5)[0] + shot.at([0.1, 0.2])[0] + shot.at(np.linspace(0.0, 1.0, 5))[0]",
+    "kinds = [sn.EventKind(kind).name for kind in shot.events['kind']]",
+    "batch = sn.simulate_batch(np.zeros((3, 1, 2)), [[(1.0, 0.0)]] * 3, np.zeros((3, 1, 3)), events=True, threads=2)",
+    "logs: int = 0 if batch.events is None else len(batch.events)",
+    # worlds
+    "physics = sn.Physics.preset('match', mu_s=0.2)",
+    "law: tuple[float, float, float] = sn.Physics(mu_bb=(0.01, 0.1, 1.0), e_j=0.9).friction_law",
+    "pocket = sn.Pocket.corner(mouth=0.115, shelf=0.03, fall_radius=0.07, cut=142.0)",
+    "table = sn.Table.rectangular(2.0, 1, pockets=4, corner=pocket, ball_radius=0.025)",
+    "wall = sn.Table('wall', np.array([(0, 1, 0.5, -1.0, 1.0)]), np.empty((0, 6)), np.empty((0, 3)))",
+    "sn.Table.preset('carom').check([(0.0, 0.0)], 0.03075)",
+    "tables = [sn.Table.of('uk8'), sn.Table.of(None), sn.Table.of(table)]",
+    # environments
+    "env = sn.SnookerEnv(noise='club', aim='target', render_mode='rgb_array')",
+    "observation, info = env.reset(seed=1)",
+    "observation, reward, terminated, truncated, info = env.step([0.1, 0.0, 0.0, 0.0])",
+    "env.reset(options={'state': env.get_state()})",
+    "best: float = env.step(np.zeros(4, np.float32))[1]",
+    "is_red: bool = env.ball_on == BallOn.RED and not env.in_hand",
+    "options = sn.Options(task='frame', opponent=lambda seen, rng: rng.uniform(-1, 1, 4), noise={'aim_deg': 0.1}, layout='random:3')",
+    "played = sn.SnookerEnv(options.but(miss='clear_path'))",
+    "choices = sn.SnookerEnv(action='discrete').step(7)",
+    "envs = sn.SnookerVectorEnv(4, sn.Options(noise=Noise(aim_deg=0.1)), autoreset_mode='SameStep', threads=1)",
+    "rows, infos = envs.reset(seed=[1, 2, 3, None], options={'reset_mask': np.ones(4, np.bool_)})",
+    "rows, rewards, ends, cuts, infos = envs.step(np.zeros((4, 4)), out={'rewards': np.zeros(4)})",
+    "total: float = rewards.sum()",
+    "match = sn.match_env(max_strokes=None, render_mode='ansi')",
+    "match.reset(seed=1)",
+    "match.step(match.action_space(match.agent_selection).sample())",
+    # planning
+    "position = sn.Position(cue=(0.0, 0.0), reds=[(0.5, 0.8)], black=(0.0, 1.46), on='red', table='tight')",
+    "planner = sn.Planner({'action': 'discrete', 'noise': 'club'}, threads=2)",
+    "outcomes = planner.play(position, [0, 0], [67, 67], keys=[1, 2])",
+    "made = planner.play(env, np.zeros(3, int), np.arange(3), np.arange(3, dtype=np.uint64)).points.mean()",
+    "wrapped = sn.Planner(gymnasium.make('Snooker-v0')).play(outcomes.afterstates, [0], [(0.0, 0.0, 0.0, 0.5)], [[1, 2]])",
+    "states = sn.Positions.of([env.get_state(), env.get_state()])[:1]",
+    "blue = sn.Positions.of([position, position])[1].blue",
+    "aims = sn.planning.pot_aim(states, [0], [1], [(0.8, 0.8)], 2.3, side=[0.1], elevation=0.1, physics='match')",
+    "strokes = sn.planning.actions_of([3.6], aims, top=0.25)",
+    "found = sn.planning.pots(envs, most=2).cut[0, 0] + sn.planning.clear_paths(position).full_ball[0]",
+    "space = observation_space('balls', frame=True)",
+    "sn.warmup()",
+)
+
+BAD = (
+    "sn.strike(1.0, 'north')",
+    "sn.strike(speed='hard', aim=0.0)",
+    "sn.collide_balls('v', (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))",
+    "sn.simulate('x', [(0.0, 0.0)], [(0.0, 0.0, 0.0)])",
+    "sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)], 'pool')",
+    "sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)], fidelity=3)",
+    "sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)], on_table=[1.0])",
+    "sn.simulate_batch([(0.0, 0.0)], np.zeros((1, 1, 2)), np.zeros((1, 1, 3)))",
+    "shot.at('end')",
+    "shot.position",
+    "sn.Physics.preset(3)",
+    "sn.Physics.preset('pape')",
+    "sn.Physics(mu_bb='marlowe')",
+    "sn.Physics(mu_z=0.1)",
+    "sn.Table.preset(3)",
+    "sn.Table.rectangular(2.0, 1.0, pockets=5)",
+    "sn.Table.of(3)",
+    "sn.Options(task='frames')",
+    "sn.Options(noise='novice')",
+    "sn.SnookerEnv(options='frame')",
+    "sn.SnookerEnv(render_mode='film')",
+    "sn.SnookerVectorEnv('4')",
+    "env.reset(seed='one')",
+    "sn.Position(cue='D')",
+    "sn.Planner('noise')",
+    "planner.play('x', [0], [67])",
+    "planner.play(position, 'x', [67])",
+    "planner.play(position, [0], 'x')",
+    "sn.planning.pots('x')",
+    "sn.planning.pot_aim(position, [0], [1], [(0.8, 0.8)], 'hard')",
+    "observation_space('flats')",
+    "sn.warmup(1)",
+)
+
+
+def pyright(*arguments, cwd=ROOT):
+    """What pyright says, as JSON gives it. Skips where it is not installed or cannot be started (it may want to load Node.js)."""
+    program = shutil.which("pyright", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]))
+    if program is None:
+        pytest.skip("pyright is not installed")
+    env = os.environ | {"PYTHONPATH": str(ROOT)}
+    command = [program, "--outputjson", "--pythonpath", sys.executable, *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, timeout=600, check=False)
+    try:
+        return json.loads(done.stdout)
+    except ValueError:
+        pytest.skip(f"pyright does not run here: {(done.stderr or done.stdout)[-300:]}")
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """Pyright on all the calls: {line: its first message}, and the line of the first bad one."""
+    folder = tmp_path_factory.mktemp("typed")
+    lines = [*HEAD.strip().splitlines(), *GOOD, *BAD]
+    (folder / "calls.py").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    settings = {"typeCheckingMode": "basic", "pythonVersion": "3.10", "extraPaths": [str(ROOT)], "reportUnusedExpression": "none"}
+    (folder / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
+    found: dict = {}
+    for one in pyright("calls.py", cwd=folder)["generalDiagnostics"]:
+        found.setdefault(one["range"]["start"]["line"], one["message"])
+    return lines, found
+
+
+def test_calls_of_each_documented_kind_are_right_to_the_checker(report):
+    lines, found = report
+    first_bad = len(lines) - len(BAD)
+    assert {lines[k]: message for k, message in found.items() if k < first_bad} == {}
+
+
+def test_calls_that_are_wrong_are_errors_to_the_checker(report):
+    lines, found = report
+    assert [line for k, line in enumerate(lines) if line in BAD and k not in found] == []
+
+
+@pytest.mark.slow
+def test_calls_of_each_documented_kind_run(tmp_path):
+    """The calls that the checker is shown do what they say: an annotation is no promise by itself."""
+    pytest.importorskip("pettingzoo")
+    done = subprocess.run(
+        [sys.executable, "-c", HEAD + "\n".join(GOOD[:-1])], capture_output=True, text=True, cwd=tmp_path, timeout=600,
+        env=os.environ | {"PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "1"}, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_checker_knows_the_types_of_public_names():
+    told = pyright("--verifytypes", "snooker_env", "--ignoreexternal")["typeCompleteness"]
+    assert Path(told["packageRootDirectory"]).parent == ROOT
+    unknown = [one["name"] for one in told["symbols"] if one["isExported"] and not one["isTypeKnown"]]
+    assert told["completenessScore"] >= LEAST, unknown
+
+
+PUBLIC = {f"{module.__name__}.{name}": getattr(module, name) for module in (sn, planning, tasks) for name in module.__all__}
+
+
+def members(thing):
+    """A function itself; of a class it, and all that it defines in public."""
+    if not inspect.isclass(thing):
+        return [thing]
+    own = [(name, m) for name, m in vars(thing).items() if not name.startswith("_")]
+    return [thing, *(inspect.unwrap(m.__func__) for _, m in own if isinstance(m, classmethod | staticmethod))] + [
+        m.fget if isinstance(m, property) else m for _, m in own if inspect.isfunction(m) or isinstance(m, property)
+    ]
+
+
+def own_annotations(thing):
+    """A function; or a class with the annotations of this one, and none of those it inherits from other libraries."""
+    if not inspect.isclass(thing):
+        return thing
+    return type(thing.__name__, (), {"__module__": thing.__module__, "__annotations__": vars(thing).get("__annotations__", {})})
+
+
+@pytest.mark.parametrize("name", [name for name, thing in PUBLIC.items() if callable(thing)])
+def test_annotations_can_be_resolved_when_the_program_runs(name):
+    for thing in members(PUBLIC[name]):
+        hints = typing.get_type_hints(own_annotations(thing))
+        if inspect.isfunction(thing):
+            parameters = [p for p in inspect.signature(thing).parameters if p not in ("self", "cls")]
+            assert set(parameters) | {"return"} <= set(hints), thing
+
+
+# what help() shows
+
+
+@pytest.mark.parametrize("name", [name for name, thing in PUBLIC.items() if callable(thing)])
+def test_docstrings_tell_parameters_returns_and_members(name):
+    for thing in members(PUBLIC[name]):
+        text = inspect.getdoc(thing)
+        assert text, thing
+        if thing is PUBLIC[name] and inspect.isclass(thing):
+            shown = [*getattr(thing, "__members__", ())]
+            if dataclasses.is_dataclass(thing):
+                shown = [f.name for f in dataclasses.fields(thing) if not f.name.startswith("_")]
+            for member in shown:
+                assert re.search(rf"^(\w+, )*{member}\b", text, re.MULTILINE), f"{name} does not tell of {member}"
+        elif inspect.isfunction(thing) and not is_property(PUBLIC[name], thing):
+            parameters = [p for p in inspect.signature(thing).parameters.values() if p.name not in ("self", "cls", "args", "kwargs")]
+            assert not parameters or re.search(r"^Parameters\n-{10}$", text, re.MULTILINE), thing.__qualname__
+            for parameter in parameters:
+                before = r"(\*\*)?" if parameter.kind is parameter.VAR_KEYWORD else ""
+                listed = re.search(rf"^([\w*]+, )*{before}{parameter.name}\b", text, re.MULTILINE)
+                assert listed or "Gymnasium's" in text, f"{thing.__qualname__} does not tell of {parameter.name}"
+            if inspect.signature(thing).return_annotation not in (None, "None"):
+                assert re.search(r"^Returns\n-{7}$", text, re.MULTILINE), thing.__qualname__
+
+
+def is_property(kind, function):
+    """A property's docstring says what it is, without sections."""
+    return inspect.isclass(kind) and any(isinstance(m, property) and m.fget is function for m in vars(kind).values())
+
+
+def test_the_specification_names_every_option():
+    text = inspect.getdoc(sn.SnookerEnv) or ""
+    table = text[text.index("## Arguments") : text.index("## Info")]
+    named = {word.strip() for row in table.splitlines() if row.startswith("| ") for word in row.split("|")[1].split(",")}
+    assert set(NAMES) | {"render_mode", "options"} <= named
