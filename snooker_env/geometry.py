@@ -237,16 +237,23 @@ def _sizes(name, mouth, shelf, fall_radius):
 
 @dataclass(frozen=True, kw_only=True)
 class Bed:
-    """A rectangular table as data: between its noses ``width`` [m] along x and ``length`` along y, its pockets and its balls."""
+    """A rectangular table as data: its size, its pockets and its balls.
+
+    Parameters
+    ----------
+    length, width : float
+        Between its noses [m], along y and along x.
+    corner, middle : Pocket or None
+        The pockets in the corners, and in the middles of the sides along y; None: there are none.
+    ball : mapping of str to float
+        Fields of ``Physics`` that belong to the balls and noses of this game: R [m], M [kg], sin_theta. Empty: any ball.
+    """
 
     length: float
     width: float
     corner: Pocket | None
-    """None: no pockets in the corners."""
     middle: Pocket | None
-    """None: no pockets in the middles of the sides along y."""
     ball: Mapping[str, float]
-    """Fields of ``Physics`` that belong to the balls and noses of this game: R [m], M [kg], sin_theta. Empty: any ball."""
 
     @property
     def pockets(self) -> tuple[str, ...]:

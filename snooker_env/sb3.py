@@ -136,7 +136,13 @@ class SnookerVecEnv(VecEnv):
         self.tables.close()
 
     def get_images(self) -> Sequence[Any]:
-        """A picture of each table."""
+        """A picture of each table.
+
+        Returns
+        -------
+        sequence of uint8 (H, W, 3)
+            With ``render_mode="rgb_array"``.
+        """
         return self.tables.render()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
@@ -166,7 +172,18 @@ class SnookerVecEnv(VecEnv):
         return [each[k] for k in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Not to be had: the tables share everything."""
+        """Not to be had: the tables share everything.
+
+        Parameters
+        ----------
+        attr_name, value, indices
+            Anything.
+
+        Raises
+        ------
+        AttributeError
+            Always.
+        """
         raise AttributeError(f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv")
 
     def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
@@ -187,5 +204,17 @@ class SnookerVecEnv(VecEnv):
         return [states[k] for k in self._get_indices(indices)]
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
-        """No table is wrapped, but each reports its episodes as a ``Monitor`` would."""
+        """Whether tables are wrapped. None is, but each reports its episodes as a ``Monitor`` would.
+
+        Parameters
+        ----------
+        wrapper_class : type
+        indices : int, sequence of int, optional
+            Which tables; None: all.
+
+        Returns
+        -------
+        list of bool
+            True for ``Monitor``.
+        """
         return [issubclass(wrapper_class, Monitor) for _ in self._get_indices(indices)]

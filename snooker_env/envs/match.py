@@ -130,11 +130,31 @@ class MatchEnv(AECEnv[str, Any, Any]):
         return int(self.tables.game[0, STROKES])
 
     def observation_space(self, agent: str) -> gymnasium.Space[Any]:
-        """The same object each time."""
+        """What a player observes is in it; the same object each time.
+
+        Parameters
+        ----------
+        agent : str
+            "player_0" or "player_1".
+
+        Returns
+        -------
+        gymnasium.Space
+        """
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> gymnasium.Space[Any]:
-        """The same object each time."""
+        """What a player may do is in it; the same object each time.
+
+        Parameters
+        ----------
+        agent : str
+            "player_0" or "player_1".
+
+        Returns
+        -------
+        gymnasium.Space
+        """
         return self.action_spaces[agent]
 
     def observe(self, agent: str) -> Observation:

@@ -37,12 +37,17 @@ ALL_MASK = 0x3FFFFF
 class BallOn(IntEnum):
     """What the striker must hit first. From RED on, the number is the points that the ball on is worth.
 
-    ============== ==== ==========================================================================
-    NOTHING        -1   The frame is over.
-    ANY_COLOUR     0    A red was just potted: any one colour, which the striker nominates.
-    RED            1    A red.
-    YELLOW         2    The yellow; so on with GREEN 3, BROWN 4, BLUE 5, PINK 6, BLACK 7.
-    ============== ==== ==========================================================================
+    ============= === ==========================================================================
+    NOTHING       -1  The frame is over.
+    ANY_COLOUR    0   A red was just potted: any one colour, which the striker nominates.
+    RED           1   A red.
+    YELLOW        2   The yellow.
+    GREEN         3   The green.
+    BROWN         4   The brown.
+    BLUE          5   The blue.
+    PINK          6   The pink.
+    BLACK         7   The black.
+    ============= === ==========================================================================
     """
 
     NOTHING = -1
@@ -115,7 +120,26 @@ def next_on(mask: int) -> int:
 
 
 def balls_on(ball_on: int, on_table: int) -> int:
-    """The mask of the balls that ``ball_on`` (a ``BallOn``) allows, of those in the mask ``on_table``."""
+    """The balls that may be struck first.
+
+    Parameters
+    ----------
+    ball_on : int
+        A ``BallOn``.
+    on_table : int
+        Mask of the balls on the table, bit i for ball i.
+
+    Returns
+    -------
+    int
+        Their mask.
+
+    Examples
+    --------
+    >>> from snooker_env.game import BallOn, balls_on, ids_of, mask_of
+    >>> ids_of(balls_on(BallOn.RED, mask_of([0, 1, 2, 21])))
+    (1, 2)
+    """
     if ball_on == 1:
         return on_table & REDS_MASK
     if ball_on == 0:
@@ -131,7 +155,23 @@ balls_on_kernel: Any = kernel(balls_on)
 
 
 def mask_of(balls: Iterable[int]) -> int:
-    """The mask of an iterable of ids."""
+    """The mask of some balls.
+
+    Parameters
+    ----------
+    balls : iterable of int
+        Ids, 0 to 21.
+
+    Returns
+    -------
+    int
+        Bit i for ball i.
+
+    Raises
+    ------
+    ValueError
+        For an id that is none.
+    """
     mask = 0
     for ball in balls:
         mask |= 1 << integer("ball", ball, 0, N_BALLS - 1)
@@ -144,7 +184,22 @@ def mask_of_present(on_table: Bools) -> int:
 
 
 def ids_of(mask: int) -> tuple[int, ...]:
-    """The ids in a mask, in order."""
+    """The ids in a mask, in order.
+
+    Parameters
+    ----------
+    mask : int
+        Bit i for ball i.
+
+    Returns
+    -------
+    tuple of int
+
+    Raises
+    ------
+    ValueError
+        For a mask with other bits.
+    """
     integer("mask", mask, 0, ALL_MASK)
     return tuple(i for i in range(N_BALLS) if mask >> i & 1)
 

@@ -166,15 +166,23 @@ def deal_tables(which, code, tables, streams, positions, on_table):
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A layout's name as the kernels read it. A copy is made anew from the name: the bank of tables is never copied."""
+    """A layout's name as the kernels read it. A copy is made anew from the name: the bank of tables is never copied.
+
+    Attributes
+    ----------
+    name : str
+    code : float64 (4,)
+        Kind, number of reds, and two numbers: the first and last table of the bank, or the window of a pot.
+    tables : float64 (b, 22, 2)
+        The bank of opened tables [m], or none.
+    unfit : tuple of int
+        The tables of the bank that others stand in for, as they do not fit the table played on.
+    """
 
     name: str
     code: Floats
-    """Kind, number of reds, and two numbers: the first and last table of the bank, or the window of a pot."""
     tables: Floats
-    """The bank of opened tables, or none."""
     unfit: tuple[int, ...] = ()
-    """The tables of the bank that others stand in for, as they do not fit the table played on."""
 
     @property
     def in_hand(self) -> bool:
@@ -191,9 +199,23 @@ LAYOUTS = ("opened", "held_out", *_NAMES)
 
 
 def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
-    """The ``Plan`` of a layout: one of ``LAYOUTS``, ``"random:N"`` with N reds, or ``"pots:D"`` with D one of ``POT_WINDOWS``.
+    """The ``Plan`` of a layout.
 
-    ``unfit``: tables of the bank not to be dealt, a tuple of indices in order.
+    Parameters
+    ----------
+    name : str
+        One of ``LAYOUTS``, ``"random:N"`` with N reds, or ``"pots:D"`` with D one of ``POT_WINDOWS``.
+    unfit : tuple of int
+        Tables of the bank not to be dealt, by their indices, in order.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    ValueError
+        For another name.
     """
     head, _, which = name.partition(":") if isinstance(name, str) else ("", "", "")
     tables, code = NO_BANK, None
@@ -215,9 +237,33 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
 
 
 def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
-    """A layout by its ``Plan`` or name (see ``plan_of``): ``positions`` (22, 2) [m] and ``on_table`` (22,) bool, fresh.
+    """A table as a layout deals it.
 
-    ``rng``: a numpy Generator, of which one number is drawn: the key of the layout's stream.
+    Parameters
+    ----------
+    plan : str or Plan
+        The layout, see ``plan_of``.
+    rng : numpy.random.Generator
+        One number is drawn of it: the key of the layout's stream.
+
+    Returns
+    -------
+    positions : float64 (22, 2)
+        [m], fresh.
+    on_table : bool (22,)
+
+    Raises
+    ------
+    ValueError
+        For an unknown layout.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.game import layout
+    >>> positions, on_table = layout("random:3", np.random.default_rng(1))
+    >>> int(on_table[1:16].sum())
+    3
     """
     plan = plan if isinstance(plan, Plan) else plan_of(plan)
     positions, on_table = np.empty((1, N_BALLS, 2)), np.empty((1, N_BALLS), np.bool_)

@@ -9,12 +9,13 @@ import shutil
 import subprocess
 import sys
 import typing
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 import snooker_env as sn
-from snooker_env import planning, tasks
+from snooker_env import game, geometry, planning, tasks
 from snooker_env.tasks.options import NAMES
 
 ROOT = Path(sn.__file__).resolve().parent.parent
@@ -173,7 +174,15 @@ def test_the_checker_knows_the_types_of_public_names():
     assert told["completenessScore"] >= LEAST, unknown
 
 
-PUBLIC = {f"{module.__name__}.{name}": getattr(module, name) for module in (sn, planning, tasks) for name in module.__all__}
+PUBLIC = {f"{module.__name__}.{name}": getattr(module, name) for module in (sn, planning, tasks, game, geometry) for name in module.__all__}
+with suppress(ImportError):
+    from snooker_env.envs.match import MatchEnv
+
+    PUBLIC["MatchEnv"] = MatchEnv
+with suppress(ImportError):
+    from snooker_env.sb3 import SnookerVecEnv
+
+    PUBLIC["SnookerVecEnv"] = SnookerVecEnv
 
 
 def members(thing):
