@@ -192,6 +192,8 @@ class SnookerVecEnv(VecEnv):
         Parameters
         ----------
         method_name : {"get_state", "action_masks"}
+        *method_args, **method_kwargs
+            Not read: these methods take none.
         indices : int, sequence of int, optional
             Which tables; None: all.
 

@@ -229,9 +229,8 @@ def test_docstrings_tell_parameters_returns_and_members(name):
             parameters = [p for p in inspect.signature(thing).parameters.values() if p.name not in ("self", "cls", "args", "kwargs")]
             assert not parameters or re.search(r"^Parameters\n-{10}$", text, re.MULTILINE), thing.__qualname__
             for parameter in parameters:
-                before = r"(\*\*)?" if parameter.kind is parameter.VAR_KEYWORD else ""
-                listed = re.search(rf"^([\w*]+, )*{before}{parameter.name}\b", text, re.MULTILINE)
-                assert listed or "Gymnasium's" in text, f"{thing.__qualname__} does not tell of {parameter.name}"
+                listed = re.search(rf"^([\w*]+, )*\**{parameter.name}\b", text, re.MULTILINE)
+                assert listed, f"{thing.__qualname__} does not tell of {parameter.name}"
             if inspect.signature(thing).return_annotation not in (None, "None"):
                 assert re.search(r"^Returns\n-{7}$", text, re.MULTILINE), thing.__qualname__
 
