@@ -224,7 +224,11 @@ def _run(state, physics, table, fidelity, max_events, log_size, path_size, threa
         np.zeros((b, n), np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b),
         np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT)),
     )  # fmt: skip
-    balls, world = Balls(*state, out.potted), World(physics.pack(), table.noses, table.jaws, table.falls, *fidelity)
+    positions, velocities, spins, on_table = state
+    balls, world = (
+        Balls(positions, velocities, spins, on_table, out.potted),
+        World(physics.pack(), table.noses, table.jaws, table.falls, *fidelity),
+    )
     log, ends = Log(out.event_time, out.event_what, out.segments), Ends(out.status, out.n_events, out.n_segments, out.duration)
 
     def run(first, last):

@@ -45,14 +45,27 @@ def points_available(on_table: int, ball_on: int) -> int:
 
 @dataclass(frozen=True, kw_only=True)
 class Saved:
-    """The position before a stroke, to be restored after a foul and a miss."""
+    """The position before a stroke, to be restored after a foul and a miss.
+
+    Attributes
+    ----------
+    on_table : int
+        Mask of the object balls on the table.
+    ball_on : BallOn
+        What the striker must hit first.
+    in_hand : bool
+        The stroke is played from the D.
+    free_ball : bool
+        The striker had a free ball.
+    layout : tuple or None
+        The caller's own record of where the balls lay, anything that JSON can hold; it is kept and handed back, not read.
+    """
 
     on_table: int
     ball_on: BallOn
     in_hand: bool
     free_ball: bool
     layout: tuple[Any, ...] | None = None
-    """The caller's own record of where the balls lay, anything that JSON can hold; it is kept and handed back, not read."""
 
     def __post_init__(self) -> None:
         _set(self, "on_table", _object_balls(self.on_table))
@@ -63,35 +76,60 @@ class Saved:
 
 @dataclass(frozen=True, kw_only=True)
 class Frame:
-    """A frame between two strokes."""
+    """A frame between two strokes.
+
+    Attributes
+    ----------
+    scores : (int, int)
+        Points of the two players.
+    striker : int
+        Who plays next. In phase "choice" the one who chooses; in phase "lot" the last striker.
+    breaker : int
+        Who broke off; kept through a restart.
+    break_points : int
+        Points of the striker's visit so far.
+    on_table : int
+        Mask of the object balls on the table.
+    ball_on : BallOn
+        What the striker must hit first.
+    in_hand : bool
+        The stroke is played from the D.
+    free_ball : bool
+        The striker may nominate a free ball (in phase "choice": if he chooses to play).
+    respotted_black : bool
+        The black has been re-spotted: scores were level.
+    phase : {"stroke", "choice", "lot", "over"}
+        "stroke": ``play`` is next. "choice": after a foul, ``choose``. "lot": before a re-spotted black, ``draw``. "over".
+    winner : int, or None
+        Who has won; None before the end.
+    miss : {"off", "clear_path"}
+        The rule for a foul and a miss: one of ``MISS_RULES``.
+    miss_called : bool
+        The last stroke was a foul and a miss, so that the position may be replaced.
+    failures : int
+        Misses in succession from one position with a clear full-ball path.
+    warned : bool
+        The striker has been told that one more failure loses the frame.
+    saved : Saved, or None
+        The position before the last stroke, if it was a foul.
+    """
 
     scores: tuple[int, int] = (0, 0)
     striker: int = 0
-    """Who plays next. In phase "choice" the one who chooses; in phase "lot" the last striker."""
     breaker: int = 0
-    """Who broke off; kept through a restart."""
     break_points: int = 0
-    """Points of the striker's visit so far."""
     on_table: int = FULL_TABLE
-    """Mask of the object balls on the table."""
     ball_on: BallOn = BallOn.RED
     in_hand: bool = True
     free_ball: bool = False
-    """The striker may nominate a free ball (in phase "choice": if he chooses to play)."""
     respotted_black: bool = False
     phase: Literal["stroke", "choice", "lot", "over"] = "stroke"
-    """"stroke": ``play`` is next. "choice": after a foul, ``choose``. "lot": before a re-spotted black, ``draw``. "over"."""
     winner: int | None = None
     miss: MissRule = "off"
-    """The rule for a foul and a miss: one of ``MISS_RULES``."""
     miss_called: bool = False
-    """The last stroke was a foul and a miss, so that the position may be replaced."""
     failures: int = 0
-    """Misses in succession from one position with a clear full-ball path."""
     warned: bool = False
-    """The striker has been told that one more failure loses the frame."""
     saved: Saved | None = None
-    """The position before the last stroke, if it was a foul."""
 
     def __post_init__(self) -> None:
         choice("phase", self.phase, PHASES)

@@ -17,16 +17,24 @@ MOST_POINTS = 2**60
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
-    """What the referee must know of the frame before the stroke. Masks have bit i for ball i (``balls.mask_of``)."""
+    """What the referee must know of the frame before the stroke. Masks have bit i for ball i (``balls.mask_of``).
+
+    Attributes
+    ----------
+    on_table : int
+        Mask of the object balls on the table (the cue ball's bit does not matter).
+    ball_on : BallOn
+        What the striker must hit first; not NOTHING, and of it at least one ball must be on the table.
+    free_ball : bool
+        The striker may nominate a free ball: only with a red or a colour of the sequence on.
+    lead : int
+        The striker's score less the opponent's; it matters for the end of the frame only.
+    """
 
     on_table: int = FULL_TABLE
-    """Mask of the object balls on the table (the cue ball's bit does not matter)."""
     ball_on: BallOn = BallOn.RED
-    """What the striker must hit first; not NOTHING, and of it at least one ball must be on the table."""
     free_ball: bool = False
-    """The striker may nominate a free ball: only with a red or a colour of the sequence on."""
     lead: int = 0
-    """The striker's score less the opponent's; it matters for the end of the frame only."""
 
     def __post_init__(self) -> None:
         integer("on_table", self.on_table, 0, ALL_MASK)
@@ -42,35 +50,58 @@ class Situation:
 
 @dataclass(frozen=True, kw_only=True)
 class Stroke:
-    """What was seen of one stroke. Masks have bit i for ball i; every ball named must be on the table."""
+    """What was seen of one stroke. Masks have bit i for ball i; every ball named must be on the table.
+
+    Attributes
+    ----------
+    first : int
+        Object balls struck by the cue ball's first impact: 0 for none, more than one if struck at the same time.
+    potted : int
+        Balls that entered a pocket, bit 0 the cue ball.
+    off : int
+        Balls forced off the table, bit 0 the cue ball.
+    touching : int
+        Object balls that touched the cue ball before the stroke.
+    moved : int
+        Those of ``touching`` that the cue ball moved in leaving (not those that another ball moved later).
+    nominated : int
+        Id of the colour nominated, after a red or as the free ball; 0 for none (a free ball declined); AUTO: the colour first
+        struck.
+    jump : bool
+        An illegal jump shot.
+    push : bool
+        A push stroke.
+    double_hit : bool
+        The tip struck the cue ball twice.
+    outside_d : bool
+        In hand, and played from outside the D.
+    feet : bool
+        Both feet off the floor.
+    out_of_turn : bool
+        Played out of turn.
+    seven : bool
+        An act that costs 7 whatever is on: wrong cue ball, a ball off the table used, measuring, no declaration on request ...
+    snookered : bool
+        After it, colours respotted, the next striker is snookered on the next ball on.
+    behind_free_ball : bool
+        ... and by the ball that was nominated as the free ball.
+    """
 
     first: int = 0
-    """Object balls struck by the cue ball's first impact: 0 for none, more than one if struck at the same time."""
     potted: int = 0
-    """Balls that entered a pocket, bit 0 the cue ball."""
     off: int = 0
-    """Balls forced off the table, bit 0 the cue ball."""
     touching: int = 0
-    """Object balls that touched the cue ball before the stroke."""
     moved: int = 0
-    """Those of ``touching`` that the cue ball moved in leaving (not those that another ball moved later)."""
     nominated: int = AUTO
-    """Id of the colour nominated, after a red or as the free ball; 0 for none (a free ball declined); AUTO: the colour first struck."""
     jump: bool = False
-    """An illegal jump shot."""
     push: bool = False
     double_hit: bool = False
     outside_d: bool = False
-    """In hand, and played from outside the D."""
     feet: bool = False
-    """Both feet off the floor."""
     out_of_turn: bool = False
     seven: bool = False
-    """An act that costs 7 whatever is on: wrong cue ball, a ball off the table used, measuring, no declaration on request ..."""
     snookered: bool = False
-    """After it, colours respotted, the next striker is snookered on the next ball on."""
     behind_free_ball: bool = False
-    """... and by the ball that was nominated as the free ball."""
 
     def __post_init__(self) -> None:
         for name in ("first", "touching", "moved"):
@@ -93,30 +124,48 @@ class Stroke:
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """What the referee decides. A stroke with a foul scores nothing."""
+    """What the referee decides. A stroke with a foul scores nothing.
+
+    Attributes
+    ----------
+    fouls : Foul
+        The rules broken; false if the stroke was fair.
+    penalty : int
+        Points to the opponent: 0, or the highest that any of the fouls costs (4 to 7).
+    points : int
+        Points to the striker.
+    respotted : int
+        Mask of the colours to be spotted.
+    on_table : int
+        Mask of the object balls on the table after that.
+    ball_on : BallOn
+        The next ball on; NOTHING when the frame is over.
+    stays : bool, or None
+        Whether the striker plays on; None: a lot decides (re-spotted black). After a foul the opponent may choose otherwise.
+    in_hand : bool
+        The next stroke is played from the D.
+    free_ball : bool
+        The next striker, if it is the opponent, has a free ball.
+    visit_end : VisitEnd
+        Why the visit ended, if it did.
+    outcome : Outcome
+        What the stroke did to the frame.
+    nominated : int
+        The colour that counted as nominated (or as the free ball), 0 if none.
+    """
 
     fouls: Foul
-    """The rules broken; false if the stroke was fair."""
     penalty: int
-    """Points to the opponent: 0, or the highest that any of the fouls costs (4 to 7)."""
     points: int
-    """Points to the striker."""
     respotted: int
-    """Mask of the colours to be spotted."""
     on_table: int
-    """Mask of the object balls on the table after that."""
     ball_on: BallOn
-    """The next ball on; NOTHING when the frame is over."""
     stays: bool | None
-    """Whether the striker plays on; None: a lot decides (re-spotted black). After a foul the opponent may choose otherwise."""
     in_hand: bool
-    """The next stroke is played from the D."""
     free_ball: bool
-    """The next striker, if it is the opponent, has a free ball."""
     visit_end: VisitEnd
     outcome: Outcome
     nominated: int
-    """The colour that counted as nominated (or as the free ball), 0 if none."""
 
     @property
     def over(self) -> bool:

@@ -47,35 +47,57 @@ for _constant in (COLOURS, PALE, BAULK_LINE, D_ARC):
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The parts of a table that never move. All empty for unbounded cloth."""
+    """The parts of a table that never move. All empty for unbounded cloth.
+
+    Attributes
+    ----------
+    cushions : tuple of float64
+        Closed polygons (m, 2): nose, the jaws at its two ends, and the cushion's back under the wood.
+    noses : tuple of float64
+        Polylines (m, 2): the part of each cushion that balls meet, jaw - nose - jaw.
+    falls : float64
+        (k, 3) centre x, y and radius of the slate circles over which balls drop.
+    throats : float64
+        (k, 5) the hole in the wood: from x, y (middle of the mouth) to x, y, half as wide as the fifth number says.
+    """
 
     cushions: tuple[Floats, ...]
-    """Closed polygons (m, 2): nose, the jaws at its two ends, and the cushion's back under the wood."""
     noses: tuple[Floats, ...]
-    """Polylines (m, 2): the part of each cushion that balls meet, jaw - nose - jaw."""
     falls: Floats
-    """(k, 3) centre x, y and radius of the slate circles over which balls drop."""
     throats: Floats
-    """(k, 5) the hole in the wood: from x, y (middle of the mouth) to x, y, half as wide as the fifth number says."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """One picture. Only balls on the table are in it; k of them."""
+    """One picture. Only balls on the table are in it; k of them.
+
+    Attributes
+    ----------
+    table : Table
+        What it lies on.
+    ids : int64
+        (k,) ball ids: 0 the cue ball, 1 to 15 reds, 16 to 21 yellow to black.
+    positions : float64
+        (k, 2) [m].
+    ball_radius : float
+        [m].
+    paths : dict of int to float64
+        Ball id -> (m, 2) [m]: where that ball ran.
+    aim : float64, or None
+        (m, 2) [m]: line of aim.
+    ghost : float64, or None
+        (2,) [m]: where the cue ball should meet its object ball.
+    text : str
+        One line of status.
+    """
 
     table: Table
     ids: Ints
-    """(k,) ball ids: 0 the cue ball, 1 to 15 reds, 16 to 21 yellow to black."""
     positions: Floats
-    """(k, 2) [m]."""
     ball_radius: float
-    """[m]."""
     paths: dict[int, Floats]
-    """Ball id -> (m, 2) [m]: where that ball ran."""
     aim: Floats | None
-    """(m, 2) [m]: line of aim."""
     ghost: Floats | None
-    """(2,) [m]: where the cue ball should meet its object ball."""
     text: str
 
     @property
