@@ -13,16 +13,10 @@ from ..game.balls import CUE, N_BALLS, BallOn, balls_on_kernel, bits, mask_of_pr
 from ..game.frame import MOST_BREAK
 from ..game.frame_columns import BALL_ON, FREE_BALL, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
 from ..physics.table import Table
-from ..tasks.observations import SIZE, observe_into
+from ..tasks.observations import SIZE
 from ..tasks.tables import Tables
+from ..tasks.visit import observe
 from .position import Position, check_playable
-
-
-@entry
-def _observe(positions, on_table, game, out):
-    for k in range(len(out)):
-        on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
-        observe_into(out[k], positions[k], on_table[k], game[k, BALL_ON], on, game[k, IN_HAND], game[k, POINTS])
 
 
 @entry
@@ -175,7 +169,7 @@ class Positions:
         float32 (m, 121)
         """
         out = np.empty((len(self), SIZE), np.float32)
-        _observe(self.positions, self.on_table, self.game, out)
+        observe(np.arange(len(self)), self.positions, self.on_table, self.game, out)
         return out
 
 

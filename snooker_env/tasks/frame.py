@@ -27,7 +27,7 @@ from .observations import FRAME_SIZE
 from .options import NEVER, Rules
 from .rewards import FRAME_REWARDS
 from .states import FrameState, checked_frame
-from .stroke import ShotBuffers, address
+from .stroke import ShotBuffers
 from .tables import COUNTS, REALS, Crew, StepOutput, Tables
 
 
@@ -87,12 +87,7 @@ class Frames(Tables):
             plays = np.empty(len(which), np.bool_)
             frame_kernels.decide(which, actions, self.rules.actions.decision, self.positions, self.on_table, self.game, self.saved, plays)
             which = which[plays]
-        (options, noise, phys), (fidelity, n_steps) = self.packed, self.rules.fidelity
-        b = buffers
-        address(
-            which, actions, self.positions, self.on_table, self.game, self.streams, options, noise, phys, fidelity, n_steps,
-            b.r, b.v, b.w, b.here, b.shots,
-        )  # fmt: skip
+        self.address(which, actions, buffers)
         return which
 
     def complete(self, which: Ints, out: StepOutput, buffers: ShotBuffers, crew: Crew, *, own: bool, alone: bool = False) -> None:
@@ -202,7 +197,7 @@ class Frames(Tables):
     def _show(self, which, out, *, fresh):
         frame_kernels.show(which, fresh, self.positions, self.on_table, self.game, self._replies, out.rows)
 
-    def observe(self, which: Ints, player: int) -> Singles:
+    def observe(self, which: Ints, player: int = AGENT) -> Singles:
         """What ``player`` sees of the tables ``which``: float32 (len(which), FRAME_SIZE), fresh."""
         rows = np.empty((len(which), FRAME_SIZE), np.float32)
         frame_kernels.observe(which, player, self.positions, self.on_table, self.game, rows)

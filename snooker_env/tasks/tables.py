@@ -3,6 +3,7 @@
 A step of n tables is the same whoever asks: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias, TypeVar
 
@@ -134,7 +135,7 @@ class Crew:
 _T = TypeVar("_T", bound="Tables")
 
 
-class Tables:
+class Tables(ABC):
     """n tables, each in the middle of its own episode, played by the same ``Rules``; ``limit``: steps after which one is truncated."""
 
     REALS: tuple[str, ...] = REALS
@@ -227,7 +228,16 @@ class Tables:
         return ("positions", "on_table", "game", "streams", "begun")
 
     def interrupted(self) -> None:
-        """A step or reset was cut short: tables whose turn it is not the agent's need a reset. In a visit there are none."""
+        """A step or reset was cut short: tables at which it is not the agent's turn need a reset. In a visit there are none."""
+        return
+
+    def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers) -> None:
+        """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
+        (options, noise, phys), (fidelity, n_steps), b = self.packed, self.rules.fidelity, buffers
+        stroke.address(
+            which, actions, self.positions, self.on_table, self.game, self.streams, options, noise, phys, fidelity, n_steps, b.r, b.v, b.w,
+            b.here, b.shots,
+        )  # fmt: skip
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots of the tables ``which`` that have been struck; returns rows of shots that need ``again``, as a list."""
@@ -243,26 +253,30 @@ class Tables:
 
     # what each task says for itself ------------------------------------------------------------------------------------------
 
+    @abstractmethod
     def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
         """One step of all tables: actions (n, k) float64 that were checked, results into ``out``."""
-        raise NotImplementedError
 
+    @abstractmethod
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
         """New episodes on the tables ``wanted`` (n,) bool; what a reset returns of all tables into ``out``."""
-        raise NotImplementedError
 
+    @abstractmethod
+    def observe(self, which: Ints, player: int = 0) -> Singles:
+        """What ``player`` sees of the tables ``which``: float32 (len(which), SIZE), fresh. A visit has one player."""
+
+    @abstractmethod
     def get_state(self, k: int) -> dict[str, Any]:
         """Table k as JSON types, without "rng"."""
-        raise NotImplementedError
 
+    @abstractmethod
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> Any:
         """The sound state that a dict describes, for ``set_state``; ValueError if it is none."""
-        raise NotImplementedError
 
+    @abstractmethod
     def set_state(self, k: int, state: Any) -> None:
         """Take over a sound state on table k."""
-        raise NotImplementedError
 
+    @abstractmethod
     def text(self, k: int) -> str:
         """One line for the pictures."""
-        raise NotImplementedError

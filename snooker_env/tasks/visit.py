@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .._jit import entry
-from .._types import Bools, Floats, Ints
+from .._types import Bools, Floats, Ints, Singles
 from ..game.apply_ruling import settle_visit
 from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
@@ -20,7 +20,7 @@ from ..physics.engine import Status
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
 from .states import State, checked
-from .stroke import DOWN, FIRST, MOVED, SPEED, TOUCHING, ShotBuffers, address, see
+from .stroke import DOWN, FIRST, MOVED, SPEED, TOUCHING, ShotBuffers, see
 from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, tell_nothing, tell_stroke
 
 _OK = int(Status.OK)
@@ -72,6 +72,15 @@ def _begin(which, fresh, in_hand, positions, on_table, game, out):
         reals[k, I_BREAK] = state[POINTS]
 
 
+@entry
+def observe(which, positions, on_table, game, out):
+    """The flat observations of the tables ``which``: a row of ``out`` each."""
+    for j in range(which.shape[0]):
+        k = which[j]
+        on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
+        observe_into(out[j], positions[k], on_table[k], game[k, BALL_ON], on, game[k, IN_HAND], game[k, POINTS])
+
+
 class Visits(Tables):
     """n tables, each in the middle of its own visit."""
 
@@ -100,16 +109,11 @@ class Visits(Tables):
         crew(np.arange(self.n), play)
 
     def _play(self, which: Ints, actions: Floats, out: StepOutput, buffers: ShotBuffers) -> None:
-        (options, noise, phys), (fidelity, n_steps) = self.packed, self.rules.fidelity
-        b = buffers
-        address(
-            which, actions, self.positions, self.on_table, self.game, self.streams, options, noise, phys, fidelity, n_steps,
-            b.r, b.v, b.w, b.here, b.shots,
-        )  # fmt: skip
-        unfinished = self.run(which, b)
-        self._conclude(which, b, out)
+        self.address(which, actions, buffers)
+        unfinished = self.run(which, buffers)
+        self._conclude(which, buffers, out)
         for j in unfinished:
-            self._conclude(which[j : j + 1], self.again(which, j, b), out)
+            self._conclude(which[j : j + 1], self.again(which, j, buffers), out)
 
     def _conclude(self, which: Ints, b: ShotBuffers, out: StepOutput) -> None:
         _conclude(
@@ -134,6 +138,12 @@ class Visits(Tables):
 
         self.begun[wanted] = True
         crew(np.arange(self.n), begin)
+
+    def observe(self, which: Ints, player: int = 0) -> Singles:
+        """What is seen of the tables ``which``: float32 (len(which), SIZE), fresh."""
+        rows = np.empty((len(which), SIZE), np.float32)
+        observe(which, self.positions, self.on_table, self.game, rows)
+        return rows
 
     def get_state(self, k: int) -> dict[str, Any]:
         """Table k as JSON types: the parts of a ``states.State`` but "rng"."""
