@@ -9,17 +9,62 @@ from ._types import Bools, Floats
 
 
 def refuse(field: str, value: Any, allowed: str) -> ValueError:
-    """The one form of complaint in this package; always use as ``raise refuse(...)``."""
+    """The one form of complaint in this package; always use as ``raise refuse(...)``.
+
+    Parameters
+    ----------
+    field : str
+        What the user calls it.
+    value : any
+        What it was.
+    allowed : str
+        What is allowed: "must be ...".
+
+    Returns
+    -------
+    ValueError
+    """
     return ValueError(f"{field} = {value!r}: {allowed}")
 
 
 def refuse_what(field: str, what: str, allowed: str) -> ValueError:
-    """The same where the value is too large to show: ``what`` says in words what was found."""
+    """The same where the value is too large to show.
+
+    Parameters
+    ----------
+    field : str
+    what : str
+        In words what was found.
+    allowed : str
+
+    Returns
+    -------
+    ValueError
+    """
     return ValueError(f"{field} = {what}: {allowed}")
 
 
 def number(field: str, value: Any, low: float = -np.inf, high: float = np.inf, *, open_low: bool = False) -> float:
-    """A finite real in [low, high] (or (low, high] with ``open_low``) as float."""
+    """Check a finite real number.
+
+    Parameters
+    ----------
+    field : str
+    value : any
+    low, high : float
+        It must be in [low, high].
+    open_low : bool
+        In (low, high].
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ValueError
+        For anything else.
+    """
     left, right = "(" if open_low or low == -np.inf else "[", ")" if high == np.inf else "]"
     bounds = f"must be a finite number in {left}{low:g}, {high:g}{right}"
     if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
@@ -59,14 +104,48 @@ def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, 
 
 
 def choice(field: str, value: Any, options: Collection[str]) -> str:
-    """One of ``options`` (a collection of names)."""
+    """Check a name.
+
+    Parameters
+    ----------
+    field : str
+    value : any
+    options : collection of str
+        It must be one of these.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    ValueError
+        For anything else.
+    """
     if not isinstance(value, str) or value not in options:
         raise refuse(field, value, "must be one of " + ", ".join(repr(o) for o in options))
     return value
 
 
 def integer(field: str, value: Any, low: float, high: float) -> int:
-    """An int in [low, high]."""
+    """Check an integer; a bool is none.
+
+    Parameters
+    ----------
+    field : str
+    value : any
+    low, high : int
+        It must be in [low, high].
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    ValueError
+        For anything else.
+    """
     other = (bool, np.bool_, np.timedelta64)  # this one is a NumPy integer, too
     if isinstance(value, other) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
         raise refuse(field, value, f"must be an integer in [{low}, {high}]")
@@ -85,7 +164,22 @@ def flags(field: str, value: Any, shape: tuple[int, ...]) -> Bools:
 
 
 def truth(field: str, value: Any) -> bool:
-    """A bool."""
+    """Check a bool.
+
+    Parameters
+    ----------
+    field : str
+    value : any
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    ValueError
+        For anything else.
+    """
     if not isinstance(value, (bool, np.bool_)):
         raise refuse(field, value, "must be True or False")
     return bool(value)

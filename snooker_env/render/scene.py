@@ -195,7 +195,16 @@ def is_marked(table: Table) -> bool:
 
 @lru_cache(maxsize=16)
 def outline(table: Table) -> Outline:
-    """The ``Outline`` of a ``Table``, put together from its noses, jaws and falls."""
+    """The parts of a table that never move, put together from its noses, jaws and falls.
+
+    Parameters
+    ----------
+    table : Table
+
+    Returns
+    -------
+    Outline
+    """
     cushions, noses = [], []
     ends = [(_point(axis, side * level, end), _point(axis, side, 0.0)) for axis, side, level, *low_high in table.noses for end in low_high]
     for axis, side, level, low, high in table.noses:

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 import snooker_env as sn
-from snooker_env import game, geometry, planning, tasks
+from snooker_env import checks, game, geometry, planning, render, tasks
 from snooker_env.tasks.options import NAMES
 
 ROOT = Path(sn.__file__).resolve().parent.parent
@@ -37,7 +37,7 @@ GOOD = (
     "shot = sn.simulate([(0.0, 0.0), (0.0, 0.5)], [v[:2], (0.0, 0.0)], [w, (0.0, 0.0, 0.0)], 'tight', on_table=[True, False])",
     "cloth = sn.simulate(np.zeros((1, 2)), np.ones((1, 2), np.float32), [[0, 0, 0]], None, sn.Physics(), 'reference')",
     "places: tuple[int, ...] = shot.positions.shape",
-    "moved = shot.at(0.5)[0] + shot.at([0.1, 0.2])[0] + shot.at(np.linspace(0.0, 1.0, 5))[0]",
+    "moved = shot.at(0.5)[0], shot.at([0.1, 0.2])[0], shot.at(np.linspace(0.0, 1.0, 5))[0]",
     "kinds = [sn.EventKind(kind).name for kind in shot.events['kind']]",
     "batch = sn.simulate_batch(np.zeros((3, 1, 2)), [[(1.0, 0.0)]] * 3, np.zeros((3, 1, 3)), events=True, threads=2)",
     "logs: int = 0 if batch.events is None else len(batch.events)",
@@ -58,7 +58,9 @@ GOOD = (
     "is_red: bool = env.ball_on == BallOn.RED and not env.in_hand",
     "options = sn.Options(task='frame', opponent=lambda seen, rng: rng.uniform(-1, 1, 4), noise={'aim_deg': 0.1}, layout='random:3')",
     "played = sn.SnookerEnv(options.but(miss='clear_path'))",
-    "choices = sn.SnookerEnv(action='discrete').step(7)",
+    "choosing = sn.SnookerEnv(action='discrete')",
+    "masks = choosing.action_masks() if choosing.reset(seed=1) else None",
+    "points: float = choosing.step(7)[1]",
     "envs = sn.SnookerVectorEnv(4, sn.Options(noise=Noise(aim_deg=0.1)), autoreset_mode='SameStep', threads=1)",
     "rows, infos = envs.reset(seed=[1, 2, 3, None], options={'reset_mask': np.ones(4, np.bool_)})",
     "rows, rewards, ends, cuts, infos = envs.step(np.zeros((4, 4)), out={'rewards': np.zeros(4)})",
@@ -70,8 +72,10 @@ GOOD = (
     "position = sn.Position(cue=(0.0, 0.0), reds=[(0.5, 0.8)], black=(0.0, 1.46), on='red', table='tight')",
     "planner = sn.Planner({'action': 'discrete', 'noise': 'club'}, threads=2)",
     "outcomes = planner.play(position, [0, 0], [67, 67], keys=[1, 2])",
+    "at, now = env.reset(seed=2)",
     "made = planner.play(env, np.zeros(3, int), np.arange(3), np.arange(3, dtype=np.uint64)).points.mean()",
-    "wrapped = sn.Planner(gymnasium.make('Snooker-v0')).play(outcomes.afterstates, [0], [(0.0, 0.0, 0.0, 0.5)], [[1, 2]])",
+    "wrapped = sn.Planner(gymnasium.make('Snooker-v0')).play(position, [0], [(0.0, 0.0, 0.0, 0.5)], [[1, 2]])",
+    "left: np.ndarray = outcomes.afterstates.positions",
     "states = sn.Positions.of([env.get_state(), env.get_state()])[:1]",
     "blue = sn.Positions.of([position, position])[1].blue",
     "aims = sn.planning.pot_aim(states, [0], [1], [(0.8, 0.8)], 2.3, side=[0.1], elevation=0.1, physics='match')",
@@ -174,7 +178,8 @@ def test_the_checker_knows_the_types_of_public_names():
     assert told["completenessScore"] >= LEAST, unknown
 
 
-PUBLIC = {f"{module.__name__}.{name}": getattr(module, name) for module in (sn, planning, tasks, game, geometry) for name in module.__all__}
+MODULES = (sn, planning, tasks, game, geometry, checks, render)
+PUBLIC = {f"{module.__name__}.{name}": getattr(module, name) for module in MODULES for name in module.__all__}
 with suppress(ImportError):
     from snooker_env.envs.match import MatchEnv
 

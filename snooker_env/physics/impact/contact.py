@@ -31,7 +31,23 @@ _NO_CLOSING = 1e-60
 
 
 def parse_fidelity(fidelity: Fidelity) -> Solver:
-    """``"fast" | "standard" | "reference" | "euler:N"`` -> (code, N); N is 0 unless Euler. ValueError otherwise."""
+    """A fidelity as the kernels read it.
+
+    Parameters
+    ----------
+    fidelity : str
+        "fast", "standard", "reference" or "euler:N".
+
+    Returns
+    -------
+    (int, int)
+        A code, and N; 0 unless Euler.
+
+    Raises
+    ------
+    ValueError
+        For anything else.
+    """
     names = {"fast": FAST, "standard": STANDARD, "reference": REFERENCE}
     if isinstance(fidelity, str):
         if fidelity in names:
