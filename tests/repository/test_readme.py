@@ -36,7 +36,7 @@ SHORT = {
     "benchmarks.rack": ["--shots", "2", "--orders", "2", "--racks", "2", "--out", "{tmp}"],
     "benchmarks.stability": ["--fuzz", "2000", "--out", "{tmp}"],
     "benchmarks.speed": [
-        "--shots", "20", "--repeats", "1", "--parts", "impacts", "shots", "growth", "--largest-batch", "64", "--out", "{tmp}/speed.png",
+        "--shots", "20", "--repeats", "1", "--parts", "impacts", "shots", "growth", "--largest-batch", "64", "--out", "{tmp}",
     ],
     "benchmarks.fit_cushion": [],
     "benchmarks.nap": [],
@@ -48,6 +48,7 @@ SHORT = {
     "benchmarks.pictures": ["--out", "{tmp}"],
     "agents.evaluate": ["--agent", "random", "--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"],
     "agents.report": ["--show", "agents/results/147.json"],
+    "benchmarks.planning": ["--strokes", "100", "--repeats", "2"],
     "benchmarks.fuzz": ["--shots", "300", "--threads", "1"],
     "benchmarks.vector": ["--seconds", "0.1", "--repeats", "1", "--tables", "64", "--ppo-steps", "2048"],
 }  # fmt: skip
