@@ -15,7 +15,7 @@ import snooker_env as sn
 from snooker_env._jit import ENTRIES
 from snooker_env.physics import engine
 from snooker_env.planning import Planner, Positions
-from snooker_env.tasks import visit
+from snooker_env.tasks import stroke, visit
 
 from ._common.command import Command, at_least, run, save_json
 
@@ -28,7 +28,7 @@ class Noted:
 
     def __enter__(self):
         known = set(map(id, ENTRIES))
-        for module in (visit, engine):
+        for module in (stroke, visit, engine):
             for name, kernel in list(vars(module).items()):
                 if id(kernel) in known:
                     self._kernels.append((module, name, kernel))
