@@ -68,7 +68,8 @@ class SnookerVecEnv(VecEnv):
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
         self._actions = None
-        self._returns, self._lengths = np.zeros(num_envs), np.zeros(num_envs, np.int64)
+        self.episode_returns, self.episode_lengths = np.zeros(num_envs), np.zeros(num_envs, np.int64)
+        """Rewards and steps so far of the episodes going on: (n,) each. No state of a table holds them: save them with its state."""
         self._start = time.time()
         if seed is not None:
             self.seed(seed)
@@ -92,7 +93,7 @@ class SnookerVecEnv(VecEnv):
         self.reset_infos = [{key: info[key][k] for key in self.info_keys} for k in range(self.num_envs)]
         self._reset_seeds()
         self._reset_options()
-        self._returns[:], self._lengths[:] = 0.0, 0
+        self.episode_returns[:], self.episode_lengths[:] = 0.0, 0
         return observation
 
     def step_async(self, actions: Any) -> None:
@@ -116,8 +117,8 @@ class SnookerVecEnv(VecEnv):
         """
         observation, rewards, terminated, truncated, info = self.tables.step(self._actions)
         done = terminated | truncated
-        self._returns += rewards
-        self._lengths += 1
+        self.episode_returns += rewards
+        self.episode_lengths += 1
         infos = [{} for _ in range(self.num_envs)]
         for key in self.info_keys:
             values = np.where(done, info["final_info"][key], info[key]) if "final_info" in info else info[key]
@@ -125,10 +126,10 @@ class SnookerVecEnv(VecEnv):
                 own[key] = value
         now = round(time.time() - self._start, 6)
         for k in np.flatnonzero(done).tolist():
-            episode = {"r": round(float(self._returns[k]), 6), "l": int(self._lengths[k]), "t": now}
+            episode = {"r": round(float(self.episode_returns[k]), 6), "l": int(self.episode_lengths[k]), "t": now}
             infos[k]["episode"], infos[k]["terminal_observation"] = episode, info["final_obs"][k]
             infos[k]["TimeLimit.truncated"] = bool(truncated[k] and not terminated[k])
-        self._returns[done], self._lengths[done] = 0.0, 0
+        self.episode_returns[done], self.episode_lengths[done] = 0.0, 0
         return observation, rewards.astype(np.float32), done, infos
 
     def close(self) -> None:

@@ -42,11 +42,11 @@ def training_tables(n, threads=None, view="pots", **options):
         @property
         def running(self):
             """Rewards and strokes so far of the visits going on, for ``episode`` in their last info: no state of a table holds them."""
-            return base._returns.copy(), base._lengths.copy()
+            return base.episode_returns.copy(), base.episode_lengths.copy()
 
         @running.setter
         def running(self, sums):
-            base._returns[:], base._lengths[:] = sums
+            base.episode_returns[:], base.episode_lengths[:] = sums
 
         def env_method(self, method_name, *arguments, indices=None, **more):
             if method_name == "action_masks":

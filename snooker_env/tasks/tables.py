@@ -220,7 +220,9 @@ class Tables(ABC):
         """Table k as tables of their own, of which there is one; they share its state."""
         one = object.__new__(type(self))
         here = slice(k, k + 1)
-        one.__dict__ = {name: value[here] if name in self._columns() else value for name, value in self.__dict__.items()} | {"n": 1}
+        for name, value in vars(self).items():
+            setattr(one, name, value[here] if name in self._columns() else value)
+        one.n = 1
         return one
 
     def _columns(self) -> tuple[str, ...]:
