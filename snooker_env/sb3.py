@@ -164,6 +164,8 @@ class SnookerVecEnv(VecEnv):
         AttributeError
             For what no table has.
         """
+        if attr_name in ("observation_space", "action_space"):  # of one table
+            return [getattr(self.tables, f"single_{attr_name}") for _ in self._get_indices(indices)]
         if hasattr(self.tables, attr_name) and attr_name not in ("np_random", "np_random_seed"):
             return [getattr(self.tables, attr_name) for _ in self._get_indices(indices)]
         try:

@@ -33,6 +33,8 @@ def arrays_given(out: Any, names: Collection[str], n: int, size: int, boxes: dic
             for part, shape in boxes.items():
                 _check_out(f"observations.{part}", a[part], shape, np.float32)
             continue
+        if any(np.may_share_memory(a, other) for other in found.values()):
+            raise refuse_what(f'out["{name}"]', "an array", "must not share memory with another one that is given")
         found[OUTPUTS[name]] = _check_out(name, a, (n, size) if name == "observations" else (n,), DTYPES[name])
     return found
 

@@ -141,7 +141,7 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         self._pictures = Pictures(self.options.rules.table, render_mode)
         self._buffers, self._seeded = ShotBuffers(1, path=render_mode is not None), False
         self.last_shot: Shot | None = None
-        """The ``Shot`` of the last step, with its path when a render mode is set; None before the first."""
+        """The ``Shot`` that the agent played last; with a render mode that of either player, with its path. None before the first."""
 
     # the state of the table ------------------------------------------------------------------------------------------------
 
@@ -325,7 +325,7 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         gymnasium.error.ResetNeeded
             If the episode is over or has not begun.
         SimulationError
-            If the shot cannot be computed; then the balls are left as they lay.
+            If a shot cannot be computed; the balls are left as they lay, but for a cue ball that was placed.
 
         Examples
         --------

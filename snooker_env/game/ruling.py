@@ -1,7 +1,7 @@
 """Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke, as a pure function.
 
 ``ruling`` is a kernel on integers and masks (bit i is ball i), so one and the same machine code judges one table from Python and
-thousands in a batch. ``referee.judge`` is its face for Python, ``settle.settle`` the same for a table with positions.
+thousands in a batch. ``referee.judge`` is its face for Python, ``apply_ruling.settle`` the same for a table with positions.
 
 It takes what a simulator can see. It does not judge intent or effort (whether a miss was deliberate or the attempt good enough,
 ``frame.py`` has the part of that rule which geometry decides), time wasting or conduct; acts that happen outside the simulation (a foot

@@ -9,10 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import integer, refuse_what
+from .._check import integer, refuse, refuse_what
 from .._types import Environment, Integers, Scalars, Vectors
 from ..physics.parameters import Physics
 from ..physics.table import Table
+from ..tasks.box_actions import Actions
 from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
@@ -192,6 +193,8 @@ class Planner:
         float32 (n, 4)
             Actions of ``aim="absolute"``.
         """
+        if isinstance(self._rules.actions, Actions) and self._rules.actions.aim != "absolute":
+            raise refuse("aim", self._rules.actions.aim, 'must be "absolute": what comes out would be read otherwise by this planner')
         return strokes.solved_choices(Positions.of(positions), rows, choices, (self.physics, self._rules.fidelity))
 
     def pot_aim(
@@ -234,8 +237,10 @@ def _rules_of(source: Any) -> Rules:
 def _streams(keys: Integers | Sequence[Integers] | None, n: int, silent: bool) -> NDArray[np.uint64]:
     """The random stream of each stroke, key and counter: uint64 (n, 2)."""
     streams = np.zeros((n, 2), np.uint64)
-    if keys is None and silent:
-        return streams
+    if keys is None:
+        if silent:
+            return streams
+        raise refuse("keys", None, f"must be given with execution noise: {n} integers in [0, 2**64), a noise sample for each stroke")
     allowed = f"must be {n} integers in [0, 2**64), a noise sample for each stroke"
     given = keys if isinstance(keys, np.ndarray) else np.array(keys, object)  # NumPy makes floats of a list of large and small integers
     if given.dtype == object and all(isinstance(k, int | np.integer) and 0 <= k < 2**64 for k in given.flat):

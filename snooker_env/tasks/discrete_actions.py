@@ -58,7 +58,7 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
 
 @kernel(seconds=1, uses=(solved_aim,))
 def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_steps, found, motion, state, work):
-    """(speed, side, top, aim, elevation) of choice ``index``, as ``actions.shot_of``; found (POTS, POT_COLUMNS), motion (2, COLUMNS),
+    """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``; found (POTS, POT_COLUMNS), motion (2, COLUMNS),
     state (2,) and work are work space."""
     pot, stroke = index // STROKES, index % STROKES
     speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
@@ -120,6 +120,6 @@ class Choices:
         return a.astype(np.float64).reshape(n, 1)
 
     def pack(self) -> Floats:
-        """What the kernels must know, places ``A_*`` of ``actions``."""
+        """What the kernels must know, places ``A_*`` of ``box_actions``."""
         world = self.physics
         return np.array([False, False, False, world.end_mass_ratio, world.max_offset, True], np.float64)

@@ -17,7 +17,7 @@ import numpy as np
 
 from .._check import refuse
 from .._types import Bools, Floats, Ints, Singles
-from ..game.balls import COLOURS_MASK, N_BALLS, mask_of_present
+from ..game.balls import COLOURS_MASK, N_BALLS, SPOTS, mask_of_present
 from ..game.frame import Frame
 from ..game.frame_columns import COLUMNS, FREE_BALL, PHASE, SCORE_0, SCORE_1, STRIKER, STROKES, Layouts, frame_of, write_frame
 from ..game.layouts import deal_tables
@@ -45,6 +45,10 @@ class Frames(Tables):
         super().__init__(rules, n, limit=limit)
         self._saved_positions, self._saved_on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
         self._lead, self._replies, self._played = (np.zeros(n, np.int64) for _ in range(3))
+        self.positions[:], self.on_table[:] = SPOTS, True  # as a frame stands before its first reset
+        if n:
+            write_frame(Frame.start(miss="clear_path" if rules.miss else "off"), 0, self.game[0], self.saved, 0)
+            self.game[:] = self.game[0]
         self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
 
     @property
@@ -125,7 +129,8 @@ class Frames(Tables):
         """One step of all tables: actions (n, k) float64 that were checked, results into ``out``.
 
         ``waiting`` (n,) bool: tables that begin a new frame instead of playing; ``same_step``: those whose frame ends begin a new one at
-        once. Raises SimulationError if a shot cannot be computed: its balls are left as they lay, other tables may have been played; and
+        once. Raises SimulationError if a shot cannot be computed: its balls are left as they lay, but for a cue ball that was placed, and a
+        decision that was taken stands; other tables may have been played. And
         whatever an opponent raises.
         """
         anew, alone = bool(waiting.any()), self.rules.opponent is None

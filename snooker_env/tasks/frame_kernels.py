@@ -89,7 +89,7 @@ def _hand_back(row):
     if not row[OVER] and row[STRIKER] != AGENT:
         if row[PHASE] == CHOICE:
             choose(row, PLAY_AGAIN)
-        row[STRIKER], row[POINTS] = AGENT, 0
+        row[STRIKER] = AGENT  # whose break has ended: ``after_stroke`` saw to that
 
 
 @entry(what="the referee of frames", seconds=6)

@@ -198,8 +198,8 @@ class AskedOpponent:
             return [self.policy(observations.shaped(rules.observation, row.copy()), rng) for row, rng in zip(seen, generators, strict=True)]
         masks = frames.action_masks(which) if isinstance(rules.actions, Choices) else None
         wished = many(observations.shaped(rules.observation, seen), generators, masks)
-        if len(wished) != len(which):
-            raise refuse("opponent's actions", len(wished), f"must be {len(which)}, one for each table that waits")
+        if not hasattr(wished, "__len__") or len(wished) != len(which):
+            raise refuse("opponent's actions", wished, f"must be {len(which)}, one for each table that waits")
         return wished
 
     def prepare(self, frames: "Frames", which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
@@ -284,7 +284,7 @@ def opponent_of(opponent: str | Path | Policy, kind: ObservationKind, actions: A
     """The player that ``opponent`` names; None for "none". ``kind``: of the observation, ``trust``: may code run, for a model's file."""
     allowed = "must be one of " + ", ".join(map(repr, OPPONENTS)) + ", a path to a model (.zip), or a callable(observation, rng) -> action"
     truth("trust", trust)
-    if callable(opponent):
+    if callable(opponent) or callable(getattr(opponent, "many", None)):
         return AskedOpponent(opponent)
     if not isinstance(opponent, str | Path) or (str(opponent) not in OPPONENTS and Path(opponent).suffix != ".zip"):
         raise refuse("opponent", opponent, allowed)

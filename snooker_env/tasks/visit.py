@@ -92,7 +92,8 @@ class Visits(Tables):
         """One step of all tables: actions (n, k) float64 that were checked, results into ``out``.
 
         ``waiting`` (n,) bool: tables that begin a new visit instead of playing; ``same_step``: those whose visit ends begin a new one at
-        once. Raises SimulationError if a shot cannot be computed: its balls are left as they lay, other tables may have been played.
+        once. Raises SimulationError if a shot cannot be computed: its balls are left as they lay, but for a cue ball that was placed; other
+        tables may have been played.
         """
         anew = bool(waiting.any())
 

@@ -105,7 +105,7 @@ def test_a_player_of_many_tables_is_asked_once_for_all_that_wait():
         longest = int(np.max(got[4]["opponent_strokes"]))
         assert 0 < many.calls - before <= 2 * longest + 6  # rounds, not tables: handing over and new frames may add a few
     wrong = SnookerVectorEnv(4, task="frame", opponent=type("Short", (), {"__call__": lambda *_: None, "many": lambda *_: []})())
-    with pytest.raises(ValueError, match=r"opponent's actions = 0: must be \d+, one for each table that waits"):
+    with pytest.raises(ValueError, match=r"opponent's actions = \[\]: must be \d+, one for each table that waits"):
         [wrong.reset(seed=seed) for seed in range(5)]
 
 
@@ -144,6 +144,13 @@ def test_options_are_checked_once_and_taken_by_every_environment():
     keywords = {"task": "frame", "layout": "random:2", "noise": "club", "decision": True}
     for one, other in ((SnookerEnv(options), SnookerEnv(**keywords)), (SnookerVectorEnv(2, options), SnookerVectorEnv(2, **keywords))):
         assert one.options == other.options == options and same(one.reset(seed=2), other.reset(seed=2))
+    assert Options().but(task="frame") == Options(task="frame") and Options(task="frame").but(task="visit").rules.plan.name == "opened"
+    level = {"aim_deg": 0.1}
+    own = Options(noise=level)
+    level["aim_deg"] = 5.0  # what is given may change: what is played does not
+    assert own.rules.noise.aim_deg == own.but(aim="target").rules.noise.aim_deg == 0.1 and hash(own) == hash(
+        Options(noise={"aim_deg": 0.1})
+    )
     changed = options.but(noise="none")
     assert changed.noise == "none" and options.noise == "club" and changed.rules.noise.silent
     with pytest.raises(AttributeError):
@@ -225,6 +232,13 @@ def test_results_are_written_into_the_arrays_given(mode, options):
         if mode == AutoresetMode.DISABLED and done.any():
             mask = {"reset_mask": done.copy()}
             assert same(plain.reset(options=mask), given.reset(options=mask, out={"observations": out["observations"]}))
+
+
+def test_arrays_that_share_memory_are_refused():
+    env, both = native(4), np.zeros(4, bool)
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match="must not share memory"):
+        env.step(np.zeros((4, 4)), out={"terminations": both, "truncations": both})
 
 
 def test_observations_of_balls_are_written_too():

@@ -187,7 +187,7 @@ def test_what_makes_no_sense_is_refused_by_name(arguments, complaint):
 
 
 def test_keys_may_only_be_left_out_without_noise():
-    with pytest.raises(ValueError, match=r"keys = array of shape \(\): must be 1 integers"):
+    with pytest.raises(ValueError, match=r"keys = None: must be given with execution noise: 1 integers"):
         Planner({"noise": "club"}).play(AT, [0], STROKE)
 
 

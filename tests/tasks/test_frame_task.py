@@ -32,7 +32,7 @@ def test_the_spaces_grow_and_those_of_a_visit_do_not():
 
 
 def test_the_default_layout_is_that_of_the_task():
-    assert SnookerEnv().options.layout == "opened" and frame_env().options.layout == "break_off"
+    assert SnookerEnv().options.rules.plan.name == "opened" and frame_env().options.rules.plan.name == "break_off"
     env = frame_env(layout="colours")
     env.reset(seed=0)
     assert env.ball_on == BallOn.YELLOW and not env.in_hand

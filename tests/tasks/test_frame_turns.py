@@ -10,6 +10,7 @@ import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import D_RADIUS
+from snooker_env.tasks.observations import FRAME_ENTRIES
 from tests.tables import PLACES, frame_env, frame_state
 
 TO_BLUE = 0.0
@@ -121,3 +122,43 @@ def test_points_add_up_to_the_difference_and_win_says_who_won(opponent):
             totals[reward] = total
         assert totals["points"] == info["score"] - info["opponent_score"] - (start[0] - start[1])
         assert totals["win"] == (1.0 if info["winner"] == 0 else -1.0)
+
+
+# What a step tells
+
+
+ON_BLACK = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}
+
+
+@pytest.mark.parametrize("strokes", [5, 9])
+def test_a_frame_that_ends_by_the_rules_with_its_last_stroke_is_not_stopped(strokes):
+    frame = {"ball_on": BallOn.BLACK, "scores": (20, 0)}
+    env = frame_state(frame_env(aim="absolute", max_strokes=10), ON_BLACK, frame, strokes=strokes)
+    for _ in range(40):  # along the pot, a little to both sides of it
+        aim = np.arctan2(0.3, 0.3) / np.pi + np.random.default_rng(_).uniform(-0.01, 0.01)
+        env = frame_state(env, ON_BLACK, frame, strokes=strokes)
+        _, _, terminated, truncated, info = env.step([-0.4, 0, 0, aim, 0, 0, 0])
+        if terminated:
+            assert not truncated and info["winner"] == 0 and info["strokes"] == strokes + 1
+            break
+        assert truncated == (strokes == 9) or info["foul"]
+    assert terminated
+
+
+@pytest.mark.parametrize(("lead", "needs"), [(0, False), (7, False), (8, True)])
+def test_snookers_are_needed_by_who_trails_by_more_than_is_left(lead, needs):
+    """Only the black is left, seven points; and the observation shows them."""
+    env = frame_env(aim="absolute")
+    plain = frame_state(env, ON_BLACK, {"ball_on": BallOn.BLACK, "scores": (10, 10 + lead)}).get_state()
+    observation, info = env.reset(options={"state": plain})
+    assert info["needs_snookers"] is needs
+    names = dict(zip(FRAME_ENTRIES, observation[-len(FRAME_ENTRIES) :].tolist(), strict=True))
+    assert names["available"] == pytest.approx(7 / 147) and names["lead"] == pytest.approx(-lead / 155)
+
+
+def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
+    for env in (frame_env(render_mode="ansi"), sn.match_env(render_mode="ansi"), sn.SnookerVectorEnv(2, task="frame", render_mode="ansi")):
+        assert env.render() and env.get_state()
+        with pytest.raises(gymnasium.error.ResetNeeded):
+            env.step(np.zeros((2, 4)) if isinstance(env, sn.SnookerVectorEnv) else np.zeros(7))
+    assert frame_env().frame.phase == "stroke" and frame_env().over
