@@ -284,10 +284,12 @@ def opponent_of(opponent: str | Path | Policy, kind: ObservationKind, actions: A
     """The player that ``opponent`` names; None for "none". ``kind``: of the observation, ``trust``: may code run, for a model's file."""
     allowed = "must be one of " + ", ".join(map(repr, OPPONENTS)) + ", a path to a model (.zip), or a callable(observation, rng) -> action"
     truth("trust", trust)
-    if callable(opponent) or callable(getattr(opponent, "many", None)):
+    if not isinstance(opponent, str | Path):
+        if not (callable(opponent) or callable(getattr(opponent, "many", None))):
+            raise refuse("opponent", opponent, allowed)
         return AskedOpponent(opponent)
-    if not isinstance(opponent, str | Path) or (str(opponent) not in OPPONENTS and Path(opponent).suffix != ".zip"):
-        raise refuse("opponent", opponent, allowed)
     if str(opponent) in OPPONENTS:
         return {"none": lambda: None, "random": UniformOpponent, "ghost_ball": GhostBallOpponent}[str(opponent)]()
+    if Path(opponent).suffix != ".zip":
+        raise refuse("opponent", opponent, allowed)
     return AskedOpponent(SavedPolicy(opponent, kind, actions, trust))
