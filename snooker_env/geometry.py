@@ -19,8 +19,8 @@ from ._check import number, refuse, truth
 from ._types import Floats
 
 __all__ = [
-    "BALL_RADIUS", "BAULK_Y", "COLOUR_SPOTS", "D_RADIUS", "HALF_LENGTH", "HALF_WIDTH", "POCKETS", "POCKET_AIMS", "POCKET_PLACES", "PRESETS",
-    "SIDES", "Bed", "Pocket",
+    "AIM_X", "AIM_Y", "AXIS_X", "AXIS_Y", "BALL_RADIUS", "BAULK_Y", "COLOUR_SPOTS", "D_RADIUS", "HALF_LENGTH", "HALF_WIDTH", "IS_MIDDLE",
+    "POCKETS", "POCKET_AIMS", "POCKET_PLACES", "PRESETS", "SIDES", "Bed", "Pocket",
 ]  # fmt: skip
 
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")

@@ -18,7 +18,9 @@ from math import asin, atan2, cos, hypot, sin, sqrt
 import numpy as np
 
 from snooker_env.game import N_BALLS, TOUCH, BallOn
-from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from snooker_env.geometry import AIM_X as POCKET_X
+from snooker_env.geometry import AIM_Y as POCKET_Y
+from snooker_env.geometry import AXIS_X, AXIS_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, IS_MIDDLE, POCKET_AIMS
 from snooker_env.kernels import GHOST_X as POT_X
 from snooker_env.kernels import GHOST_Y as POT_Y
 from snooker_env.kernels import POT_BALL, POT_COLUMNS, POT_POCKET, balls_on, bits, clear_segment, entry, find_pots, kernel, line_of, window
@@ -91,7 +93,7 @@ def _banks(positions, present, ball, noses, shots, count):
         if depth < 1e-3:  # it touches the cushion
             continue
         for k in range(6):
-            kx, ky = POCKET_AIMS[k, 0], POCKET_AIMS[k, 1]
+            kx, ky = POCKET_AIMS[k, POCKET_X], POCKET_AIMS[k, POCKET_Y]
             if side * (kx if across_x else ky) >= line:  # a pocket at this very cushion
                 continue
             mx, my = (2.0 * side * line - kx, ky) if across_x else (kx, 2.0 * side * line - ky)
@@ -103,7 +105,7 @@ def _banks(positions, present, ball, noses, shots, count):
             if not noses[j, 3] <= (qy if across_x else qx) <= noses[j, 4]:
                 continue
             ex, ey = (-dx, dy) if across_x else (dx, -dy)
-            width = window(ex * POCKET_AIMS[k, 2] + ey * POCKET_AIMS[k, 3], POCKET_AIMS[k, 4] > 0.0)
+            width = window(ex * POCKET_AIMS[k, AXIS_X] + ey * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0)
             if width <= 0.0:
                 continue
             gx, gy, gain = _first_leg(positions, present, ball, dx, dy)
@@ -129,13 +131,13 @@ def _plants(positions, present, ball, other, shots, count):
     apart = hypot(ux, uy)
     ux, uy = ux / apart, uy / apart
     for k in range(6):
-        kx, ky = POCKET_AIMS[k, 0], POCKET_AIMS[k, 1]
+        kx, ky = POCKET_AIMS[k, POCKET_X], POCKET_AIMS[k, POCKET_Y]
         dx, dy = kx - bx, ky - by
         run = hypot(dx, dy)
         if run < 1e-9:
             continue
         dx, dy = dx / run, dy / run
-        width = window(dx * POCKET_AIMS[k, 2] + dy * POCKET_AIMS[k, 3], POCKET_AIMS[k, 4] > 0.0)
+        width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0)
         if width <= 0.0 or ux * dx + uy * dy < _THINNEST:
             continue
         half = width / (2.0 * run)
@@ -191,7 +193,7 @@ def _off(ax, ay, ux, uy, apart, s, e):
 @kernel
 def _passing(k, qx, qy, ox, oy):
     """The angle [rad] by which a ball at q with direction o passes pocket k on the left."""
-    kx, ky = POCKET_AIMS[k, 0] - qx, POCKET_AIMS[k, 1] - qy
+    kx, ky = POCKET_AIMS[k, POCKET_X] - qx, POCKET_AIMS[k, POCKET_Y] - qy
     return atan2(kx * oy - ky * ox, kx * ox + ky * oy)
 
 
@@ -226,14 +228,14 @@ def _cannons(positions, present, ball, other, e, shots, count):
                 else:
                     b = middle
             qx, qy, ix, iy, ox, oy = _off(ax, ay, ux, uy, apart, a, e)
-            width = window(ox * POCKET_AIMS[k, 2] + oy * POCKET_AIMS[k, 3], POCKET_AIMS[k, 4] > 0.0)
+            width = window(ox * POCKET_AIMS[k, AXIS_X] + oy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0)
             if width <= 0.0:
                 continue
             gx, gy, gain = _first_leg(positions, present, ball, ix, iy)
             if gain <= 0.0:
                 continue
             turn = abs(asin(reach * high / apart) - asin(reach * low / apart)) / abs(at_high - at_low)
-            kx, ky = POCKET_AIMS[k, 0], POCKET_AIMS[k, 1]
+            kx, ky = POCKET_AIMS[k, POCKET_X], POCKET_AIMS[k, POCKET_Y]
             tolerance = width / (2.0 * hypot(kx - qx, ky - qy)) * turn * gain
             if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
                 continue
@@ -283,8 +285,8 @@ def direct_pots(positions, on_table, ball_on, shots, counts):
             pocket, row = int(found[j, POT_POCKET]), shots[t, j]
             row[KIND], row[BALL], row[OTHER], row[POCKET] = DIRECT, found[j, POT_BALL], -1, pocket
             row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y] = (
-                POCKET_AIMS[pocket, 0],
-                POCKET_AIMS[pocket, 1],
+                POCKET_AIMS[pocket, POCKET_X],
+                POCKET_AIMS[pocket, POCKET_Y],
                 found[j, POT_X],
                 found[j, POT_Y],
             )

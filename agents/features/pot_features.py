@@ -6,7 +6,7 @@ import numpy as np
 from gymnasium import spaces
 
 from snooker_env.game import N_BALLS, VALUES
-from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from snooker_env.geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from snooker_env.kernels import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, entry, find_pots
 from snooker_env.kernels import TOLERANCE as POT_TOLERANCE
 from snooker_env.tasks import OBSERVATION_SIZE, POTS, observation_space, shaped_observations
@@ -46,12 +46,12 @@ def _add_pots(observations, shown):
             px, py, rx, ry = gx - positions[0, 0], gy - positions[0, 1], bx - gx, by - gy
             away, run = hypot(px, py), hypot(rx, ry)
             px, py, rx, ry = px / away, py / away, rx / run, ry / run
-            to_pocket = hypot(POCKET_AIMS[pocket, 0] - bx, POCKET_AIMS[pocket, 1] - by)
+            to_pocket = hypot(POCKET_AIMS[pocket, AIM_X] - bx, POCKET_AIMS[pocket, AIM_Y] - by)
             row[at], row[at + 1], row[at + 2], row[at + 3], row[at + 4] = 1.0, px, py, px * ry - py * rx, found[p, COS_CUT]
             row[at + 5], row[at + 6] = away / HALF_LENGTH - 1.0, to_pocket / HALF_LENGTH - 1.0
             row[at + TOLERANCE], row[at + 8] = 1.0 + log10(found[p, POT_TOLERANCE]) / 2.0, VALUES[ball] / 7.0
             row[at + 9], row[at + 10] = bx / HALF_WIDTH, by / HALF_LENGTH
-            row[at + 11], row[at + 12] = POCKET_AIMS[pocket, 0] / HALF_WIDTH, POCKET_AIMS[pocket, 1] / HALF_LENGTH
+            row[at + 11], row[at + 12] = POCKET_AIMS[pocket, AIM_X] / HALF_WIDTH, POCKET_AIMS[pocket, AIM_Y] / HALF_LENGTH
             for c in range(at, at + POT_ENTRIES):
                 row[c] = min(1.0, max(-1.0, row[c]))
 

@@ -6,7 +6,7 @@ from math import erf, exp, radians, sqrt
 import numpy as np
 
 from snooker_env.game import N_BALLS, VALUES, BallOn
-from snooker_env.geometry import BALL_RADIUS, POCKET_AIMS
+from snooker_env.geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from snooker_env.kernels import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, balls_on, bits, entry, find_pots
 from snooker_env.tasks import POTS
 
@@ -47,7 +47,7 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
         for j in range(many):
             ball, pocket, gx, gy = int(found[j, POT_BALL]), int(found[j, POT_POCKET]), found[j, GHOST_X], found[j, GHOST_Y]
             path = sqrt((gx - p[0, 0]) ** 2 + (gy - p[0, 1]) ** 2)
-            run = sqrt((POCKET_AIMS[pocket, 0] - p[ball, 0]) ** 2 + (POCKET_AIMS[pocket, 1] - p[ball, 1]) ** 2)
+            run = sqrt((POCKET_AIMS[pocket, AIM_X] - p[ball, 0]) ** 2 + (POCKET_AIMS[pocket, AIM_Y] - p[ball, 1]) ** 2)
             chance = erf(found[j, TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
             if j < chances.shape[1]:
                 chances[k, j] = chance

@@ -10,7 +10,7 @@ from .._check import choice, refuse, refuse_what, truth
 from .._jit import entry, kernel
 from .._types import Action, Flags, Floats, Vectors
 from ..game.balls import N_BALLS
-from ..game.pots import POT_COLUMNS, find_pots
+from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
@@ -46,7 +46,7 @@ def line_of(positions, on_table, on, found):
     """Direction [rad] of the best potting line, see ``line``; ``found`` (1, POT_COLUMNS) is work space."""
     x, y = positions[0, 0], positions[0, 1]
     if find_pots(positions, on_table, on, BALL_RADIUS, found):
-        return atan2(found[0, 3] - y, found[0, 2] - x)
+        return atan2(found[0, GHOST_Y] - y, found[0, GHOST_X] - x)
     near, tx, ty = np.inf, x, y
     for i in range(1, N_BALLS):
         if (on >> i) & 1:

@@ -14,8 +14,8 @@ from .._jit import entry, kernel
 from .._types import Action, Floats
 from ..game.balls import bits
 from ..game.frame_columns import strikeable
-from ..game.pots import POT_COLUMNS, find_pots
-from ..geometry import BALL_RADIUS, POCKET_AIMS
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
+from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
 from .box_actions import line_of
@@ -68,11 +68,11 @@ def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_ste
         aim = line_of(positions, on_table, on, found)
     else:
         pot = min(pot, many - 1)
-        ball, pocket, gx, gy = int(found[pot, 0]), int(found[pot, 1]), found[pot, 2], found[pot, 3]
+        ball, pocket, gx, gy = int(found[pot, POT_BALL]), int(found[pot, POT_POCKET]), found[pot, GHOST_X], found[pot, GHOST_Y]
+        px, py = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
         aim = solved_aim(
-            positions, ball, POCKET_AIMS[pocket, 0], POCKET_AIMS[pocket, 1], gx, gy, speed, side, top, 0.0, phys, end_mass_ratio, fidelity,
-            n_steps, motion, state, work,
-        )  # fmt: skip
+            positions, ball, px, py, gx, gy, speed, side, top, 0.0, phys, end_mass_ratio, fidelity, n_steps, motion, state, work
+        )
     return speed, side, top, aim - squirt(side, end_mass_ratio), 0.0
 
 

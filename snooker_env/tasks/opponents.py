@@ -17,8 +17,8 @@ from .._types import Action, Bools, Floats, Ints, Observation, ObservationKind
 from ..game.balls import N_BALLS, bits
 from ..game.frame_columns import CHOICE, IN_HAND, PHASE, PLAY, choose, strikeable
 from ..game.philox import pair
-from ..game.pots import POT_COLUMNS, find_pots
-from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
+from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
+from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from . import observations
 from .box_actions import Actions
 from .discrete_actions import SIZE as CHOICES
@@ -107,9 +107,9 @@ def _wanted(positions, on_table, on, found, stream):
     """Speed [m/s] and direction [rad] of the geometric player's shot at the balls in the mask ``on``."""
     x, y = positions[0, 0], positions[0, 1]
     if find_pots(positions, on_table, on, BALL_RADIUS, found):
-        ball, pocket, gx, gy, cos_cut = int(found[0, 0]), int(found[0, 1]), found[0, 2], found[0, 3], found[0, 4]
-        run = hypot(POCKET_AIMS[pocket, 0] - positions[ball, 0], POCKET_AIMS[pocket, 1] - positions[ball, 1])
-        needed = _SLIDE * sqrt(_ROLL * (run + 0.6)) / max(cos_cut, 0.2)  # of the cue ball at the impact
+        ball, pocket, gx, gy = int(found[0, POT_BALL]), int(found[0, POT_POCKET]), found[0, GHOST_X], found[0, GHOST_Y]
+        run = hypot(POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1])
+        needed = _SLIDE * sqrt(_ROLL * (run + 0.6)) / max(found[0, COS_CUT], 0.2)  # of the cue ball at the impact
         return min(6.0, _SLIDE * sqrt(_ROLL * hypot(gx - x, gy - y) + needed * needed)), atan2(gy - y, gx - x)
     near, ball = inf, -1
     for i in range(1, N_BALLS):
@@ -138,8 +138,8 @@ def _ghost_ball(which, positions, on_table, game, streams, options, noise, r, v,
             widest, best = 0.0, _USUAL_PLACE
             for c in range(len(_PLACES)):
                 place(p, on, *_PLACES[c])
-                if find_pots(p, on, mask, BALL_RADIUS, found) and found[0, 5] > widest:
-                    widest, best = found[0, 5], c
+                if find_pots(p, on, mask, BALL_RADIUS, found) and found[0, TOLERANCE] > widest:
+                    widest, best = found[0, TOLERANCE], c
             place(p, on, *_PLACES[best])
         u, anywhere = pair(stream)
         jitter, _ = pair(stream)
