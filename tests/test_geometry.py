@@ -26,7 +26,9 @@ def test_the_numbers_of_the_table_are_written_in_one_file():
     found = {}
     for path in PACKAGE.rglob("*.py"):
         tree = ast.walk(ast.parse(path.read_text()))
-        found[path.name] = numbers & {node.value for node in tree if isinstance(node, ast.Constant) and isinstance(node.value, float)}
+        found[path.relative_to(PACKAGE).as_posix()] = numbers & {
+            node.value for node in tree if isinstance(node, ast.Constant) and isinstance(node.value, float)
+        }
     assert found.pop("geometry.py") == {0.889, 1.7845, 1.0475, 0.292, 1.4605, 0.02625}
     assert not any(found.values()), {name: values for name, values in found.items() if values}
 

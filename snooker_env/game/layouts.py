@@ -219,7 +219,7 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     """
     head, _, which = name.partition(":") if isinstance(name, str) else ("", "", "")
     tables, code = NO_BANK, None
-    if name in ("opened", "held_out"):
+    if isinstance(name, str) and name in ("opened", "held_out"):
         tables = bank_without(unfit)
         part = kept(len(tables))[name == "held_out"]
         code = (OPENED, N_REDS, part.start, part.stop)

@@ -153,9 +153,8 @@ class Options:
             if isinstance(getattr(self, name), dict):  # which may change later
                 object.__setattr__(self, name, read)
         actions = self._actions(physics)
-        if not isinstance(self.layout, str):
-            raise refuse("layout", self.layout, "must be a layout's name")
-        plan = fitted(LAYOUTS[self.task] if self.layout == "default" else self.layout, table)
+        default = isinstance(self.layout, str) and self.layout == "default"
+        plan = fitted(LAYOUTS[self.task] if default else self.layout, table)
         choice("observation", self.observation, OBSERVATIONS)
         truth("trust", self.trust)
         choice("reward", self.reward, FRAME_REWARDS if frame else REWARDS)
