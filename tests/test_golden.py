@@ -20,7 +20,7 @@ def test_as_kept(name):
     assert golden.SETS[name]() == KEPT[name]
 
 
-def test_a_digest_notices(monkeypatch):
+def test_a_digest_notices():
     """A part in a thousand million of one number changes it, and less does not."""
 
     def text(value):

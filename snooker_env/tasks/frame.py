@@ -39,7 +39,6 @@ class Frames(Tables):
     FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers")
     SIZE = FRAME_SIZE
     COLUMNS = COLUMNS
-    KIND = "frame"
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         super().__init__(rules, n, limit=limit)

@@ -146,8 +146,6 @@ class Tables(ABC):
     """Numbers in an observation."""
     COLUMNS = 0
     """Of ``game``."""
-    KIND = ""
-    """The task: "visit" or "frame"."""
 
     rules: Rules
     n: int

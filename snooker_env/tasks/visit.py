@@ -86,7 +86,6 @@ class Visits(Tables):
 
     SIZE = SIZE
     COLUMNS = VISIT_COLUMNS
-    KIND = "visit"
 
     def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
         """One step of all tables: actions (n, k) float64 that were checked, results into ``out``.
