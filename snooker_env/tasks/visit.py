@@ -165,6 +165,11 @@ class Visits(Tables):
         self.streams[k] = np.array(state.stream, np.uint64)
         self.begun[k] = True
 
+    def standing(self, k: int) -> dict[str, Any]:
+        """Of a ``Played`` on table k: there is one player, whose break is his score."""
+        points = int(self.game[k, POINTS])
+        return {"next_player": 0, "scores": (points,), "break_points": points, "choice": False, "winner": None}
+
     def text(self, k: int) -> str:
         """One line for the pictures."""
         on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
