@@ -160,7 +160,7 @@ class Replay:
             If the file cannot be written.
         """
         target = Path(path)
-        suffix = choice("suffix of path", target.suffix.lower(), SUFFIXES)
+        suffix = choice("suffix", target.suffix.lower(), SUFFIXES)
         if suffix in (".mp4", ".gif"):
             from .film import write_film
 
