@@ -12,7 +12,7 @@ from ..physics.table import Table
 from ..simulation import Shot
 from ..tasks.played import Played
 from ..tasks.tables import Tables
-from .films import Film
+from .films import PictureSource
 
 MODES = ("human", "rgb_array", "ansi")
 FPS = 30
@@ -30,10 +30,10 @@ class Pictures:
 
     def __init__(self, table: Table, mode: str | None):
         self.table, self.mode = table, mode
-        self._window, self._film = None, Film()
+        self._window, self._film = None, PictureSource()
 
     def __getstate__(self) -> dict[str, Any]:
-        return self.__dict__ | {"_window": None, "_film": Film()}
+        return self.__dict__ | {"_window": None, "_film": PictureSource()}
 
     def render(self, tables: Tables, k: int, shot: Shot | None, recent: list[Played]) -> Picture:
         """Table k with the paths of its last ``shot``: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise.
