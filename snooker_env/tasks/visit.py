@@ -164,6 +164,11 @@ class Visits(Tables):
         self.streams[k] = np.array(state.stream, np.uint64)
         self.begun[k] = True
 
+    def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
+        """Begin a visit on table k with a sound position, ``game`` being its row; its random numbers go on."""
+        self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
+        self.begun[k] = True
+
     def text(self, k: int) -> str:
         """One line for the pictures."""
         on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
