@@ -9,6 +9,7 @@ from ._check import array, refuse
 from ._types import Bools, Floats, Ints, Real, Vector
 from .physics import trajectory
 from .physics.parameters import Physics
+from .physics.table import Table
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
 """One logged event; ``kind`` is an ``EventKind``."""
@@ -39,6 +40,8 @@ class Shot:
         The paths, for ``at``.
     physics : Physics
         The world it was played in.
+    table : Table, or None
+        The table it was played on, if that is known.
 
     Examples
     --------
@@ -57,6 +60,7 @@ class Shot:
     events: NDArray[np.void]
     segments: Floats = field(repr=False)
     physics: Physics = field(repr=False)
+    table: Table | None = field(default=None, repr=False)
 
     def at(self, t: Real | Vector) -> tuple[Floats, Floats, Floats]:
         """Where the balls are at a time, how fast they move and how they spin.

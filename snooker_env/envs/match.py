@@ -292,7 +292,7 @@ class MatchEnv(AECEnv[str, Any, Any]):
             self._show(film=bool(played))
 
     def _watch(self, k, buffers, j, own):
-        self.last_shot = buffers.shot(j, self.options.rules.physics)
+        self.last_shot = buffers.shot(j, self.options.rules)
 
     def _info(self, frame, player):
         last, row = self._last, self.tables.game[0]

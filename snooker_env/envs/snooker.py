@@ -372,7 +372,7 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
     def _watch(self, k: int, buffers: ShotBuffers, j: int, own: bool) -> None:
         """Called after each stroke of either player: all are shown, else the agent's own is kept."""
         if own or self.render_mode is not None:
-            self.last_shot = buffers.shot(j, self.options.rules.physics)
+            self.last_shot = buffers.shot(j, self.options.rules)
         if self.render_mode == "human":
             self._show(film=True)
 

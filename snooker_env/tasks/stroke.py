@@ -5,6 +5,7 @@ its own referee. Kernels go over the tables named by ``which``; row j of the ``S
 draws from its own stream (``game.philox``), so that no table's result depends on another, on their number or on the threads.
 """
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,15 +13,15 @@ from numpy.typing import NDArray
 
 from .._jit import entry, kernel
 from .._types import Bools, Floats, Ints
-from ..game.balls import CUE, N_BALLS, TOUCH, bits
+from ..game.balls import CUE, N_BALLS, TOUCH, BallOn, bits, ids_of
 from ..game.frame_columns import IN_HAND, strikeable
 from ..game.in_hand import nearest_place
 from ..game.pots import POT_COLUMNS
+from ..game.ruling import Foul
 from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.engine import EventKind, Status
 from ..physics.impact.polynomial import WORK
-from ..physics.parameters import Physics
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
 from .box_actions import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, place_of, shot_of, tip_on_disc
@@ -32,11 +33,14 @@ if TYPE_CHECKING:
 AT_ONCE = 1e-9
 """Contacts nearer than this [s] are simultaneous."""
 
-# Columns of what is kept of a strike: the five numbers after it, and the speed that was intended.
-(VX, VY, WX, WY, WZ, SPEED) = range(6)
+# Columns of what is kept of a strike: the five numbers after it, the speed that was intended, and the strike itself, errors included.
+(VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
+STRIKE_COLUMNS = 11
 
-# Columns of what the referee sees of a stroke: masks of balls, then the paths before it (only where misses are called).
-(FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH) = range(6)
+# Columns of what the referee sees of a stroke: masks of balls, then the paths before it (only where misses are called); and of what he
+# says of it: who played, on which ball (a ``BallOn``), with a free ball or not, what it scored, cost, and the fouls.
+(FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, PLAYER, WAS_ON, FREE, SCORED, COST, FOULS) = range(12)
+SEEN_COLUMNS = 12
 
 _BALL_BALL = int(EventKind.BALL_BALL)
 _WHY = {
@@ -91,6 +95,7 @@ def strike(intended, positions, on_table, stream, options, noise, j, r, v, w, he
     shot = shots[j]
     (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS])
     shot[SPEED] = intended[0]
+    shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation
     for i in range(N_BALLS):
         r[j, i, 0], r[j, i, 1], here[j, i] = positions[i, 0], positions[i, 1], on_table[i]
         v[j, i, 0] = v[j, i, 1] = w[j, i, 0] = w[j, i, 1] = w[j, i, 2] = 0.0
@@ -131,6 +136,48 @@ def see(j, event_time, event_what, n_events, potted, positions, on_table, speed,
     seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN] = first, touching, moved, down
 
 
+@kernel
+def write_ruling(j, player, ball_on, free_ball, result, seen):
+    """Write down what the referee says of shot j: ``result`` is his ``Ruling``."""
+    seen[j, PLAYER], seen[j, WAS_ON], seen[j, FREE] = player, ball_on, free_ball
+    seen[j, SCORED], seen[j, COST], seen[j, FOULS] = result.points, result.penalty, result.fouls
+
+
+@dataclass(frozen=True, eq=False)
+class Played:
+    """One stroke as it was played and judged.
+
+    Attributes
+    ----------
+    shot : Shot
+        Of which the path is kept only if it was wanted.
+    cue : dict of str to float
+        The strike, errors of execution included: "speed" [m/s], "side", "top" (tip offset over R, right and up), "aim", "elevation" [rad].
+    player : int
+        Who played it: 0, or in a frame 0 or 1.
+    ball_on : BallOn
+        What was on.
+    free_ball : bool
+        Whether he had a free ball.
+    points, penalty : int
+        What it scored, what it gave to the other player.
+    fouls : Foul
+        The rules broken.
+    first : tuple of int
+        The balls that were struck first: one, more if at the same instant, none.
+    """
+
+    shot: Shot
+    cue: dict[str, float]
+    player: int
+    ball_on: BallOn
+    free_ball: bool
+    points: int
+    penalty: int
+    fouls: Foul
+    first: tuple[int, ...]
+
+
 class ShotBuffers:
     """Work space for up to m shots at once, each with a log of ``log`` events and, if wanted, its path."""
 
@@ -143,9 +190,9 @@ class ShotBuffers:
     potted: Ints
     """(m, 22) the pocket of each ball, or -1."""
     shots: Floats
-    """(m, 6) of each strike, columns ``VX`` to ``SPEED``."""
+    """(m, STRIKE_COLUMNS) of each strike, columns ``VX`` to ``ELEVATION``."""
     seen: Ints
-    """(m, 6) what the referee sees, columns ``FIRST`` to ``FULL_PATH``."""
+    """(m, SEEN_COLUMNS) what the referee sees and says, columns ``FIRST`` to ``FOULS``."""
     event_time: Floats
     event_what: NDArray[np.int32]
     """(m, log) [s] and (m, log, 3): time; kind, i, j of each event."""
@@ -163,7 +210,7 @@ class ShotBuffers:
         self.log = log
         self.r, self.v, self.w = np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 3))
         self.here, self.potted = np.zeros((m, N_BALLS), np.bool_), np.zeros((m, N_BALLS), np.int64)
-        self.shots, self.seen = np.zeros((m, 6)), np.zeros((m, 6), np.int64)
+        self.shots, self.seen = np.zeros((m, STRIKE_COLUMNS)), np.zeros((m, SEEN_COLUMNS), np.int64)
         self.event_time, self.event_what = np.zeros((m, log)), np.zeros((m, log, 3), np.int32)
         self.segments = np.zeros((m, 2 * log + N_BALLS + 2 if path else 0, cloth.COLUMNS + 2))
         self.status, self.n_events, self.n_segments = (np.zeros(m, np.int64) for _ in range(3))
@@ -180,7 +227,7 @@ class ShotBuffers:
         one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
         return one
 
-    def shot(self, j: int, physics: Physics) -> Shot:
+    def shot(self, j: int, rules: "Rules") -> Shot:
         """Shot j as a ``Shot``."""
         n = self.n_events[j]
         events = np.zeros(n, EVENT)
@@ -188,7 +235,17 @@ class ShotBuffers:
         for c, name in enumerate(("kind", "i", "j")):
             events[name] = self.event_what[j, :n, c]
         segments = self.segments[j, : self.n_segments[j]].copy()
-        return Shot(self.r[j].copy(), self.potted[j].copy(), self.here[j].copy(), float(self.duration[j]), events, segments, physics)
+        ends = self.r[j].copy(), self.potted[j].copy(), self.here[j].copy(), float(self.duration[j])
+        return Shot(*ends, events, segments, rules.physics, rules.table)
+
+    def played(self, j: int, rules: "Rules") -> Played:
+        """Shot j and what was said of it, as ``Played``."""
+        cue = dict(zip(("speed", "side", "top", "aim", "elevation"), self.shots[j, CUE_SPEED:].tolist(), strict=True))
+        seen = self.seen[j].tolist()
+        return Played(
+            self.shot(j, rules), cue, seen[PLAYER], BallOn(seen[WAS_ON]), bool(seen[FREE]), seen[SCORED], seen[COST], Foul(seen[FOULS]),
+            tuple(ids_of(seen[FIRST])),
+        )  # fmt: skip
 
 
 def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
