@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from .._check import integer
 from .._types import Floats, Vector, Vectors
 from ..physics.table import Table, TableLike
-from .scene import BAULK_LINE, CUSHION, D_ARC, PALE, RAIL, SPOT_MARKS, Scene, extent, is_marked, outline
+from .palette import PALE
+from .scene import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Scene, extent, is_marked, outline
 
 HEIGHT = 600
 """Height of a picture [pixels] unless told."""

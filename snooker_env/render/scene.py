@@ -1,7 +1,8 @@
 """What is there to draw? A table, its lines, balls and overlays, in metres and without a drawing library.
 
 World frame: origin at the table's centre, +x to the yellow side, +y to the black end. ``scene`` says what lies on the table now,
-``outline`` gives the parts of a table that never move, ``shot_scenes`` cuts a shot into the pictures of a film.
+``outline`` gives the parts of a table that never move, ``shot_scenes`` cuts a shot into the pictures of a film, and ``scene_data`` is
+all that a drawing in another language needs, as JSON types. Colours are in ``palette``.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -14,34 +15,25 @@ from numpy.typing import NDArray
 
 from .._check import array, number, refuse
 from .._types import Flags, Floats, Ints, Vector, Vectors
-from ..game.balls import CUE, N_BALLS
+from ..game.balls import CUE, N_BALLS, NAMES, VALUES
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.columns import JAW_RADIUS
 from ..physics.engine import EventKind
 from ..physics.table import Table, TableLike
 from ..simulation import Shot
+from .palette import COLOURS, LETTERS, PALETTE
 
 RAIL = 0.155
 """From the nose line to the outer edge of the table [m]: cushion and wood."""
 CUSHION = 0.050
 """From the nose line to the wood [m]."""
 
-COLOURS = np.array(
-    [(250, 246, 232)] + [(186, 16, 22)] * 15 + [(246, 205, 20), (2, 80, 48), (128, 70, 26), (22, 76, 200), (240, 128, 158), (24, 24, 27)],
-    dtype=np.uint8,
-)
-"""(22, 3) red, green, blue by ball id."""
-PALE = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)
-"""The same, lightened: for a ball's path on the cloth, and for letters on a dark terminal."""
-LETTERS = "W" + "r" * 15 + "YGNBPK"
-"""By ball id: W the white cue ball, r a red; N is brown and K black, because B is blue."""
-
 BAULK_LINE = np.array([(-HALF_WIDTH, BAULK_Y), (HALF_WIDTH, BAULK_Y)])
 _TURN = np.linspace(np.pi, 2 * np.pi, 65)
 D_ARC = np.stack([D_RADIUS * np.cos(_TURN), BAULK_Y + D_RADIUS * np.sin(_TURN)], axis=1)
 SPOT_MARKS = COLOUR_SPOTS
 
-for _constant in (COLOURS, PALE, BAULK_LINE, D_ARC):
+for _constant in (BAULK_LINE, D_ARC):
     _constant.setflags(write=False)
 
 
@@ -258,3 +250,51 @@ def _throat(fall, noses, mouths):
     jaw_ends = [end for nose in noses for end in (nose[0], nose[-1])]
     (a, b), (c, d) = (sorted(points, key=lambda point: np.hypot(*(point - fall[:2])))[:2] for points in (mouths, jaw_ends))
     return [*(a + b) / 2, *fall[:2], np.hypot(*(c - d)) / 2]
+
+
+def scene_data(table: TableLike) -> dict[str, Any]:
+    """A table, its lines, the balls and all colours as JSON types: the one description that pygame, matplotlib and a browser draw.
+
+    Parameters
+    ----------
+    table : str, Table or None
+        As in ``snooker_env.simulate``.
+
+    Returns
+    -------
+    dict
+        Lengths in metres, to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in ``Outline``, lists in place of arrays; ``extent``:
+        [[lowest x, highest x], [lowest y, highest y]] of the bed; ``rail``, ``cushion``: ``RAIL``, ``CUSHION``; ``lines``: {"baulk", "d",
+        "spots"}, or None on a table without snooker's marks; ``ball_radius``; ``palette``: {name: [red, green, blue]}; ``balls``: by id
+        {"name", "letter", "value", "rgb"}.
+
+    Examples
+    --------
+    >>> from snooker_env.render.scene import scene_data
+    >>> data = scene_data("pool9")
+    >>> data["lines"], len(data["cushions"]), data["balls"][21]["name"]
+    (None, 6, 'black')
+    """
+    table = Table.of(table)
+    parts = outline(table)
+    marks = {"baulk": _rounded(BAULK_LINE), "d": _rounded(D_ARC), "spots": _rounded(SPOT_MARKS)} if is_marked(table) else None
+    return {
+        "cushions": [_rounded(polygon) for polygon in parts.cushions],
+        "noses": [_rounded(nose) for nose in parts.noses],
+        "falls": _rounded(parts.falls),
+        "throats": _rounded(parts.throats),
+        "extent": _rounded(extent(table)),
+        "rail": RAIL,
+        "cushion": CUSHION,
+        "lines": marks,
+        "ball_radius": float(table.ball_radius or BALL_RADIUS),
+        "palette": {name: list(rgb) for name, rgb in PALETTE.items()},
+        "balls": [
+            {"name": NAMES[ball], "letter": LETTERS[ball], "value": int(VALUES[ball]), "rgb": COLOURS[ball].tolist()}
+            for ball in range(N_BALLS)
+        ],
+    }
+
+
+def _rounded(points):
+    return (np.round(points, 6) + 0.0).tolist()  # + 0.0: no "-0.0"
