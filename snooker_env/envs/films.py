@@ -23,7 +23,7 @@ def recorder_asking() -> Any:
     return found[0] if len(found) == 1 else None
 
 
-class Film:
+class PictureSource:
     """What one environment shows to whoever asks: the picture of now or, to a recorder, first those of the motion."""
 
     def __init__(self) -> None:

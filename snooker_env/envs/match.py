@@ -1,6 +1,7 @@
 """How do two agents play a frame against each other? PettingZoo's AEC interface around one table of ``tasks.frame``."""
 
 import copy
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
@@ -20,8 +21,9 @@ from ..tasks.frame import Frames
 from ..tasks.options import Options, options_of
 from ..tasks.rewards import frame_reward
 from ..tasks.tables import I_FOULS, I_PENALTY, I_POINTS, Crew
-from .pictures import FPS, MODES, Picture, Pictures
+from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import Record, Recorded
+from .reset_options import Start, start_of
 
 PLAYERS = ("player_0", "player_1")
 
@@ -67,6 +69,9 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
     holds the random numbers too, so that playing on from it again repeats the errors of ``noise``. With a seed, ``reset(seed=...,
     options={"state": ...})``, table and frame are those of the state and the random numbers those of the seed. From a state of a frame that
     has ended both players are terminated, or truncated, at once.
+
+    ``reset(options={"position": position})`` begins a frame with a ``snooker_env.Position``, checked on this environment's table: player_0
+    is to play it, a break of its points so far, both scores 0. The random numbers are those of the seed, or go on.
     """
 
     metadata: dict[str, Any] = {"name": "snooker_match_v0", "render_modes": list(MODES), "is_parallelizable": False, "render_fps": FPS}  # noqa: RUF012
@@ -84,7 +89,9 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
     infos: dict[str, dict[str, Any]]
     np_random: np.random.Generator
 
-    def __init__(self, options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any):
+    def __init__(
+        self, options: Options | None = None, *, render_mode: RenderMode | None = None, render_size: Sequence[int] = SIZE, **given: Any
+    ):
         super().__init__()
         if options is None:
             box = given.get("action", "box") == "box"
@@ -104,7 +111,8 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
         self.np_random, _ = seeding.np_random()
         self._seeded = False
         self._record, self._last = Record(full=render_mode is not None), None
-        self._pictures = Pictures(self.options.rules.table, render_mode)
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size, ("Player 1", "Player 2"))
+        self._pictures.require_display()
 
     @property
     def positions(self) -> Floats:
@@ -204,7 +212,8 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
         seed : int, optional
             Of all random numbers to come; None: they go on.
         options : dict, optional
-            {"state": a state of ``get_state``} starts from there. Other keys are not read: PettingZoo's own test gives some.
+            {"state": a state of ``get_state``} or {"position": a ``snooker_env.Position``, or its ``to_dict()``} starts from there. Other
+            keys are not read: PettingZoo's own test gives some.
 
         Returns
         -------
@@ -213,23 +222,21 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
         Raises
         ------
         ValueError
-            For a state that is not sound.
+            For a state or position that is not sound.
         """
         if options is not None and not isinstance(options, dict):
-            raise refuse("options", options, 'must be None or {"state": ...}')
-        given = None
-        if options and "state" in options:
-            given = self.tables.checked(options["state"], self.np_random, either=True)
+            raise refuse("options", options, 'must be None or a dict, of which "state" or "position" is read')
+        start = start_of(options or {}, self.tables, lambda state: self.tables.checked(state, self.np_random, either=True))
         if seed is not None:
             self.np_random, _ = seeding.np_random(seed)
-        if given is not None:
-            self._take(given, seeded=seed is not None)
-        else:
-            if seed is not None or not self._seeded:
-                self.tables.seed(0, self.np_random)
-                self._seeded = True
+        if start is not None:
+            self._take(start, seeded=seed is not None)
+        if seed is not None or not self._seeded:
+            self.tables.seed(0, self.np_random)
+            self._seeded = True
+        if start is None:
             self.tables.deal(np.zeros(1, np.int64), drawn=True)
-            self._begin()
+        self._begin()
         if self.render_mode == "human":
             self._show()
 
@@ -288,7 +295,7 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
         self._account()
         self._accumulate_rewards()
         if self.render_mode == "human":
-            self._show(self._record.strokes[-1] if played else None)
+            self._show(played=bool(played))
 
     def _watch(self, k, buffers, j, own):
         self._record.saw(self.tables, k, buffers, j, own)
@@ -334,16 +341,14 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
         ValueError
             If it is not sound; then nothing has changed.
         """
-        self._take(self.tables.checked(state, self.np_random, either=True), seeded=False)
-
-    def _take(self, sound, *, seeded):
-        self.tables.set_state(0, sound)
-        if seeded:
-            self.tables.seed(0, self.np_random)
-        else:
-            self.np_random.bit_generator.state = sound.rng
-        self._seeded = True
+        self._take(Start(state=self.tables.checked(state, self.np_random, either=True)), seeded=False)
         self._begin()
+
+    def _take(self, start, *, seeded):
+        rng = start.take(self.tables, 0)
+        if rng is not None and not seeded:
+            self.np_random.bit_generator.state = rng
+            self._seeded = True
 
     def render(self) -> Picture:
         """The table with the cue ball's last path.
@@ -353,10 +358,10 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
         uint8 (H, W, 3), str or None
             By the render mode: "rgb_array", "ansi", another.
         """
-        return self._pictures.render(self.tables, 0, self.last_shot, self._record.recent)
+        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent)
 
-    def _show(self, played=None):
-        self._pictures.show(self.tables, self.last_shot, played)
+    def _show(self, *, played=False):
+        self._pictures.show(self.tables, self._record.strokes, played=played)
 
     def close(self) -> None:
         """Close the window, if there is one."""

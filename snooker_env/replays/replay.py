@@ -15,6 +15,7 @@ from ..render.scene import scene_data
 from ..simulation import Shot
 from ..tasks.played import Played
 from .encode import encoded_stroke
+from .write import write_whole
 
 WEB = Path(__file__).resolve().parent.parent / "web"
 """Where the module that draws in a browser is."""
@@ -171,16 +172,6 @@ class Replay:
         text = self.html() if suffix == ".html" else json.dumps(self.to_dict(), allow_nan=False)
         write_whole(target, lambda temporary: temporary.write_text(text, "utf-8"))
         return target
-
-
-def write_whole(target: Path, write: Any) -> None:
-    """Have ``write(path)`` make a file beside the target and put it in its place: nobody sees half a file."""
-    temporary = target.with_name(f".{target.stem}.part{target.suffix}")
-    try:
-        write(temporary)
-        temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def _same(a: Table, b: Table) -> bool:

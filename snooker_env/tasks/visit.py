@@ -170,6 +170,11 @@ class Visits(Tables):
         points = int(self.game[k, POINTS])
         return {"next_player": 0, "scores": (points,), "break_points": points, "choice": False, "winner": None}
 
+    def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
+        """Begin a visit on table k with a sound position, ``game`` being its row; its random numbers go on."""
+        self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
+        self.begun[k] = True
+
     def text(self, k: int) -> str:
         """One line for the pictures."""
         on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
