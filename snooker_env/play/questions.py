@@ -6,6 +6,7 @@ import numpy as np
 
 from .._check import choice, refuse
 from .._types import NoiseName
+from ..advice import CueStroke, Suggestion, advise, destinations
 from ..game.balls import CUE, NAMES
 from ..geometry import POCKET_AIMS, POCKETS
 from ..physics.engine import EventKind
@@ -15,14 +16,14 @@ from ..replays.encode import packed
 from ..shot import Shot
 from .seats import Seats
 from .session import Session
-from .wishes import Wish, ball_named, pocket_named
+from .wishes import ball_named, pocket_named
 
 MOST_SAMPLES = 2000
 """Of one question: 40 ms of shots."""
 MOST_SUGGESTIONS = 10
 
 
-def aim_at(session: Session, given: Any, wish: Wish) -> float:
+def aim_at(session: Session, given: Any, stroke: CueStroke) -> float:
     """The direction in which the cue ball must leave to pot a ball, throw and swerve included; ``given``: {"pot": [ball, pocket]}."""
     pair = given.get("pot") if isinstance(given, dict) and set(given) == {"pot"} else None
     if not isinstance(pair, list) or len(pair) != 2:
@@ -31,15 +32,15 @@ def aim_at(session: Session, given: Any, wish: Wish) -> float:
     if not session.tables.on_table[0, ball]:
         raise refuse("aim_at.pot[0]", NAMES[ball], "must be on the table")
     target = POCKET_AIMS[[pocket], :2]
-    tip = {"side": wish.side, "top": wish.top, "elevation": wish.elevation}
-    return float(pot_aim(session.planned(), [0], [ball], target, wish.speed, **tip)[0])
+    tip = {"side": stroke.side, "top": stroke.top, "elevation": stroke.elevation}
+    return float(pot_aim(session.planned(), [0], [ball], target, stroke.speed, **tip)[0])
 
 
-def exact(session: Session, wish: Wish) -> Shot:
+def exact(session: Session, stroke: CueStroke) -> Shot:
     """The stroke as it runs without errors of execution."""
     twin = session.twin()
     twin.noise = ["none", "none"]
-    played = twin.play(wish).played
+    played = twin.play(stroke).played
     assert played is not None
     return played.shot
 
@@ -57,22 +58,18 @@ def paths(shot: Shot) -> dict[str, Any]:
     }
 
 
-def scatter(session: Session, wish: Wish, *, noise: NoiseName, samples: int, seed: int) -> dict[str, Any]:
+def scatter(session: Session, stroke: CueStroke, *, noise: NoiseName, samples: int, seed: int) -> dict[str, Any]:
     """Where cue ball and object ball stop when the stroke is played many times with a player's errors; and its path without them."""
-    from ..advice import destinations
-
-    shot = exact(session, wish)
-    stroke = {"speed": wish.speed, "side": wish.side, "top": wish.top, "aim": wish.aim, "elevation": wish.elevation}
+    shot = exact(session, stroke)
     found = destinations(session.planned(), stroke, noise=noise, samples=samples, seed=seed)
     return paths(shot) | {
-        "cue": packed(found.cue, "f4"), "ball": packed(found.ball, "f4"), "samples": len(found.cue), "potted": float(found.potted),
+        "cue": packed(found.cue, "f4"), "ball": packed(found.ball, "f4"), "samples": found.samples, "potted": found.potted,
+        "in_off": found.in_off, "foul": found.foul, "points": found.points,
     }  # fmt: skip
 
 
 def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int) -> list[dict[str, Any]]:
     """The agent's best strokes, ranked, in words and data, each with its path without errors."""
-    from ..advice import advise
-
     choice("agent", agent, seats.agents)
     advice = advise(session.planned(), agent=seats.player(agent), noise=noise, n=n, samples=samples, seed=seed)
     out = []
@@ -80,6 +77,13 @@ def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName,
         twin = session.twin()
         if one.place is not None:
             twin.place(*one.place)
-        wish = Wish(speed=one.speed, aim=one.aim, side=one.side, top=one.top, elevation=one.elevation)
-        out.append(one.to_dict() | paths(exact(twin, wish)))
+        out.append(one.to_dict() | _named(one) | paths(exact(twin, one.stroke)))
     return out
+
+
+def _named(one: Suggestion) -> dict[str, Any]:
+    """Ball and pocket of a suggestion by their names; None where there is none."""
+    return {
+        "ball": NAMES[one.ball] if one.ball >= 0 else None, "pocket": POCKETS[one.pocket] if one.pocket >= 0 else None,
+        "first": NAMES[one.first] if one.first >= 0 else None,
+    }  # fmt: skip

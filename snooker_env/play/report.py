@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from ..advice.strokes import FARTHEST
 from ..game.balls import CUE, NAMES, REDS_MASK, YELLOW, BallOn, ids_of
 from ..game.frame import Frame
 from ..game.snookered import is_snookered
@@ -13,7 +14,6 @@ from ..tasks.noise import LEVELS
 from .lines import Line, lines_of
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import Service, last_words
-from .wishes import MOST_OFFSET
 from .words import freedom, on_words, table_text
 
 
@@ -23,7 +23,7 @@ def scene(service: Service) -> dict[str, Any]:
     return {
         "scene": scene_data(rules.table), "R": rules.physics.R, "spin_decel": rules.physics.spin_decel,
         "limits": {
-            "speed": [MIN_SPEED, MAX_SPEED], "offset": MOST_OFFSET, "elevation": [0.0, MAX_ELEVATION], "samples": MOST_SAMPLES,
+            "speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, MAX_ELEVATION], "samples": MOST_SAMPLES,
             "suggestions": MOST_SUGGESTIONS,
         },
         "agents": service.seats.agents, "players": service.seats.names, "noise": list(LEVELS),

@@ -4,11 +4,13 @@ A handler gets the fields of one request as plain JSON types and gives JSON type
 ``docs/protocol.md`` documents every route.
 """
 
+import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from .._check import choice, integer, number, refuse, truth
+from ..advice import CueStroke
 from ..game.frame import MOST_BREAK
 from ..game.ruling import AUTO
 from ..planning.position import Position
@@ -20,7 +22,7 @@ from . import questions
 from .report import report, scene
 from .service import Service
 from .session import Act, Session
-from .wishes import Wish, colour_named, place_of_request, wish_of
+from .wishes import colour_named, place_of_request, stroke_in
 
 STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")
 """Fields that say what a stroke is."""
@@ -61,18 +63,16 @@ def _encoded(service: Service, act: Act) -> dict[str, Any]:
     return encoded_stroke(act.played, (service.seats.label(0), service.seats.label(1)))
 
 
-def _wish(session: Session, given: dict[str, Any]) -> Wish:
+def _asked(session: Session, given: dict[str, Any]) -> CueStroke:
     """The stroke asked for, its aim solved if it is given by a pot; the cue ball is placed first."""
     if "place" in given:
         session.place(*place_of_request("place", given["place"]))
     if "aim_at" not in given:
-        return wish_of(given)
+        return stroke_in(given)
     if "aim" in given:
         raise refuse("aim", given["aim"], "must be left out with aim_at")
-    wish = wish_of(given, 0.0)
-    return Wish(
-        speed=wish.speed, side=wish.side, top=wish.top, elevation=wish.elevation, aim=questions.aim_at(session, given["aim_at"], wish)
-    )
+    stroke = stroke_in(given, 0.0)
+    return replace(stroke, aim=questions.aim_at(session, given["aim_at"], stroke))
 
 
 def _stroke(service: Service, given: dict[str, Any]) -> dict[str, Any]:
@@ -80,7 +80,7 @@ def _stroke(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     if not strikes and "choice" not in given:
         raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
     nominated = colour_named("nominate", given["nominate"]) if "nominate" in given else AUTO
-    act = wish = None
+    act = stroke = None
     with service.acting() as session:
         twin = session.twin()  # whatever is wrong shows there first, so that a request that is refused has changed nothing
         if "choice" in given:
@@ -88,14 +88,14 @@ def _stroke(service: Service, given: dict[str, Any]) -> dict[str, Any]:
                 raise refuse("choice", given["choice"], 'must be "play" in a request that holds a stroke too')
             twin.choose(given["choice"])
         if strikes:
-            wish = _wish(twin, given)
+            stroke = _asked(twin, given)
             twin.check_stroke(nominated)
         if "choice" in given:
             session.choose(given["choice"])
-        if wish is not None:
+        if stroke is not None:
             if "place" in given:
                 session.place(*given["place"])
-            act = session.play(wish, nominated=nominated)
+            act = session.play(stroke, nominated=nominated)
     with service.looking():
         return {"stroke": None if act is None else _encoded(service, act), "state": report(service)}
 
@@ -109,6 +109,15 @@ def _place(service: Service, given: dict[str, Any]) -> dict[str, Any]:
 
 def _set_up(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     check = truth("check", given.get("check", False))
+    try:
+        return _put(service, given, check)
+    except ValueError as error:
+        if not check:
+            raise
+        return {"sound": False, "error": parts_of(error)}
+
+
+def _put(service: Service, given: dict[str, Any], check: bool) -> dict[str, Any]:
     scores = given.get("scores", [0, 0])
     if not isinstance(scores, list) or len(scores) != 2:
         raise refuse("scores", scores, "must be two integers")
@@ -118,7 +127,7 @@ def _set_up(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     if check:
         with service.asking() as session:
             session.set_up(position, scores=points, striker=striker, free_ball=free, check=True)
-        return {"sound": True}
+        return {"sound": True, "error": None}
     with service.acting(pause=True, any_turn=True) as session:
         session.set_up(position, scores=points, striker=striker, free_ball=free)
     return _state(service, {})
@@ -215,7 +224,7 @@ def _advise(service: Service, given: dict[str, Any]) -> dict[str, Any]:
 def _destinations(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     noise, samples, seed = _errors(given, 500, "professional")
     with service.asking() as session:
-        return questions.scatter(session, _wish(session, given), noise=noise, samples=samples, seed=seed)
+        return questions.scatter(session, _asked(session, given), noise=noise, samples=samples, seed=seed)
 
 
 def _errors(given, samples: int, noise: str) -> tuple[Any, int, int]:
@@ -260,6 +269,13 @@ POST: dict[str, Route] = {
     "new": Route(_new, ("layout", "seed", "breaker")), "players": Route(_players, ("players", "noise", "practice")), "go": Route(_go),
     "concede": Route(_concede), "save": Route(_save), "load": Route(_load, ("saved",)),
 }  # fmt: skip
+
+
+def parts_of(error: ValueError) -> dict[str, Any]:
+    """The error of a field, as ``_check.refuse`` words it, in its parts."""
+    text = str(error)
+    at = re.match(r"(?P<field>[\w\[\]., ]+?) = (?P<value>.*?): (?P<message>(must|overlaps|lies|ball).*)\Z", text, re.DOTALL)
+    return at.groupdict() if at else {"field": None, "value": None, "message": text}
 
 
 def answer(service: Service, route: Route, given: dict[str, Any]) -> Any:

@@ -5,21 +5,14 @@ played. After a foul of the other every agent plays the table as it lies; it nam
 """
 
 from collections.abc import Mapping
-from math import atan2
 from typing import Any
 
-import numpy as np
-
 from .._check import choice, refuse
-from ..game.balls import CUE
-from ..tasks.frame import Frames
-from ..tasks.opponents import GhostBallOpponent
-from ..tasks.stroke import CUE_SPEED, VX, VY, ShotBuffers
+from ..advice import CueStroke, player_of, stroke_of
+from ..advice.players import BUILT_IN
 from .session import Session
-from .wishes import Wish
 
 PERSON = "person"
-GHOST_BALL = "ghost_ball"
 
 
 class Seats:
@@ -27,15 +20,15 @@ class Seats:
 
     Parameters
     ----------
-    agents : mapping of str to a player of ``snooker_env.advice``, or None
-        By name; None: it is made when it is asked for the first time.
+    agents : mapping of str to a player of ``snooker_env.advice``
+        By name: those that may be chosen besides the built-in ones.
     """
 
     who: list[str]
     """``PERSON`` or an agent's name, of each seat."""
 
     def __init__(self, agents: Mapping[str, Any]):
-        self._players = {GHOST_BALL: None, **agents}
+        self._players: dict[str, Any] = {**agents, **{name: None for name in BUILT_IN if name not in agents}}
         self.who = [PERSON, PERSON]
 
     @property
@@ -66,29 +59,12 @@ class Seats:
 
     def player(self, name: str) -> Any:
         """The player of ``snooker_env.advice`` of that name."""
-        from ..advice import player_of
-
         choice("agent", name, self.agents)
         if self._players[name] is None:
             self._players[name] = player_of(name)
         return self._players[name]
 
-    def stroke(self, name: str, session: Session) -> tuple[Wish, tuple[float, float] | None]:
-        """What an agent plays at a table of its own, and where it puts a cue ball in hand. ``session`` is left as it is."""
-        if name == GHOST_BALL:
-            return _of_ghost_ball(session)
-        from ..advice import stroke_of
-
-        stroke = stroke_of(self.player(name), session.planned(), noise=session.noise[session.frame.striker], seed=len(session.acts))
-        place = None if stroke.place is None else (float(stroke.place[0]), float(stroke.place[1]))
-        return Wish(speed=stroke.speed, aim=stroke.aim, side=stroke.side, top=stroke.top, elevation=stroke.elevation), place
-
-
-def _of_ghost_ball(session: Session) -> tuple[Wish, tuple[float, float] | None]:
-    """The stroke of the frame's own geometric opponent, which plays on when there is no pot, too."""
-    tables, buffers, one = Frames(session.rules_with("none"), 1), ShotBuffers(1), np.zeros(1, np.int64)
-    session.copy_to(tables)
-    GhostBallOpponent().prepare(tables, one, None, buffers)
-    struck = buffers.shots[0]
-    place = tuple(tables.positions[0, CUE].tolist()) if session.frame.in_hand else None
-    return Wish(speed=float(struck[CUE_SPEED]), aim=atan2(struck[VY], struck[VX])), place  # it knows neither side nor top
+    def stroke(self, name: str, session: Session) -> CueStroke:
+        """What an agent plays at the table as it stands, and where it puts a cue ball in hand. ``session`` is left as it is."""
+        noise, seed = session.noise[session.frame.striker], len(session.acts)
+        return stroke_of(self.player(name), session.planned(), noise=noise, seed=seed)

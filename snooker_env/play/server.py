@@ -20,7 +20,7 @@ from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
 from ..simulation import SimulationError
-from .routes import GET, POST, answer
+from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
 WEB = Path(__file__).resolve().parent.parent / "web"
@@ -163,7 +163,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         except RefusedError as refused:
             self._refuse(refused)
         except ValueError as error:
-            self._refuse(of_value_error(error))
+            self._refuse(RefusedError(422, **parts_of(error)))
         except BusyError as error:
             self._refuse(RefusedError(503, f"busy: {error}"))
         except SimulationError as error:
@@ -275,13 +275,6 @@ def _once(pairs):
     if len(found) < len(pairs):
         raise ValueError("a name comes twice in one object")
     return found
-
-
-def of_value_error(error: ValueError) -> RefusedError:
-    """The error of a field, as ``_check.refuse`` words it, in its parts."""
-    text = str(error)
-    at = re.match(r"(?P<field>[\w\[\]., ]+?) = (?P<value>.*?): (?P<message>(must|overlaps|is|lies|ball).*)\Z", text, re.DOTALL)
-    return RefusedError(422, at["message"], at["field"], at["value"]) if at else RefusedError(422, text)
 
 
 class PlayServer(ThreadingHTTPServer):

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from time import monotonic
 
+from ..replays.words import sentence
 from ..simulation import SimulationError
 from .seats import Seats
 from .session import Act, Session
@@ -126,26 +127,26 @@ class Service:
                     self.revision = revision = revision + 1
                 seat = session.frame.striker
                 who, twin = self.seats.who[seat], session.twin()
-            wish = place = None
+            stroke = None
             trouble = ""
             try:
-                wish, place = self.seats.stroke(who, twin)
+                stroke = self.seats.stroke(who, twin)
             except Exception as error:  # it may be anybody's player: whatever it raises is told, and the game waits
                 trouble = f"{who} gave no stroke ({type(error).__name__}: {error})"
             with self._changed:
                 if self.revision != revision or self._closed:
                     continue
-                if wish is not None:
-                    trouble = self._play(wish, place)
+                if stroke is not None:
+                    trouble = self._play(stroke)
                 self.trouble, self.paused = trouble, bool(trouble) or all(map(self.seats.is_agent, (0, 1)))
                 self._moved()
 
-    def _play(self, wish, place):
+    def _play(self, stroke):
         """The agent's stroke; why it could not be played, or ""."""
         try:
-            if place is not None and self.session.frame.in_hand:
-                self.session.place(*place)
-            self.session.play(wish)
+            if stroke.place is not None and self.session.frame.in_hand:
+                self.session.place(*stroke.place)
+            self.session.play(stroke)
         except (ValueError, SimulationError) as error:
             return str(error)
         return ""
@@ -155,8 +156,6 @@ def last_words(act: Act, labels: tuple[str, str]) -> str:
     """What was done last, in a sentence."""
     who = "" if act.player is None else labels[act.player]
     if act.played is not None:
-        from ..replays.words import sentence
-
         said = f" ({act.said} nominated)" if act.said else ""
         return f"{who}{said}: {sentence(act.played, labels)}"
     return {

@@ -12,6 +12,7 @@ import numpy as np
 
 from .._check import choice, integer, refuse, refuse_what, truth
 from .._types import NoiseName
+from ..advice.strokes import CueStroke
 from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present
 from ..game.frame import Frame
 from ..game.frame_columns import write_frame
@@ -28,7 +29,7 @@ from ..tasks.played import Played
 from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew
-from .wishes import DECISIONS, Wish
+from .wishes import DECISIONS, action_of
 
 STATE = ("positions", "on_table", "frame", "strokes", "stream")
 """What a saved game holds of the table."""
@@ -170,14 +171,14 @@ class Session:
             allowed = f"must be one of {names}" if names else "must be left out: no colour is to be named now"
             raise refuse("nominate", NAMES[nominated], allowed)
 
-    def play(self, wish: Wish, *, nominated: int = AUTO) -> Act:
+    def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
         """The striker's stroke, from where the cue ball lies; ``nominated``: the colour that he names, AUTO: the one first struck."""
         self.check_stroke(nominated)
         before, tables = self.state, self.tables
         striker = self.frame.striker
         tables.rules = self.rules_with(self.noise[striker])
         tables.packed = tables.rules.packed()
-        actions = wish.action(tuple(tables.positions[0, CUE].tolist()))[None]
+        actions = action_of(stroke, tuple(tables.positions[0, CUE].tolist()))[None]
         tables.nominated[0] = nominated
         self._played = None
         try:

@@ -8,7 +8,7 @@
 import { decode, TableView } from "./table.js";
 import { Aim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
-import { ask, by, fill, keep, Latest, make } from "./play_parts.js";
+import { ask, by, fill, firstContact, keep, Latest, make } from "./play_parts.js";
 import { SetUp } from "./play_setup.js";
 
 const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
@@ -99,7 +99,7 @@ class Page {
     if (this.state && state.revision <= this.state.revision) return;
     const before = this.state;
     this.state = state;
-    if (before === null || state.strokes < this.played) { this.skip(); this.played = state.strokes; }
+    if (before === null || state.strokes < this.played) this.still();
     by("last").className = "";
     this.show(before);
     this.catchUp();
@@ -119,9 +119,11 @@ class Page {
       this.played++;
       if (!stroke) { this.played = this.state.strokes; break; }
       await this.move(stroke);
+      if (this.played < this.state.strokes) await new Promise(done => setTimeout(done, 500));
       if (this.state.paused && this.agents()) this.try(() => ask("go", {}));
     }
     this.busy = false;
+    this.show();
     this.settle();
   }
 
@@ -129,7 +131,7 @@ class Page {
 
   /** The balls as the state has them, and a first aim. */
   settle() {
-    if (this.moving) return;
+    if (this.moving || this.busy) return;
     const { state } = this;
     this.balls.on.fill(0);
     for (const [name, [x, y]] of Object.entries(state.positions)) {
@@ -153,8 +155,11 @@ class Page {
     if (key === this.aimed || state.phase !== "stroke") return;
     this.aimed = key;
     const open = state.lines.filter(line => line.open).sort((a, b) => b.tolerance - a.tolerance)[0], [cx, cy] = state.positions.cue;
-    const near = state.balls_on.map(name => state.positions[name]).sort((a, b) => Math.hypot(a[0] - cx, a[1] - cy) - Math.hypot(b[0] - cx, b[1] - cy))[0];
-    const aim = open ? open.aim : near ? Math.atan2(near[1] - cy, near[0] - cx) : this.aim.wish.aim;
+    const ways = state.balls_on.map(name => [...state.positions[name], this.names.indexOf(name)]).map(([x, y, ball]) => {
+      const aim = Math.atan2(y - cy, x - cx);
+      return { aim, far: Math.hypot(x - cx, y - cy) + (firstContact(this.balls, 0, aim, this.scene.extent, this.view.R).ball === ball ? 0 : 9) };
+    }).sort((a, b) => a.far - b.far);
+    const { aim } = open ?? ways[0] ?? this.aim.wish;
     this.aim.set({ aim, side: 0, top: 0, elevation: 0 });
   }
 
@@ -163,6 +168,7 @@ class Page {
   /** Move the balls of a stroke; resolves when they rest or are skipped. */
   move(data) {
     this.last = data;
+    this.told = { ...this.told, player: data.player, on: data.ball_on };
     const stroke = decode({ format: "snooker-replay", version: 1, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
     this.show();
     return new Promise(done => {
@@ -174,11 +180,18 @@ class Page {
 
   skip() {
     if (!this.moving) return;
-    const { done } = this.moving;
+    const { done } = this.moving, { score, words, player } = this.last;
     this.moving = null;
     by("skip").hidden = true;
+    this.told = { ...this.told, scores: score, break: this.last.break, last: `${this.state.labels[player]}: ${words}` };
     this.show();
     done();
+  }
+
+  /** Show no more motion of what has been played. */
+  still() {
+    this.played = this.state.strokes;
+    this.skip();
   }
 
   async again() {
@@ -265,10 +278,12 @@ class Page {
 
   /** Words, score and controls. */
   show(before) {
-    const { state } = this, busy = Boolean(this.moving), mine = this.aiming, setup = this.setup.open;
-    for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["game", setup], ["say", setup]]) by(id).hidden = hide;
-    by("asked").textContent = busy ? `${state.labels[this.last.player] ?? ""}: stroke` : state.words;
-    if (!busy && by("last").className !== "trouble") by("last").textContent = state.last;
+    const { state } = this, busy = Boolean(this.moving || this.busy), mine = this.aiming, setup = this.setup.open;
+    for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
+    if (!busy) this.told = { scores: state.scores, break: state.break, player: state.striker, last: state.last };
+    const { told } = this, who = state.labels[told.player];
+    by("asked").textContent = setup ? "Set up a position" : busy ? `${who} ${who === "You" ? "play" : "plays"}: ${told.on}` : state.words;
+    if (by("last").className !== "trouble") by("last").textContent = told.last;
     const choosing = state.phase === "choice" && !busy && !setup && state.players[state.striker] === "person";
     by("choices").hidden = !choosing;
     if (choosing && by("choices").dataset.for !== String(state.revision)) {
@@ -291,23 +306,26 @@ class Page {
     if (state.nominations.length) fill(by("nominate"), ["", ...state.nominations], by("nominate").value, value => value || "colour first struck");
     for (const k of [0, 1]) {
       if (before !== undefined) { by(`who-${k}`).value = state.players[k]; by(`noise-${k}`).value = state.noise[k]; by("practice").checked = state.practice; }
-      const side = by(`side-${k}`), score = busy ? this.was?.scores[k] ?? state.scores[k] : state.scores[k];
+      const side = by(`side-${k}`);
       side.querySelector(".name").textContent = state.labels[k];
-      side.querySelector("b").textContent = score;
-      side.classList.toggle("turn", (busy ? this.last.player : state.striker) === k && state.phase !== "over");
+      side.querySelector("b").textContent = told.scores[k];
+      side.classList.toggle("turn", told.player === k && (busy || state.phase !== "over"));
     }
-    if (!busy) { this.was = state; this.score(state); }
+    this.score(busy);
   }
 
-  score(state) {
-    const dot = name => { const one = make("i"); one.style.background = `rgb(${this.scene.balls[this.names.indexOf(name)].rgb})`; return one; };
-    const put = (id, ...parts) => by(id).replaceChildren(...parts);
-    put("n-break", "break ", make("b", { textContent: state.break }));
+  score(busy) {
+    const { state, told } = this, dot = name => { const one = make("i"); one.style.background = `rgb(${this.scene.balls[this.names.indexOf(name)].rgb})`; return one; };
+    const put = (id, ...parts) => by(id).replaceChildren(...parts), on = busy ? told.on : state.phase === "over" ? null : state.ball_on.replace("_", " ");
+    put("n-break", "break ", make("b", { textContent: told.break }));
+    if (!on) put("n-on", "frame over");
+    else {
+      const dots = on === "red" ? ["red 1"] : this.names.includes(on) ? [on] : this.names.slice(16);
+      put("n-on", "on", ...dots.map(dot), make("b", { textContent: on + (!busy && state.free_ball ? " + free ball" : "") }));
+    }
+    if (busy) return;
     put("n-reds", "reds ", make("b", { textContent: state.reds }));
     put("n-left", "left ", make("b", { textContent: state.available }));
-    if (state.phase === "over") { put("n-on", "frame over"); return; }
-    const on = state.ball_on === "red" ? ["red 1"] : state.ball_on === "any_colour" ? this.names.slice(16) : [state.ball_on];
-    put("n-on", "on", ...on.map(dot), make("b", { textContent: state.ball_on.replace("_", " ") + (state.free_ball ? " + free ball" : "") }));
   }
 
   /** What is wrong, beside a place on the table. */

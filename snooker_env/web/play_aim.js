@@ -4,7 +4,7 @@
  * `wish`: {speed [m/s], side, top (tip offset over R, right and up), aim [rad], elevation [rad]}.
  */
 
-import { by, firstContact, intoD, toCushion } from "./play_parts.js";
+import { by, firstContact, intoD } from "./play_parts.js";
 
 const DEGREE = Math.PI / 180;
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
@@ -52,7 +52,7 @@ export class Aim {
     this.changed(event);
   }
 
-  /** Turn the aim by so many degrees. On screen the long side lies across, so that anticlockwise from +x looks clockwise. */
+  /** Turn the aim by so many degrees; more is anticlockwise on screen, too. */
   turn(degrees, event) { this.set({ aim: this.wish.aim + degrees * DEGREE }, event); }
 
   tip(side, top, event) {
@@ -131,14 +131,13 @@ export class Aim {
 
   /** What is drawn of the aim: straight line, ring at first contact, where the ball struck would go, the cue. */
   overlay() {
-    const { app, wish } = this, { balls, scene, view } = app, { R } = view, met = firstContact(balls, wish.aim, scene.extent, R);
+    const { app, wish } = this, { balls, scene: { extent }, view: { R } } = app, met = firstContact(balls, 0, wish.aim, extent, R);
     const lines = [{ points: [[balls.x[0], balls.y[0]], [met.x, met.y]], colour: [255, 255, 255], width: 0.003 }];
     if (met.ball >= 0) {
-      const dx = balls.x[met.ball] - met.x, dy = balls.y[met.ball] - met.y, d = Math.hypot(dx, dy) || 1;
-      const full = Math.abs(Math.cos(wish.aim) * dx / d + Math.sin(wish.aim) * dy / d);
-      const far = Math.min(0.12 + 0.7 * full, toCushion(balls.x[met.ball], balls.y[met.ball], dx / d, dy / d, scene.extent, R));
-      const to = [balls.x[met.ball] + dx / d * far, balls.y[met.ball] + dy / d * far];
-      lines.push({ points: [[balls.x[met.ball], balls.y[met.ball]], to], colour: [255, 226, 110], width: 0.003, dash: [0.02, 0.02] });
+      const x = balls.x[met.ball], y = balls.y[met.ball], way = Math.atan2(y - met.y, x - met.x);
+      const far = Math.min(0.12 + 0.7 * Math.cos(wish.aim - way), firstContact({ ...balls, on: balls.on.with(0, 0) }, met.ball, way, extent, R).run);
+      const to = [x + Math.cos(way) * far, y + Math.sin(way) * far];
+      lines.push({ points: [[x, y], to], colour: [255, 226, 110], width: 0.003, dash: [0.02, 0.02] });
     }
     return {
       lines, rings: [{ x: met.x, y: met.y, ball: met.ball >= 0 ? 0 : undefined, alpha: 0.35 }],

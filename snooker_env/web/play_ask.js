@@ -145,6 +145,7 @@ export class Advisor {
       [app.balls.x[0], app.balls.y[0]] = one.place;
       app.aim.place(...one.place, event);
     }
+    by("play").focus();
     app.aim.set({ speed: one.speed, side: one.side, top: one.top, aim: one.aim, elevation: one.elevation }, event);
   }
 

@@ -25,9 +25,8 @@ export function fill(select, values, chosen = select.value, words = value => val
 
 /** What the server said was wrong. */
 export class ServerError extends Error {
-  constructor(status, error) {
+  constructor(error) {
     super(error.field ? `${error.field}${error.value === null || String(error.value).length > 60 ? "" : ` = ${error.value}`}: ${error.message}` : error.message);
-    this.status = status;
     this.field = error.field;
   }
 }
@@ -38,7 +37,7 @@ export async function ask(name, body, query = "") {
   const reply = await fetch(`api/${name}${query}`, options);
   if (name === "replay.html" && reply.ok) return reply.text();
   const found = await reply.json();
-  if (!reply.ok) throw new ServerError(reply.status, found.error);
+  if (!reply.ok) throw new ServerError(found.error);
   return found;
 }
 
@@ -74,18 +73,18 @@ export function toCushion(cx, cy, ux, uy, [[x0, x1], [y0, y1]], R) {
   return Math.max(0, Math.min(along(cx, ux, x0, x1), along(cy, uy, y0, y1)));
 }
 
-/** Where a cue ball that leaves (cx, cy) at `aim` first is when it meets a ball or a cushion: {x, y, ball (-1: cushion)}. */
-export function firstContact(balls, aim, extent, R) {
-  const ux = Math.cos(aim), uy = Math.sin(aim), cx = balls.x[0], cy = balls.y[0];
+/** Where ball `which`, sent from its place at `aim`, first is when it meets a ball or a cushion: {x, y, ball (-1: cushion), run}. */
+export function firstContact(balls, which, aim, extent, R) {
+  const ux = Math.cos(aim), uy = Math.sin(aim), cx = balls.x[which], cy = balls.y[which];
   let run = toCushion(cx, cy, ux, uy, extent, R), ball = -1;
-  for (let i = 1; i < balls.x.length; i++) {
-    if (!balls.on[i]) continue;
+  for (let i = 0; i < balls.x.length; i++) {
+    if (!balls.on[i] || i === which) continue;
     const bx = balls.x[i] - cx, by_ = balls.y[i] - cy, along = bx * ux + by_ * uy, across = bx * uy - by_ * ux;
     if (along <= 0 || Math.abs(across) >= 2 * R) continue;
     const until = Math.max(0, along - Math.sqrt(4 * R * R - across * across));
     if (until < run) { run = until; ball = i; }
   }
-  return { x: cx + run * ux, y: cy + run * uy, ball };
+  return { x: cx + run * ux, y: cy + run * uy, ball, run };
 }
 
 /** The nearest place [x, y] of the D: circle and baulk line as the scene draws them. */

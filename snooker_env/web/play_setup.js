@@ -2,7 +2,7 @@
  * How is a position set up? Balls are dragged on the table and off it, and the server says at once what cannot be.
  */
 
-import { ask, by, fill, Latest, make } from "./play_parts.js";
+import { ask, by, fill, Latest, make, ServerError } from "./play_parts.js";
 
 const ON = ["as the balls say", "red", "any_colour", "yellow", "green", "brown", "blue", "pink", "black"];
 
@@ -14,7 +14,7 @@ export class SetUp {
     this.held = null;
     this.picked = -1;
     this.wrong = -1;
-    this.check = new Latest("position", () => this.complain(null), error => this.complain(error));
+    this.check = new Latest("position", found => this.complain(found.error && new ServerError(found.error)), error => this.complain(error));
     const canvas = by("table");
     canvas.addEventListener("pointerdown", event => this.open && this.down(event));
     document.addEventListener("pointermove", event => this.held && this.move(event));
@@ -26,7 +26,9 @@ export class SetUp {
     for (const id of ["set-on", "set-striker", "set-score-0", "set-score-1", "set-hand", "set-free"]) by(id).onchange = () => this.changed();
   }
 
-  begin() {
+  async begin() {
+    this.app.still();
+    await null; // the motion that was cut short has ended
     const { state, scene } = this.app, here = this.app.balls;
     this.balls = { x: Float64Array.from(here.x), y: Float64Array.from(here.y), on: Uint8Array.from(here.on) };
     this.open = true;
@@ -79,9 +81,10 @@ export class SetUp {
     if (!this.open) return;
     const red = /^reds\[(\d+)\]/.exec(error?.field ?? ""), named = this.names.indexOf((error?.field ?? "").replace(/\[.*/, ""));
     this.wrong = red ? this.reds[Number(red[1])] ?? -1 : named;
-    by("set-wrong").textContent = error?.message ?? "";
+    const words = error?.message.replace(/reds\[\d+\]/g, "red") ?? "";
+    by("set-wrong").textContent = words;
     by("set-done").disabled = Boolean(error);
-    if (error && this.wrong >= 0 && this.balls.on[this.wrong]) this.app.bubble(error.message, this.balls.x[this.wrong], this.balls.y[this.wrong]);
+    if (error && this.wrong >= 0 && this.balls.on[this.wrong]) this.app.bubble(words, this.balls.x[this.wrong], this.balls.y[this.wrong]);
     else this.app.bubble("");
     this.app.redraw();
   }
@@ -100,6 +103,7 @@ export class SetUp {
       made.onclick = () => { this.picked = i; this.tray(); };
       return [made];
     }));
+    if (!by("tray").children.length) by("tray").textContent = "Every ball is on the table.";
   }
 
   at(event) {
@@ -130,7 +134,7 @@ export class SetUp {
     this.balls.on[ball] = Number(over && this.inside(x, y));
     if (this.balls.on[ball]) {
       const { lines } = this.app.scene, spot = lines?.spots.find(([sx, sy]) => Math.hypot(sx - x, sy - y) < 0.4 * this.app.view.R);
-      [this.balls.x[ball], this.balls.y[ball]] = spot ?? [x, y];
+      [this.balls.x[ball], this.balls.y[ball]] = spot ?? [x, y].map(value => Math.round(value * 1e4) / 1e4);
       this.picked = -1;
       this.check.ask({ ...this.request(), check: true });
     }
