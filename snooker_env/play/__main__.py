@@ -98,13 +98,10 @@ def main(argv: list[str] | None = None) -> int:
     except (ValueError, OSError, OverflowError) as error:
         print(f"snooker_env.play: {error}", file=sys.stderr)
         return 2
-    print(
-        f"Snooker is played at\n\n    {server.address}\n\nThe protocol is at {server.address}api/state (docs/protocol.md). Ctrl-C ends it.",
-        flush=True,
-    )
-    if not given.no_browser:
-        webbrowser.open(server.address)
     try:
+        print(f"Snooker is played at\n\n    {server.address}\n\nPrograms play at its api/ (docs/protocol.md). Ctrl-C ends it.", flush=True)
+        if not given.no_browser:
+            webbrowser.open(server.address)
         server.serve_forever(poll_interval=0.2)
     except KeyboardInterrupt:
         print()

@@ -102,7 +102,7 @@ class PlayHandler(BaseHTTPRequestHandler):
     """One connection."""
 
     server: "PlayServer"
-    protocol_version = "HTTP/1.1"
+    protocol_version = default_request_version = "HTTP/1.1"
     server_version, sys_version = "snooker_env", ""
 
     def setup(self) -> None:

@@ -15,7 +15,7 @@ from .._types import NoiseName
 from ..advice.strokes import CueStroke
 from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present
 from ..game.frame import Frame
-from ..game.frame_columns import write_frame
+from ..game.frame_columns import STROKES, write_frame
 from ..game.in_hand import place_cue
 from ..game.ruling import AUTO
 from ..planning.position import Position
@@ -199,10 +199,11 @@ class Session:
 
     def _hand_back(self):
         frame = self.frame
+        if frame.phase == "over" or frame.striker == 0:
+            return
         if frame.phase == "choice":
             frame = frame.choose("play_again")
-        if frame.phase == "stroke" and frame.striker != 0:
-            self._write(replace(frame, striker=0), self.tables.game[0, -1])
+        self._write(replace(frame, striker=0), int(self.tables.game[0, STROKES]))
 
     def choose(self, what: str) -> Act:
         """The decision after a foul of the other: "play", "play_again", or after a miss "replace"."""
@@ -221,7 +222,7 @@ class Session:
         frame = self.frame
         if frame.phase == "over":
             raise refuse("phase", frame.phase, "must not be over")
-        self._write(frame.concede(frame.striker), int(self.tables.game[0, -1]))
+        self._write(frame.concede(frame.striker), int(self.tables.game[0, STROKES]))
         return self._did(Act("concede", self.state, frame.striker))
 
     def place(self, x: float, y: float) -> tuple[float, float]:

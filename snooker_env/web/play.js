@@ -109,6 +109,13 @@ class Page {
   async catchUp() {
     if (this.busy) return;
     this.busy = true;
+    try { await this.showAll(); } catch (error) { this.played = this.state.strokes; this.trouble(error); }
+    this.busy = false;
+    this.show();
+    this.settle();
+  }
+
+  async showAll() {
     while (this.played < this.state.strokes) {
       if (!this.known.has(this.played)) {
         const { strokes } = await ask("strokes", undefined, `?from=${this.played}`);
@@ -122,12 +129,9 @@ class Page {
       if (this.played < this.state.strokes) await new Promise(done => setTimeout(done, 500));
       if (this.state.paused && this.agents()) this.try(() => ask("go", {}));
     }
-    this.busy = false;
-    this.show();
-    this.settle();
   }
 
-  agents() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over" && !this.halted; }
+  agents() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
 
   /** The balls as the state has them, and a first aim. */
   settle() {
@@ -191,6 +195,7 @@ class Page {
   /** Show no more motion of what has been played. */
   still() {
     this.played = this.state.strokes;
+    this.known.clear();
     this.skip();
   }
 

@@ -26,19 +26,22 @@ export class SetUp {
     for (const id of ["set-on", "set-striker", "set-score-0", "set-score-1", "set-hand", "set-free"]) by(id).onchange = () => this.changed();
   }
 
-  async begin() {
-    this.app.still();
-    await null; // the motion that was cut short has ended
-    const { state, scene } = this.app, here = this.app.balls;
-    this.balls = { x: Float64Array.from(here.x), y: Float64Array.from(here.y), on: Uint8Array.from(here.on) };
+  begin() {
+    const { app } = this, { state, scene } = app;
+    app.still();
+    this.names = scene.balls.map(ball => ball.name);
+    this.balls = { x: new Float64Array(22), y: new Float64Array(22), on: new Uint8Array(22) };
+    for (const [name, [x, y]] of Object.entries(state.positions)) {
+      const i = this.names.indexOf(name);
+      this.balls.x[i] = x; this.balls.y[i] = y; this.balls.on[i] = 1;
+    }
     this.open = true;
     fill(by("set-on"), ON, state.ball_on ?? ON[0]);
     fill(by("set-striker"), ["0", "1"], String(state.striker), value => state.labels[Number(value)]);
     for (const k of [0, 1]) { by(`set-name-${k}`).textContent = state.labels[k]; by(`set-score-${k}`).value = state.scores[k]; }
     by("set-hand").checked = state.in_hand;
     by("set-free").checked = state.free_ball;
-    this.names = scene.balls.map(ball => ball.name);
-    this.app.mode("setup");
+    app.mode("setup");
     this.changed();
   }
 
