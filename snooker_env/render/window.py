@@ -12,15 +12,17 @@
 """
 
 import dataclasses
+import itertools
 import os
 import sys
 from collections.abc import Iterable
 from typing import Any
 
 from .._check import number
+from ..physics.table import Table
 from .palette import PALETTE
 from .pygame_library import BOLD, MEDIUM, pygame_, typeset
-from .pygame_view import draw
+from .pygame_picture import draw
 from .scene import Film, Scene
 from .view import SIZE, View
 
@@ -29,7 +31,7 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 KEYS = "space: pause    right: step    enter: skip    up/down: speed    L: letters    P: paths    esc: close"
 WAITING = "waiting for the next stroke"
 _HINT = 0.026  # part of the window's height for the line that says what it waits for
-_WANTED = ("dummy", "offscreen")
+_TO_NOBODY = ("dummy", "offscreen")  # drivers of SDL
 
 
 def require_display() -> None:
@@ -51,8 +53,8 @@ def require_display() -> None:
 
 def _no_display(why):
     return RuntimeError(
-        f'render_mode="human" opens a window, but there is no display ({why}): use render_mode="rgb_array" for pictures or "ansi" for text, '
-        "or set SDL_VIDEODRIVER=dummy to play to nobody"
+        f'a window (render_mode="human") needs a display, and there is none ({why}): use render_mode="rgb_array" for pictures or "ansi" '
+        "for text, or set SDL_VIDEODRIVER=dummy to play to nobody"
     )
 
 
@@ -69,7 +71,7 @@ class Window:
     """
 
     def __init__(self, height: int | None = None, title: str = "snooker", *, size: tuple[int, int] | None = None):
-        View.of(_any_table(), height, size)  # refused now, not when it opens
+        View.of(Table.of(None), height, size)  # refused now, not when it opens
         self._height, self._size, self._title = height, size, title
         self._screen: Any = None
         self._shut = False
@@ -169,9 +171,10 @@ class Window:
             pygame.display.init()
         except pygame.error as error:
             raise _no_display(str(error)) from None
-        if not os.environ.get("SDL_VIDEODRIVER") and pygame.display.get_driver() in _WANTED:
+        driver = pygame.display.get_driver()
+        if not os.environ.get("SDL_VIDEODRIVER") and driver in _TO_NOBODY:
             pygame.display.quit()
-            raise _no_display(f"SDL found only its driver {pygame.display.get_driver() if pygame.display.get_init() else 'dummy'!r}")
+            raise _no_display(f"SDL found only its driver {driver!r}")
         pygame.display.set_caption(self._title)
         view = View.of(scene.table, self._height, self._size)
         width, height = view.width, view.height
@@ -226,18 +229,12 @@ class Window:
         pygame.display.flip()
 
 
-def _any_table():
-    from ..physics.table import Table
-
-    return Table.of(None)
-
-
 class _Reel:
-    """A film, or scenes one after the other, from which the next picture is taken."""
+    """A film, or scenes one after the other, from which the next picture is taken; None once the last was taken."""
 
     def __init__(self, scenes, step):
         self._film = scenes if isinstance(scenes, Film) else None
-        self._scenes = iter(()) if self._film else iter(scenes)
+        self._scenes = iter(() if self._film else scenes)
         self._step, self._time, self._due = step, 0.0, 0.0
         self._last: Scene | None = None
 
@@ -246,21 +243,26 @@ class _Reel:
         return self._last
 
     def on(self, speed):
-        """The picture after this one; None after the last."""
+        """The next picture; of scenes some are left out at speeds above 1, and shown again below."""
         if self._film:
-            if self._time >= self._film.duration:
-                return None
-            self._time = min(self._time + speed * self._step, self._film.duration)
-            return self._film.at(self._time)
+            return self._to(self._time + speed * self._step)
         self._due += speed
-        while self._due >= 1:
-            self._due -= 1
-            shown, self._last = self._last, next(self._scenes, None)
-            if self._last is None:
-                self._due = 0.0
-                return shown if speed > 1 and shown is not self._shown() else None
-        return self._last
+        count = int(self._due)
+        self._due -= count
+        return self._pass(count) if count else self._last
 
     def skip(self):
-        """The last picture, or None if that was shown."""
-        return None
+        """The very last picture."""
+        return self._to(self._film.duration) if self._film else self._pass(None)
+
+    def _to(self, time):
+        if self._time >= self._film.duration:
+            return None
+        self._time = min(time, self._film.duration)
+        return self._film.at(self._time)
+
+    def _pass(self, count):
+        passed = None
+        for passed in itertools.islice(self._scenes, count):
+            self._last = passed
+        return passed
