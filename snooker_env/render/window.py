@@ -76,7 +76,9 @@ class Window:
         self._screen: Any = None
         self._shut = False
         self._speed, self._paused, self._letters, self._paths = SPEEDS.index(1.0), False, False, True
-        self._steps, self._skip = 0, False
+        self._steps, self._skip, self._hint = 0, False, 0
+        self.status = ""
+        """What the window's last line says that it waits for."""
 
     @property
     def is_open(self) -> bool:
@@ -118,7 +120,8 @@ class Window:
             return False
         if self._screen is None:
             self._open(scene)
-        self._show(scene, status)
+        self.status = status
+        self._show(scene)
         return True
 
     def play(self, scenes: Film | Iterable[Scene], fps: float = 30.0, *, speed: float = 1.0) -> bool:
@@ -183,7 +186,8 @@ class Window:
             part = min(1.0, 0.92 * desk_width / SIZE[0], 0.88 * desk_height / SIZE[1])
             width, height = round(part * width), round(part * height)
         try:
-            self._screen = pygame.display.set_mode((width, height + round(_HINT * height)), pygame.RESIZABLE)
+            self._hint = max(14, round(_HINT * height))
+            self._screen = pygame.display.set_mode((width, height + self._hint), pygame.RESIZABLE)
         except pygame.error as error:
             pygame.display.quit()
             raise _no_display(str(error)) from None
@@ -212,16 +216,16 @@ class Window:
         elif key == pygame.K_p:
             self._paths = not self._paths
 
-    def _show(self, scene, status):
+    def _show(self, scene):
         pygame = pygame_()
         self._screen = pygame.display.get_surface()  # another one once the window was resized
         width, height = self._screen.get_size()
-        hint = max(12, round(_HINT / (1 + _HINT) * height))
+        hint = self._hint
         scene = dataclasses.replace(scene, lettered=scene.lettered or self._letters, paths=scene.paths if self._paths else {})
         pixels = draw(scene, View.of(scene.table, size=(max(width, 100), max(height - hint, 100))))
         self._screen.fill(PALETTE["floor"])
         self._screen.blit(pygame.image.frombuffer(pixels, pixels.shape[1::-1], "RGB"), (0, 0))
-        words = typeset(status, PALETTE["text"], 0.62 * hint, BOLD)
+        words = typeset(self.status, PALETTE["text"], 0.62 * hint, BOLD)
         self._screen.blit(words, words.get_rect(midleft=(hint, height - hint / 2)))
         keys = typeset(KEYS, PALETTE["text_quiet"], 0.58 * hint, MEDIUM)
         if words.get_width() + keys.get_width() < width - 4 * hint:
