@@ -22,11 +22,11 @@ from ..tasks.options import Options, options_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, Tables
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
-from .record import Record, Recorded
+from .record import HasHistory, Record
 from .reset_options import ONE, Start, given_of, start_of
 
 
-class SnookerEnv(Recorded, gymnasium.Env[Any, Any]):
+class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
     """Snooker shot selection: one step is one whole shot.
 
     ## Description

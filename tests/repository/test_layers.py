@@ -59,13 +59,13 @@ ALLOWED = {
         "_registration",
     },
 }
-OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
+OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"}, "pygame": {"render"}, "pettingzoo": {"envs"}, "imageio_ffmpeg": {"replays"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "abc", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools",
-    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap",
+    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "subprocess", "sys", "tempfile", "textwrap",
     "threading", "time", "types", "typing", "warnings", "zipfile", "zlib",
 }  # fmt: skip
 
