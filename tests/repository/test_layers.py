@@ -39,7 +39,7 @@ ALLOWED = {
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render", "replays"},
-    "replays": BASE | {"physics", "simulation", "game", "tasks", "render"},
+    "replays": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
     "render": {"_check", "_types", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
