@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.planning import Planner, Positions, action_masks, pots, processors
+from snooker_env.planning import RULE_OF_THUMB, SURE, Planner, Positions, action_masks, pots, processors, prospects_of, spread_of
 from snooker_env.tasks import STROKES, TOPS, choice_of
 
 from ..features.pot_features import with_pots
-from ..features.prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 
 KEEP = 3
 """Of a round's candidates one in so many goes on to the next."""

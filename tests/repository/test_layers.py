@@ -38,12 +38,26 @@ ALLOWED = {
     "game": BASE,
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
+    "advice": BASE | {"physics", "simulation", "game", "tasks", "planning", "envs"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
     "render": {"_check", "_types", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {"geometry", "physics", "impacts", "shot", "simulation", "tasks", "planning", "envs", "match", "_warmup", "_registration"},
+    "__init__": {
+        "geometry",
+        "physics",
+        "impacts",
+        "shot",
+        "simulation",
+        "tasks",
+        "planning",
+        "advice",
+        "envs",
+        "match",
+        "_warmup",
+        "_registration",
+    },
 }
 OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}

@@ -5,11 +5,11 @@ import pytest
 from positions import tables
 
 from agents.evaluation.rollouts import play, summary
-from agents.features import pot_features, prospects
+from agents.features import pot_features
 from agents.players.built_in import DISCRETE, GhostBall, Random
 from agents.players.by_name import player_of
 from agents.players.search import Search, _Worker
-from snooker_env.planning import Positions, action_masks
+from snooker_env.planning import Positions, action_masks, prospects
 from snooker_env.tasks.discrete_actions import STROKES
 from snooker_env.tasks.noise import Noise
 
