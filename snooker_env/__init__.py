@@ -41,8 +41,8 @@ __version__ = "0.3.0.dev0"
 
 __all__ = [
     "POCKETS", "EventKind", "Options", "Physics", "Planner", "Pocket", "Position", "Positions", "Shot", "ShotBatch", "SimulationError",
-    "SnookerEnv", "SnookerVectorEnv", "Table", "advise", "collide_balls", "collide_cushion", "match_env", "planning", "simulate", "simulate_batch",
-    "strike", "warmup",
+    "SnookerEnv", "SnookerVectorEnv", "Table", "advise", "collide_balls", "collide_cushion", "match_env", "planning", "simulate",
+    "simulate_batch", "strike", "warmup",
 ]  # fmt: skip
 
 _LATER = {

@@ -3,16 +3,12 @@
 from dataclasses import asdict
 from typing import Any
 
-import numpy as np
-
 from .._check import integer
-from ..planning import Positions
 from ..planning.positions import PositionsLike
 from ..tasks.noise import NoiseLike
-from .advisor import Ranked
-from .judging import intended, judged
+from . import judging
 from .players import player_of
-from .practice import Practice, one_position, played_from, practice_of
+from .practice import one_position, practice_of
 from .strokes import CueStroke
 from .suggestions import Advice
 
@@ -21,8 +17,8 @@ LOOKED_AT = 8
 
 
 def advise(
-    position: PositionsLike, *, agent: Any = "lookahead", noise: NoiseLike = "professional", n: int = 5, samples: int = 200, visits: int = 50,
-    seed: int = 0, options: Any = None, distinct: bool = True, trust: bool = False,
+    position: PositionsLike, *, agent: Any = "lookahead", noise: NoiseLike = "professional", n: int = 5, samples: int = 200,
+    visits: int = 50, seed: int = 0, options: Any = None, distinct: bool = True, trust: bool = False,
 ) -> Advice:  # fmt: skip
     """The strokes that a player would play at a position, best first, and what comes of each under errors of execution.
 
@@ -47,12 +43,12 @@ def advise(
     samples : int
         How often each is played. Without noise once is enough.
     visits : int
-        How many visits of each are played on; 0: the points are those of the stroke itself.
+        How many visits of each are played on, at most one a sample that goes on; 0: the points are those of the stroke itself.
     seed : int
     options : mapping or Options, optional
         "physics", "table" and "fidelity" of the world. None: those of ``position`` if it is an environment, else the defaults.
     distinct : bool
-        Whether to leave out strokes at the same ball and pocket with the same spin in words, but for the first.
+        Whether of strokes that read the same, but for the speed of a pot, only the first is given.
     trust : bool
         See ``player_of``.
 
@@ -76,13 +72,13 @@ def advise(
     """
     integer("n", n, 1, 100)
     integer("samples", samples, 1, 100_000)
-    integer("visits", visits, 0, samples)
+    integer("visits", visits, 0, 100_000)
     integer("seed", seed, 0, 2**63)
     at, practice, player = one_position(position), practice_of(noise, options, position), player_of(agent, trust=trust)
     ranked = player.rank(practice, at, n, seed)[: LOOKED_AT * n]
     if distinct:
-        ranked = _distinct(practice, at, ranked)
-    chosen = judged(practice, at, ranked[:n], samples=samples, visits=visits, seed=seed)
+        ranked = judging.distinct(practice, at, ranked)
+    chosen = judging.judged(practice, at, ranked[:n], samples=samples, visits=visits, seed=seed)
     said = noise if isinstance(noise, str) else asdict(practice.noise)
     return Advice(
         suggestions=tuple(chosen), position=at[0], agent=player.name, noise=said, samples=samples, visits=visits, seed=seed
@@ -119,25 +115,3 @@ def stroke_of(player: Any, position: PositionsLike, *, noise: NoiseLike = "profe
     integer("seed", seed, 0, 2**63)
     (stroke, _), *_ = player_of(player).rank(practice_of(noise, options, position), one_position(position), 1, seed)
     return stroke
-
-
-def _distinct(practice: Practice, at: Positions, ranked: Ranked) -> Ranked:
-    """Of strokes that do the same without errors, with the same spin in words, only the first."""
-    there = [played_from(at, stroke) for stroke, _ in ranked]
-    starts = Positions(*(np.concatenate([getattr(one, name) for one in there]) for name in ("positions", "on_table", "game")))
-    look = practice.play(starts, np.arange(len(ranked)), np.stack([stroke.numbers() for stroke, _ in ranked]))
-    seen, kept = set(), []
-    for k, (stroke, score) in enumerate(ranked):
-        does = intended(look, k, False)
-        what = (
-            (*does.values(), _third(stroke.side), _third(stroke.top)) if does["kind"] == "pot" else (*does.values(), round(stroke.aim, 1))
-        )
-        if what not in seen:
-            seen.add(what)
-            kept.append((stroke, score))
-    return kept
-
-
-def _third(offset: float) -> int:
-    """Left, middle or right of a tip; the same of its height, deep ones apart."""
-    return int(np.sign(offset)) * ((abs(offset) > 0.1) + (abs(offset) > 0.3))

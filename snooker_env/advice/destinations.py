@@ -1,4 +1,4 @@
-"""Where do the balls of a stroke stop? ``destinations``: cue ball and object ball under many errors of execution, as a cloud and as a map."""
+"""Where do the balls of a stroke stop? ``destinations``: cue ball and object ball under many errors, as a cloud and as a map."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -1,12 +1,14 @@
 """What would a player do who looks one stroke ahead? Tries strokes without errors, the better ones under errors, and so on to the best few.
 
 A stroke is worth its points and, if the visit goes on, what the position left promises by the rule of thumb
-(``planning.prospects_of``). Where no direct pot goes in, strokes that hit a ball on are looked for, full, thin and off cushions; then
-what the other player gets counts as well, the penalty of a foul and half of what is left.
+(``planning.prospects_of``). Where no direct pot is likely, strokes that hit a ball on are tried as well, full, thin and off cushions; then
+what the other player gets counts, too: the penalty of a foul, and half of what the position promises him.
 
 All candidates of a round meet the same noise samples; of each round the better ones go on to the next, with more samples (sequential
 halving, Karnin, Koren & Somekh 2013).
 """
+
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,35 +17,42 @@ from ..game.balls import CUE, SPOTS, BallOn
 from ..game.frame_columns import BALL_ON
 from ..planning import Positions, Stops
 from . import seeds
+from .advisor import Advisor, Ranked
 from .candidates import FAN, FINE_FAN, at_balls, at_pots, fan
 from .practice import Practice, starts, stroke_of_row
-from .strokes import CueStroke
 
 ROUNDS = ((64, 6), (24, 24), (12, 96))
 """Of each round: so many candidates, the best so far, meet so many more noise samples."""
 LEFT = 0.5
 """How much of what the position promises the other player counts against a stroke, where nothing can be potted."""
+DOUBTFUL = 0.4
+"""Where the chance of every pot, by the rule of thumb, is at most this, a stroke that pots nothing may be better."""
 EACH = 2
 """Of strokes without errors at one pot with one top and side, so many go into the first round: neighbouring speeds say much the same."""
 
+Tried: TypeAlias = tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]
+"""From which start each stroke is played (n,), the strokes (n, 5), and what each is worth (n,)."""
+_NONE: Tried = (np.empty(0, np.int64), np.empty((0, 5)), np.empty(0))
 
-class LookaheadAdvisor:
+
+class LookaheadAdvisor(Advisor):
     """The built-in "lookahead": the best strokes by simulation and a rule of thumb. Scores are points."""
 
     name = "lookahead"
 
-    def rank(self, practice: Practice, at: Positions, n: int, seed: int) -> list[tuple[CueStroke, float | None]]:
+    def rank(self, practice: Practice, at: Positions, n: int, seed: int) -> Ranked:
         """The best strokes at one position, best first, each with what it is worth [points]; more than n if they are at hand."""
         there = starts(practice, at)
         rows, strokes, likely = at_pots(practice, there)
-        safe = True
-        if len(strokes):
-            look = practice.play(there, rows, strokes)
-            worth = likely * self._gain(practice, look)
-            safe = not (look.points > 0).any()
+        look = practice.play(there, rows, strokes)
+        made = look.points > 0
+        tried = _best((rows, strokes, likely * self._gain(practice, look)), made, len(made))
+        safe = not (likely[made] > DOUBTFUL).any()
         if safe:
-            rows, strokes, worth = self._contacts(practice, there)
-        rows, strokes, scores = self._halved(practice, there, rows, strokes, worth, seed, safe=safe)
+            contacts, lucky = self._contacts(practice, there)
+            groups = ((tried, np.ones(len(tried[0]), np.bool_), 32), (contacts, ~lucky, 24), (contacts, lucky, 8))
+            tried = _joined([_best(*group) for group in groups])
+        rows, strokes, scores = self._halved(practice, there, tried, seed, safe=safe)
         in_hand = bool(at.in_hand[0])
         return [(stroke_of_row(s, there[k : k + 1], in_hand), float(v)) for k, s, v in zip(rows.tolist(), strokes, scores, strict=True)]
 
@@ -64,32 +73,28 @@ class LookaheadAdvisor:
         theirs.on_table[:, CUE] = True
         return gain - stops.penalty - LEFT * ~stops.goes_on * practice.prospects(theirs)[0]
 
-    def _contacts(self, practice: Practice, there: Positions) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-        """Strokes that hit a ball on without errors, and what they are worth so; any strokes if no fair one is found."""
-        rows, strokes, worth = np.empty(0, np.int64), np.empty((0, 5)), np.empty(0)
+    def _contacts(self, practice: Practice, there: Positions) -> tuple[Tried, NDArray[np.bool_]]:
+        """Strokes that hit a ball on without errors, and which of them pot it, by luck as a rule; any strokes if no fair one is found."""
+        tried, lucky = _NONE, np.empty(0, np.bool_)
         for directions in (FAN, FINE_FAN):
-            tried = [np.concatenate([at_balls(there, k), fan(directions)]) for k in range(len(there))]
-            rows, strokes = np.repeat(np.arange(len(there)), [len(t) for t in tried]), np.concatenate(tried)
+            some = [np.concatenate([at_balls(there, k), fan(directions)]) for k in range(len(there))]
+            rows, strokes = np.repeat(np.arange(len(there)), [len(each) for each in some]), np.concatenate(some)
             look = practice.play(there, rows, strokes)
-            worth = self._worth(practice, look, safe=True)
-            fair = look.penalty == 0
+            tried, lucky, fair = (rows, strokes, self._worth(practice, look, safe=True)), look.points > 0, look.penalty == 0
             if fair.any():
-                return rows[fair], strokes[fair], worth[fair]
-        return rows, strokes, worth
+                return (rows[fair], strokes[fair], tried[2][fair]), lucky[fair]
+        return tried, lucky
 
-    def _halved(
-        self, practice: Practice, there: Positions, rows: NDArray[np.int64], strokes: NDArray[np.float64], worth: NDArray[np.float64],
-        seed: int, *, safe: bool,
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
+    def _halved(self, practice: Practice, there: Positions, tried: Tried, seed: int, *, safe: bool) -> Tried:
         """The strokes of the last round, best first, and what they were worth under errors."""
+        rows, strokes, worth = tried
         order = np.argsort(-worth, kind="stable")
         if practice.sure:
             keep = order[: ROUNDS[-1][0]]
             return rows[keep], strokes[keep], worth[keep]
-        first = ROUNDS[0][0]
         if not safe:
             order = order[_few_of_a_kind(rows[order], strokes[order])]
-        rows, strokes = rows[order[:first]], strokes[order[:first]]
+        rows, strokes = rows[order[: ROUNDS[0][0]]], strokes[order[: ROUNDS[0][0]]]
         samples = seeds.keys(seed, seeds.CHOOSING, sum(each for _, each in ROUNDS))
         sums, tries = np.zeros(len(rows)), 0
         for many, each in ROUNDS:
@@ -101,6 +106,20 @@ class LookaheadAdvisor:
             tries += each
         best = np.argsort(-sums, kind="stable")
         return rows[best], strokes[best], sums[best] / tries
+
+
+def _best(tried: Tried, which: NDArray[np.bool_], most: int) -> Tried:
+    """The best of those strokes."""
+    of = np.flatnonzero(which)
+    rows, strokes, worth = tried
+    keep = of[np.argsort(-worth[of], kind="stable")[:most]]
+    return rows[keep], strokes[keep], worth[keep]
+
+
+def _joined(groups: list[Tried]) -> Tried:
+    """Several groups as one."""
+    rows, strokes, worth = (np.concatenate(part) for part in zip(*groups, strict=True))
+    return rows, strokes, worth
 
 
 def _few_of_a_kind(rows: NDArray[np.int64], strokes: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -72,9 +72,7 @@ def player_of(agent: Any, *, trust: bool = False) -> Advisor:
         return Borrowed(_own(name), name)
     by_name = _repository("agents.players.by_name")
     if by_name is None:
-        allowed = (
-            ", ".join(map(repr, BUILT_IN)) + ", MODULE:CLASS or a player; models and other players are read in a clone of the repository"
-        )
+        allowed = ", ".join(map(repr, BUILT_IN)) + ", MODULE:CLASS or a player; models and other players need a clone of the repository"
         raise refuse("agent", name, f"must be {allowed}")
     if trust and Path(name).exists():
         return Borrowed(importlib.import_module("agents.players.trained").load_any(Path(name), trust, {}), name)

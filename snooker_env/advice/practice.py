@@ -12,7 +12,7 @@ from ..game.balls import SPOTS
 from ..game.frame_columns import POINTS
 from ..game.in_hand import place_cue
 from ..geometry import BAULK_Y, D_RADIUS
-from ..planning import Planner, Position, Positions, Stops, prospects_of, spread_of
+from ..planning import Planner, Positions, Stops, prospects_of, spread_of
 from ..planning.positions import bare
 from ..planning.prospects import RULE_OF_THUMB, SURE
 from ..tasks.noise import Noise, NoiseLike
@@ -74,7 +74,7 @@ def _practice(options: Options) -> Practice:
 
 def one_position(source: Any) -> Positions:
     """The one position that a source of positions holds, its visit's points counted from 0; ValueError if it holds several."""
-    at = Positions.of(Position(**source) if _in_words(source) else source)
+    at = Positions.of(source)
     if len(at) != 1:
         raise refuse_what("position", f"{len(at)} positions", "must be one position")
     if at.over[0]:
@@ -82,11 +82,6 @@ def one_position(source: Any) -> Positions:
     at = at.copy()
     at.game[:, POINTS] = 0  # only what comes is counted, and no break grows past what a table allows
     return at
-
-
-def _in_words(source: Any) -> bool:
-    """Is it ``Position.to_dict()``, and not a state?"""
-    return isinstance(source, Mapping) and "positions" not in source
 
 
 def placed(at: Positions, places: Any) -> Positions:
@@ -98,7 +93,7 @@ def placed(at: Positions, places: Any) -> Positions:
 
 
 def starts(practice: Practice, at: Positions, most: int = 3) -> Positions:
-    """From where the stroke may be played: the one position, or with the cue ball in hand the ``most`` promising of some places in the D."""
+    """From where the stroke may be played: the one position, or with the cue ball in hand the ``most`` promising places in the D."""
     if not at.in_hand[0]:
         return at
     tried = placed(at, (*PLACES, SPOTS[0]))

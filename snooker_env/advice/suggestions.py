@@ -17,9 +17,9 @@ class Suggestion(CueStroke):
     ----------
     speed, aim, side, top, elevation, place
         The stroke, see ``CueStroke``.
-    kind : {"pot", "safety", "escape", "foul"}
+    kind : {"pot", "safety", "escape", "in-off", "foul"}
         What the stroke does without errors: it scores; it hits a ball on fairly and scores nothing, an "escape" where no straight path
-        leads to a ball on; or it is a foul.
+        leads to a ball on; it loses the cue ball; or it is another foul.
     ball : int
         The ball that it pots without errors or, if none, the ball that it strikes first; -1 if it strikes nothing.
     pocket : int

@@ -3,10 +3,10 @@
 Left and right are as seen from baulk, looking to the black end: right is the yellow side (+x), left the green side.
 """
 
-from math import degrees, sqrt
+from math import copysign, cos, degrees, inf, sin, sqrt
 
 from ..game.balls import NAMES
-from ..geometry import BAULK_Y
+from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
 from ..physics.parameters import Physics
 from .strokes import CueStroke
 
@@ -19,6 +19,8 @@ _FAR_OFF = 0.3
 _STUN = 0.25
 """A ball whose roll is within so much of its speed, over it, arrives as if without spin."""
 _SIDE = 0.05
+RAISED = 0.05
+"""From this elevation on [rad] a cue is said to be raised."""
 
 
 def ball_words(ball: int) -> str:
@@ -91,13 +93,46 @@ def place_words(x: float, y: float) -> str:
 def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics) -> str:
     """Speed, spin, raised cue and place."""
     words = f"{stroke.speed:.1f} m/s, {spin_words(stroke, distance, physics)}"
-    if stroke.elevation > 0.05:
+    if stroke.elevation >= RAISED:
         words += f", cue raised {degrees(stroke.elevation):.0f} degrees"
     return words if stroke.place is None else f"{words}, {place_words(*stroke.place)}"
 
 
-def what_words(kind: str, ball: int, pocket: int, first: int) -> str:
-    """What a stroke does when it comes out as intended.
+def cushion_words(x: float, y: float, aim: float) -> str:
+    """The cushion that a ball at (x, y), sent in the direction ``aim`` [rad], runs at: left, right, top (the black end) or baulk.
+
+    Examples
+    --------
+    >>> from snooker_env.advice.words import cushion_words
+    >>> cushion_words(0.0, 0.0, 0.1), cushion_words(0.0, 0.0, -1.6)
+    ('right cushion', 'baulk cushion')
+    """
+    dx, dy = cos(aim), sin(aim)
+    to_side = (HALF_WIDTH - x * copysign(1.0, dx)) / max(abs(dx), 1e-9)
+    to_end = (HALF_LENGTH - y * copysign(1.0, dy)) / max(abs(dy), 1e-9)
+    if to_side < to_end:
+        return "right cushion" if dx > 0 else "left cushion"
+    return "top cushion" if dy > 0 else "baulk cushion"
+
+
+def contact_words(x: float, y: float, aim: float) -> str:
+    """How full a ball that lies (x, y) away is struck by a cue ball that runs straight in the direction ``aim`` [rad].
+
+    Examples
+    --------
+    >>> from snooker_env.advice.words import contact_words
+    >>> contact_words(1.0, 0.0, 0.0), contact_words(1.0, 0.026, 0.0)
+    ('full', 'half-ball on the right')
+    """
+    aside = (y * cos(aim) - x * sin(aim)) / (2.0 * BALL_RADIUS)
+    for far, words in ((0.12, "full"), (0.38, "three-quarter ball"), (0.62, "half-ball"), (0.87, "quarter-ball"), (inf, "thin")):
+        if abs(aside) <= far:
+            return words if far < 0.2 else f"{words} on the {'right' if aside > 0 else 'left'}"
+    raise AssertionError(aside)
+
+
+def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
+    """What a stroke does when it comes out as intended; ``how``: of an escape the cushion that it goes off first, of a safety the contact.
 
     Examples
     --------
@@ -108,13 +143,17 @@ def what_words(kind: str, ball: int, pocket: int, first: int) -> str:
     if kind == "pot":
         how = "" if ball == first else " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
         return f"{ball_words(ball)}{how}, {POCKET_WORDS[pocket]}"
+    if kind == "in-off":
+        return f"in-off from the {ball_words(first)}" if first >= 0 else "in-off, nothing struck"
     if kind == "foul":
-        return "foul, nothing struck" if first < 0 else f"foul off the {ball_words(first)}"
-    return f"{kind} {'off' if kind == 'safety' else 'to'} the {ball_words(ball)}"
+        return f"foul, {ball_words(first)} first" if first >= 0 else "foul, nothing struck"
+    if kind == "escape":
+        return f"escape{f' off the {how}' if how else ''} to the {ball_words(ball)}"
+    return f"safety off the {ball_words(ball)}" + (f", {how}" if how else "")
 
 
 def figures_words(kind: str, chance: float, points: float) -> str:
     """Chance and points expected."""
     share = f"{'chance' if kind == 'pot' else 'fair'} {100.0 * chance:.0f} %"
-    scored = f"{points:.0f}" if points >= 9.5 or points == round(points) else f"{points:.1f}"
+    scored = f"{points:.0f}" if points >= 9.5 else f"{points:.1f}".removesuffix(".0")
     return f"{share}, {scored} point{'' if scored == '1' else 's'} expected"
