@@ -5,6 +5,7 @@ A player says with ``options`` how its actions are read, and ``act(tables, obser
 the actions that it considered, best first, and its own score of each: a list of (actions, scores).
 """
 
+from math import atan2
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ import numpy as np
 from .._check import refuse_what
 from .._types import Bools
 from ..game.balls import balls_on, mask_of_present
-from ..physics.cue import squirt
+from ..physics.cue import strike
 from ..planning import Positions, as_actions
 from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS, Choices
 from .advisor import Advisor, Ranked
@@ -88,8 +89,8 @@ class Borrowed(Advisor):
             start, place = self._put(actions, a, start)
         on = balls_on(int(start.ball_on[0]), mask_of_present(start.on_table[0]))
         speed, side, top, cue, elevation = actions.shot(a, start.positions[0], start.on_table[0], on)
-        aim = cue + squirt(side, rules.physics.end_mass_ratio)
-        return CueStroke(speed=speed, side=side, top=top, aim=aim, elevation=elevation, place=place)
+        (vx, vy, _), _ = strike(speed, cue, side, top, elevation, rules.physics)  # with squirt: where the ball leaves
+        return CueStroke(speed=speed, side=side, top=top, aim=atan2(vy, vx), elevation=elevation, place=place)
 
     @staticmethod
     def _put(actions: Any, a: Any, start: Positions) -> tuple[Positions, tuple[float, float]]:
