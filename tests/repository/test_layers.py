@@ -65,7 +65,7 @@ OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "abc", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools",
-    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap",
+    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "re", "sys", "tempfile", "textwrap",
     "threading", "time", "types", "typing", "warnings", "zipfile", "zlib",
 }  # fmt: skip
 
