@@ -123,7 +123,7 @@ def play(
     events = out.log(0)
     _raise_unless_ok(out, 0, events)
     segments = out.segments[0, : out.n_segments[0]].copy()
-    return Shot(state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, segments, physics)
+    return Shot(state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, segments, physics, table)
 
 
 def simulate_batch(

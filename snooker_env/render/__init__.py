@@ -3,6 +3,7 @@
 ``__all__`` is public: what somebody needs who draws tables with a library of his own.
 """
 
-from .scene import BAULK_LINE, COLOURS, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, outline
+from .palette import COLOURS, PALETTE
+from .scene import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, outline, scene_data
 
-__all__ = ["BAULK_LINE", "COLOURS", "CUSHION", "D_ARC", "RAIL", "SPOT_MARKS", "Outline", "outline"]
+__all__ = ["BAULK_LINE", "COLOURS", "CUSHION", "D_ARC", "PALETTE", "RAIL", "SPOT_MARKS", "Outline", "outline", "scene_data"]

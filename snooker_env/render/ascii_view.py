@@ -10,7 +10,8 @@ from textwrap import wrap
 import numpy as np
 
 from .._check import integer
-from .scene import BAULK_LINE, D_ARC, LETTERS, PALE, SPOT_MARKS, Scene, extent, is_marked
+from .palette import LETTERS, PALE
+from .scene import BAULK_LINE, D_ARC, SPOT_MARKS, Scene, extent, is_marked
 
 WIDTH = 100
 """Characters a line unless told."""

@@ -42,7 +42,7 @@ from ..geometry import BALL_RADIUS
 from ..physics.engine import Status
 from .observations import SIZE, observe_into
 from .rewards import frame_reward_of
-from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, SPEED, TOUCHING, place, see
+from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, SPEED, TOUCHING, place, see, write_ruling
 from .tables import COUNTS, I_BREAK, REALS, keep_last, tell_nothing, tell_stroke
 
 AGENT = 0
@@ -109,6 +109,7 @@ def conclude(which, positions, on_table, game, streams, r, potted, status, durat
             p, on, ball_on, row[FREE_BALL], lead_of(row, row[STRIKER]), seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN],
             0, AUTO, 0, jaws, BALL_RADIUS,
         )  # fmt: skip
+        write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], result, seen)
         after_stroke(row, result, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], miss)
         row[STROKES] += 1
         if row[PHASE] == LOT:  # the winner of the lot is taken to play first

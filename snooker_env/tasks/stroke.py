@@ -20,7 +20,6 @@ from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.engine import EventKind, Status
 from ..physics.impact.polynomial import WORK
-from ..physics.parameters import Physics
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
 from .box_actions import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, place_of, shot_of, tip_on_disc
@@ -32,11 +31,14 @@ if TYPE_CHECKING:
 AT_ONCE = 1e-9
 """Contacts nearer than this [s] are simultaneous."""
 
-# Columns of what is kept of a strike: the five numbers after it, and the speed that was intended.
-(VX, VY, WX, WY, WZ, SPEED) = range(6)
+# Columns of what is kept of a strike: the five numbers after it, the speed that was intended, and the strike itself, errors included.
+(VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
+STRIKE_COLUMNS = 11
 
-# Columns of what the referee sees of a stroke: masks of balls, then the paths before it (only where misses are called).
-(FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH) = range(6)
+# Columns of what the referee sees of a stroke: masks of balls, then the paths before it (only where misses are called); and of what he
+# says of it: who played, on which ball (a ``BallOn``), with a free ball or not, what it scored, cost, and the fouls.
+(FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, PLAYER, WAS_ON, FREE, SCORED, COST, FOULS) = range(12)
+SEEN_COLUMNS = 12
 
 _BALL_BALL = int(EventKind.BALL_BALL)
 _WHY = {
@@ -91,6 +93,7 @@ def strike(intended, positions, on_table, stream, options, noise, j, r, v, w, he
     shot = shots[j]
     (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS])
     shot[SPEED] = intended[0]
+    shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation
     for i in range(N_BALLS):
         r[j, i, 0], r[j, i, 1], here[j, i] = positions[i, 0], positions[i, 1], on_table[i]
         v[j, i, 0] = v[j, i, 1] = w[j, i, 0] = w[j, i, 1] = w[j, i, 2] = 0.0
@@ -131,6 +134,13 @@ def see(j, event_time, event_what, n_events, potted, positions, on_table, speed,
     seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN] = first, touching, moved, down
 
 
+@kernel
+def write_ruling(j, player, ball_on, free_ball, result, seen):
+    """Write down what the referee says of shot j: ``result`` is his ``Ruling``."""
+    seen[j, PLAYER], seen[j, WAS_ON], seen[j, FREE] = player, ball_on, free_ball
+    seen[j, SCORED], seen[j, COST], seen[j, FOULS] = result.points, result.penalty, result.fouls
+
+
 class ShotBuffers:
     """Work space for up to m shots at once, each with a log of ``log`` events and, if wanted, its path."""
 
@@ -143,9 +153,9 @@ class ShotBuffers:
     potted: Ints
     """(m, 22) the pocket of each ball, or -1."""
     shots: Floats
-    """(m, 6) of each strike, columns ``VX`` to ``SPEED``."""
+    """(m, STRIKE_COLUMNS) of each strike, columns ``VX`` to ``ELEVATION``."""
     seen: Ints
-    """(m, 6) what the referee sees, columns ``FIRST`` to ``FULL_PATH``."""
+    """(m, SEEN_COLUMNS) what the referee sees and says, columns ``FIRST`` to ``FOULS``."""
     event_time: Floats
     event_what: NDArray[np.int32]
     """(m, log) [s] and (m, log, 3): time; kind, i, j of each event."""
@@ -163,7 +173,7 @@ class ShotBuffers:
         self.log = log
         self.r, self.v, self.w = np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 3))
         self.here, self.potted = np.zeros((m, N_BALLS), np.bool_), np.zeros((m, N_BALLS), np.int64)
-        self.shots, self.seen = np.zeros((m, 6)), np.zeros((m, 6), np.int64)
+        self.shots, self.seen = np.zeros((m, STRIKE_COLUMNS)), np.zeros((m, SEEN_COLUMNS), np.int64)
         self.event_time, self.event_what = np.zeros((m, log)), np.zeros((m, log, 3), np.int32)
         self.segments = np.zeros((m, 2 * log + N_BALLS + 2 if path else 0, cloth.COLUMNS + 2))
         self.status, self.n_events, self.n_segments = (np.zeros(m, np.int64) for _ in range(3))
@@ -180,7 +190,7 @@ class ShotBuffers:
         one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
         return one
 
-    def shot(self, j: int, physics: Physics) -> Shot:
+    def shot(self, j: int, rules: "Rules") -> Shot:
         """Shot j as a ``Shot``."""
         n = self.n_events[j]
         events = np.zeros(n, EVENT)
@@ -188,7 +198,8 @@ class ShotBuffers:
         for c, name in enumerate(("kind", "i", "j")):
             events[name] = self.event_what[j, :n, c]
         segments = self.segments[j, : self.n_segments[j]].copy()
-        return Shot(self.r[j].copy(), self.potted[j].copy(), self.here[j].copy(), float(self.duration[j]), events, segments, physics)
+        ends = self.r[j].copy(), self.potted[j].copy(), self.here[j].copy(), float(self.duration[j])
+        return Shot(*ends, events, segments, rules.physics, rules.table)
 
 
 def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:

@@ -20,7 +20,7 @@ from ..physics.engine import Status
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
 from .states import State, checked
-from .stroke import DOWN, FIRST, MOVED, SPEED, TOUCHING, ShotBuffers, see
+from .stroke import DOWN, FIRST, MOVED, SPEED, TOUCHING, ShotBuffers, see, write_ruling
 from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, tell_nothing, tell_stroke
 
 _OK = int(Status.OK)
@@ -40,6 +40,7 @@ def _conclude(which, positions, on_table, game, r, potted, status, duration, eve
             p[i, 0], p[i, 1] = r[j, i, 0], r[j, i, 1]
         ball_on = state[BALL_ON]
         ruling = settle_visit(p, on, ball_on, state[POINTS], seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN], BALL_RADIUS)
+        write_ruling(j, 0, ball_on, False, ruling, seen)
         state[BALL_ON], state[IN_HAND] = ruling.ball_on, ruling.in_hand
         state[POINTS] += ruling.points
         state[STEPS] += 1
@@ -162,6 +163,16 @@ class Visits(Tables):
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         self.game[k] = state.ball_on, state.in_hand, state.points, state.over, 0
         self.streams[k] = np.array(state.stream, np.uint64)
+        self.begun[k] = True
+
+    def standing(self, k: int) -> dict[str, Any]:
+        """Of a ``Played`` on table k: there is one player, whose break is his score."""
+        points = int(self.game[k, POINTS])
+        return {"next_player": 0, "scores": (points,), "break_points": points, "choice": False, "winner": None}
+
+    def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
+        """Begin a visit on table k with a sound position, ``game`` being its row; its random numbers go on."""
+        self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
         self.begun[k] = True
 
     def text(self, k: int) -> str:

@@ -39,7 +39,8 @@ ALLOWED = {
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
     "advice": BASE | {"physics", "simulation", "game", "tasks", "planning", "envs"},
-    "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
+    "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render", "replays"},
+    "replays": BASE | {"physics", "simulation", "game", "tasks", "render"},
     "render": {"_check", "_types", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
@@ -55,18 +56,24 @@ ALLOWED = {
         "advice",
         "envs",
         "match",
+        "replays",
         "_warmup",
         "_registration",
     },
 }
-OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
+OUTSIDE = {
+    "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
+    "pygame": {"render"},
+    "pettingzoo": {"envs"},
+    "imageio_ffmpeg": {"replays"},
+}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "abc", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools",
-    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "re", "sys", "tempfile", "textwrap",
-    "threading", "time", "types", "typing", "warnings", "zipfile", "zlib",
+    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "re", "subprocess", "sys", "tempfile",
+    "textwrap", "threading", "time", "types", "typing", "warnings", "zipfile", "zlib",
 }  # fmt: skip
 
 
@@ -102,7 +109,7 @@ def test_the_reader_of_imports_sees_every_kind():
     seen = dict(imports("tasks/stroke.py"))
     assert seen[".physics.cue"] and seen[".tasks.noise"] and seen["numpy"]
     assert dict(imports("envs/pictures.py"))[".render.pygame_view"] is False
-    assert dict(imports("render/pygame_view.py"))["pygame"] is False
+    assert dict(imports("render/pygame_library.py"))["pygame"] is False
     assert dict(imports("tasks/stroke.py"))[".tasks.options"] is False  # for type checkers alone
     assert dict(imports("__init__.py"))[".physics.engine"]
     assert len(FILES) > 25
@@ -134,7 +141,7 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
             assert not top, f"{name} imports {library} when it is imported, not when it is wanted"
 
 
-LATE = {"envs": (".render", ".planning"), "_warmup": (".planning", ".envs")}
+LATE = {"envs": (".render", ".planning", ".replays"), "_warmup": (".planning", ".envs")}
 """What these parts import only when it is asked for."""
 
 

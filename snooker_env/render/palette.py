@@ -1,0 +1,47 @@
+"""Which colours does everything have? One table of them, red, green, blue, for pygame, matplotlib and the browser.
+
+The cloth is as bright as under a table's lamps on television, and the green, the brown and the black are dark: each ball is at least 25
+CIEDE2000 away from the cloth, so that nobody has to look twice. The balls that are alike for colour-blind people carry letters when
+labels are on.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+PALETTE: dict[str, tuple[int, int, int]] = {
+    "floor": (17, 18, 21),
+    "cloth": (36, 148, 76),
+    "cloth_edge": (15, 78, 40),
+    "line": (214, 226, 190),
+    "cushion": (30, 124, 64),
+    "nose": (86, 186, 118),
+    "wood": (92, 44, 24),
+    "wood_edge": (44, 20, 11),
+    "leather": (58, 40, 30),
+    "leather_edge": (132, 100, 74),
+    "hole": (5, 5, 6),
+    "aim": (255, 240, 150),
+    "path_edge": (10, 46, 24),
+    "shadow": (0, 14, 5),
+    "lamp": (255, 252, 240),
+    "bar": (16, 20, 31),
+    "bar_edge": (62, 70, 94),
+    "bar_accent": (196, 32, 48),
+    "text": (240, 240, 236),
+    "text_quiet": (164, 170, 184),
+}
+"""What is drawn, by name: ``cloth_edge`` the cloth where it bends over a fall, ``line`` the baulk line, the D and the spots, ``nose`` the
+edge of a cushion that balls meet, ``path_edge`` the outline of a path, ``lamp`` its reflection in a ball, ``bar`` the score bar."""
+
+COLOURS: NDArray[np.uint8] = np.array(
+    [(252, 248, 234)] + [(196, 18, 24)] * 15 + [(252, 214, 36), (0, 74, 62), (118, 62, 22), (20, 72, 206), (244, 138, 166), (18, 18, 21)],
+    dtype=np.uint8,
+)
+"""(22, 3) red, green, blue by ball id."""
+PALE: NDArray[np.uint8] = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)
+"""The same, lightened: for a ball's path on the cloth, and for letters on a dark terminal."""
+LETTERS = "W" + "r" * 15 + "YGNBPK"
+"""By ball id: W the white cue ball, r a red; N is brown and K black, because B is blue."""
+
+for _constant in (COLOURS, PALE):
+    _constant.setflags(write=False)
