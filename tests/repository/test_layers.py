@@ -38,6 +38,7 @@ ALLOWED = {
     "game": BASE,
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
+    "advice": BASE | {"physics", "simulation", "game", "tasks", "planning", "envs"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render", "replays"},
     "replays": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
     "render": {"_check", "_types", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
@@ -52,6 +53,7 @@ ALLOWED = {
         "simulation",
         "tasks",
         "planning",
+        "advice",
         "envs",
         "match",
         "replays",
@@ -70,7 +72,7 @@ OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "abc", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools",
-    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "subprocess", "sys", "tempfile",
+    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "re", "subprocess", "sys", "tempfile",
     "textwrap", "threading", "time", "types", "typing", "warnings", "zipfile", "zlib",
 }  # fmt: skip
 
