@@ -1,15 +1,15 @@
 /**
  * How is a table drawn in a browser, and how does a replay play? By one module on a 2-D canvas; it loads nothing.
  *
- * `decode` makes strokes that know where every ball is at any time: each phase of its motion is a closed form, computed in the order of
+ * `decode` makes strokes that know where every ball is at any time: each phase of its motion is a closed form, in the arithmetic of
  * `physics/cloth.py`, so that places equal the simulation's. `TableView` draws a table from its scene, `mount` makes a `Player` of a replay.
  *
- * Frame: origin at the table's centre, +x to the yellow side, +y to the black end, SI units. On screen +y goes right and +x goes down.
+ * Frame: origin at the table's centre, +x to the yellow side, +y to the black end, SI units. On screen +y goes right and +x down.
  *
- * Beyond the contract: `Stroke.end`, `turn`, `trace`; in a frame `depth` (0 on the cloth to 1 gone into a pocket), and lines with a `path` (Path2D
- * in metres); a player's `time`, `stroke`, `playing`, `speed`, `positions()`, `skip(strokes)`, `seekTotal(seconds)`, `flip(name)`; its options
- * `autoplay`, `speed`, `paths`, `ghosts`, `spin` ("cue", "all", "off"), `labels`, `fill` (as high as its parent), `keys` (what listens for
- * keys; its own element), `onstroke(stroke)`, `ontime(t, stroke)`, `onend()`.
+ * Beyond the contract: `Stroke.end`, `turn`, `trace`; in a frame `depth` (0 on the cloth to 1 gone into a pocket) and lines with a `path` (Path2D in
+ * metres); a player's `time`, `stroke`, `playing`, `speed`, `positions()`, `skip(strokes)`, `seekTotal(s)`, `flip(name)`; its options `autoplay`, `speed`,
+ * `paths`, `ghosts`, `spin` ("cue", "all", "off"), `labels`, `fill` (as high as its parent), `keys` (what listens for keys), `onstroke(stroke)`,
+ * `ontime(t, stroke)`, `onend()`.
  */
 
 const GONE = 0, ROLL = 2, SLIDE = 3, FALLING = 4, BEND = 5, BALL_BALL = 0;
@@ -19,32 +19,28 @@ const { PI, abs, atan2, ceil, cos, floor, hypot, max, min, round, sign, sin, sqr
 
 /** Colours of things that a scene does not name. */
 const PALETTE = {
-  floor: [17, 18, 21], cloth: [36, 148, 76], cloth_edge: [15, 78, 40], line: [214, 226, 190], cushion: [30, 124, 64], nose: [86, 186, 118],
-  wood: [104, 52, 26], wood_edge: [52, 25, 12], leather: [70, 46, 32], leather_edge: [112, 78, 54], hole: [5, 5, 6], aim: [255, 240, 150],
-  path_edge: [8, 30, 16], shadow: [0, 14, 5], lamp: [255, 252, 240], bar: [12, 15, 24], bar_edge: [58, 66, 88], bar_accent: [196, 32, 48],
-  text: [240, 240, 236], text_quiet: [164, 170, 184],
+	floor: [17, 18, 21], cloth: [36, 148, 76], cloth_edge: [15, 78, 40], line: [214, 226, 190], cushion: [30, 124, 64], nose: [86, 186, 118],
+	wood: [104, 52, 26], wood_edge: [52, 25, 12], leather: [70, 46, 32], leather_edge: [112, 78, 54], hole: [5, 5, 6], aim: [255, 240, 150],
+	path_edge: [8, 30, 16], shadow: [0, 14, 5], lamp: [255, 252, 240], bar: [12, 15, 24], bar_edge: [58, 66, 88], bar_accent: [196, 32, 48],
+	text: [240, 240, 236], text_quiet: [164, 170, 184],
 };
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
 
 const css = (rgb, alpha = 1) => `rgba(${rgb.map(round).join()},${alpha})`;
 /** A colour on the way from one to another. */
 const mix = (a, b, share) => a.map((value, k) => value + (b[k] - value) * share);
-/** Does a label on this colour need to be black? */
-const isPale = ([r, g, b]) => 0.3 * r + 0.59 * g + 0.11 * b > 110;
-
-// ---- a replay's strokes ----
 
 /** Base64 of little-endian numbers, as all browsers keep them, to an array of them. */
 const numbers = (text, Type) => new Type(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 
 /** The rotation q, then one by the vector (x, y, z) [rad]; quaternions are [w, x, y, z]. */
 function turned(q, x, y, z) {
-  const angle = hypot(x, y, z);
-  if (angle < 1e-12) return q;
-  const w = cos(angle / 2), s = sin(angle / 2) / angle;
-  x *= s; y *= s; z *= s;
-  const [a, b, c, d] = q;
-  return [w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c, w * c + y * a + z * b - x * d, w * d + z * a + x * c - y * b];
+	const angle = hypot(x, y, z);
+	if (angle < 1e-12) return q;
+	const w = cos(angle / 2), s = sin(angle / 2) / angle;
+	x *= s; y *= s; z *= s;
+	const [a, b, c, d] = q;
+	return [w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c, w * c + y * a + z * b - x * d, w * d + z * a + x * c - y * b];
 }
 
 /** Step [s] in which the orientation of a ball is followed where its axis of rotation turns. */
@@ -52,760 +48,720 @@ const STEP = 1 / 120;
 
 /** One stroke of a replay: its data, and where the balls are at any time. */
 class Stroke {
-  constructor(data, replay, previous) {
-    Object.assign(this, data);
-    this.R = replay.R;
-    this.decel = replay.spin_decel;
-    this.previous = previous;
-    this.first = numbers(data.start, Float64Array);
-    this.rows = numbers(data.paths.f8, Float64Array);
-    this.spins = numbers(data.paths.f4, Float32Array);
-    this.codes = numbers(data.paths.u1, Uint8Array);
-    this.logs = Array.from({ length: data.n }, () => []);
-    for (let s = 0; s < data.paths.count; s++) this.logs[this.codes[2 * s]].push(s);
-    this.here = new Uint8Array(data.n);
-    for (const ball of data.on_table) this.here[ball] = 1;
-    this.turns = new Map(); // by ball: the orientation at the start of each of its segments, as far as it was asked for
-    if (data.after) {
-      const places = numbers(data.after.places, Float64Array), on = new Uint8Array(data.n);
-      for (const ball of data.after.on_table) on[ball] = 1;
-      this.later = { x: places.filter((_, k) => k % 2 === 0), y: places.filter((_, k) => k % 2), on };
-    }
-  }
+	constructor(data, replay, previous) {
+		Object.assign(this, data, { R: replay.R, decel: replay.spin_decel, previous, turns: new Map() });
+		const { n, paths: { count, f8, f4, u1 }, after } = data, flags = balls => Uint8Array.from({ length: n }, (_, ball) => balls.includes(ball));
+		const rows = numbers(f8, Float64Array), spins = numbers(f4, Float32Array), codes = numbers(u1, Uint8Array);
+		this.first = numbers(data.start, Float64Array);
+		this.here = flags(data.on_table);
+		this.logs = Array.from({ length: n }, () => []); // by ball: its segments, in order of time
+		for (let s = 0; s < count; s++) {
+			const [t0, x, y, vx, vy, ax, ay] = rows.subarray(7 * s), [wx, wy, wz] = spins.subarray(3 * s);
+			this.logs[codes[2 * s]].push({ t0, x, y, vx, vy, ax, ay, wx, wy, wz, state: codes[2 * s + 1] });
+		}
+		if (!after) return;
+		const places = numbers(after.places, Float64Array);
+		this.later = { x: places.filter((_, k) => k % 2 === 0), y: places.filter((_, k) => k % 2), on: flags(after.on_table) };
+	}
 
-  state(s) { return this.codes[2 * s + 1]; }
+	/** Which segment of a ball's log holds at time t; -1 before the first. */
+	find(ball, t) {
+		const log = this.logs[ball];
+		let low = -1, high = log.length - 1;
+		while (low < high) {
+			const middle = (low + high + 1) >> 1;
+			if (log[middle].t0 <= t) low = middle; else high = middle - 1;
+		}
+		return low;
+	}
 
-  /** Which segment of a ball holds at time t: its place in the ball's log, or -1 before the first. */
-  find(ball, t) {
-    const log = this.logs[ball];
-    let low = -1, high = log.length - 1;
-    while (low < high) {
-      const middle = (low + high + 1) >> 1;
-      if (this.rows[7 * log[middle]] <= t) low = middle; else high = middle - 1;
-    }
-    return low;
-  }
+	/** [x, y, vx, vy, wx, wy, wz] at time t of a segment; the order of the arithmetic is that of the simulation. */
+	moving({ t0, x, y, vx, vy, ax, ay, wx, wy, wz, state }, t) {
+		const { R } = this, dt = t - t0, v = vx + ax * dt, w = vy + ay * dt, slips = state === SLIDE || state === FALLING;
+		return [x + (vx + 0.5 * ax * dt) * dt, y + (vy + 0.5 * ay * dt) * dt, v, w, slips ? wx + 2.5 * ay * dt / R : -w / R,
+			slips ? wy - 2.5 * ax * dt / R : v / R, sign(wz) * max(0, abs(wz) - this.decel * dt)];
+	}
 
-  /** Velocity and spin in segment s, dt after its start: [vx, vy, wx, wy, wz]. */
-  motion(s, dt) {
-    const { rows, spins, R } = this, k = 7 * s, state = this.state(s);
-    const ax = rows[k + 5], ay = rows[k + 6], vx = rows[k + 3] + ax * dt, vy = rows[k + 4] + ay * dt, z = spins[3 * s + 2];
-    const wz = sign(z) * max(0, abs(z) - this.decel * dt);
-    if (state !== SLIDE && state !== FALLING) return [vx, vy, -vy / R, vx / R, wz];
-    return [vx, vy, spins[3 * s] + 2.5 * ay * dt / R, spins[3 * s + 1] - 2.5 * ax * dt / R, wz];
-  }
+	/** All balls at time t [s]: x, y, vx, vy, wx, wy, wz, `on` the table (1 or 0), `depth` in a pocket. */
+	at(t) {
+		const out = { on: this.here.slice(), depth: Float64Array.from(this.here, here => 1 - here) }, names = ["x", "y", "vx", "vy", "wx", "wy", "wz"];
+		for (const name of names) out[name] = new Float64Array(this.n);
+		this.logs.forEach((log, i) => {
+			const k = this.find(i, t), still = this.decel > 0 && t >= this.duration, values = k < 0 ? this.first.subarray(2 * i, 2 * i + 2) : this.moving(log[k], t);
+			values.forEach((value, c) => { out[names[c]][i] = still && c > 3 ? 0 : value; });
+			if (k < 0 || !this.here[i]) return;
+			if (log[k].state === GONE) out.on[i] = 0;
+			let fell = k + 1; // the segment with which it went over the edge
+			while (fell && [GONE, FALLING].includes(log[fell - 1].state)) fell--;
+			if (fell <= k) out.depth[i] = min(1, ((t - log[fell].t0) / 0.2) ** 2); // it falls 0.2 m in 0.2 s
+		});
+		return out;
+	}
 
-  /** Place in segment s, dt after its start; the order of the arithmetic is that of the simulation. */
-  place(s, dt) {
-    const { rows } = this, k = 7 * s;
-    return [rows[k + 1] + (rows[k + 3] + 0.5 * rows[k + 5] * dt) * dt, rows[k + 2] + (rows[k + 4] + 0.5 * rows[k + 6] * dt) * dt];
-  }
+	/** The table when everything has come to rest. */
+	get end() { return this.at(this.duration); }
 
-  /** All balls at time t [s]: x, y, vx, vy, wx, wy, wz, `on` the table (1 or 0), and `depth`, how far a ball has gone into its pocket. */
-  at(t) {
-    const out = { on: this.here.slice(), depth: this.here.map(here => 1 - here) }, names = ["x", "y", "vx", "vy", "wx", "wy", "wz"];
-    for (const name of [...names, "depth"]) out[name] = new Float64Array(out[name] ?? this.n);
-    this.logs.forEach((log, i) => {
-      const k = this.find(i, t), s = log[k], dt = t - this.rows[7 * s], still = this.decel > 0 && t >= this.duration;
-      const values = k < 0 ? this.first.slice(2 * i, 2 * i + 2) : [...this.place(s, dt), ...this.motion(s, dt)];
-      values.forEach((value, c) => { out[names[c]][i] = still && c > 3 ? 0 : value; });
-      if (k < 0 || !this.here[i]) return;
-      if (this.state(s) === GONE) out.on[i] = 0;
-      let fell = k + 1; // the segment with which it went over the edge
-      while (fell && [GONE, FALLING].includes(this.state(log[fell - 1]))) fell--;
-      if (fell <= k) out.depth[i] = min(1, ((t - this.rows[7 * log[fell]]) / 0.2) ** 2); // it falls 0.2 m in 0.2 s
-    });
-    return out;
-  }
+	/** The orientation of a ball at time t, a quaternion: the same whichever way a time is come to. */
+	turn(ball, t) {
+		const k = this.find(ball, t), log = this.logs[ball], before = this.previous, known = this.turns.get(ball) ?? []; // at the start, then of each segment
+		this.turns.set(ball, known);
+		if (!known.length) known.push({ q: ball < before?.n ? before.turn(ball, before.duration) : turned([1, 0, 0, 0], ball + 0.4, 0.5 - ball, 2 * ball) });
+		for (let j = known.length - 1; j <= k; j++) {
+			known.push({ q: j ? this.rolled(log[j - 1], known[j], log[j].t0) : known[0].q });
+			known[j].steps = null; // so that a match does not fill the memory
+		}
+		return k < 0 ? known[0].q : this.rolled(log[k], known[k + 1], min(t, this.duration));
+	}
 
-  /** The table when everything has come to rest. */
-  get end() { return this.at(this.duration); }
+	/** On from the start of a segment to time t: exact in one step where the axis stays, else by the middle of small steps. */
+	rolled(segment, start, t) {
+		const { t0, state, wz } = segment;
+		if (state === GONE || t <= t0) return start.q;
+		const step = (q, from, to) => turned(q, ...this.moving(segment, (from + to) / 2).slice(4).map(spin => spin * (to - from)));
+		if (state === ROLL && !wz) return step(start.q, t0, t);
+		start.steps ??= [start.q];
+		const whole = floor((t - t0) / STEP);
+		for (let m = start.steps.length; m <= whole; m++) start.steps.push(step(start.steps[m - 1], t0 + (m - 1) * STEP, t0 + m * STEP));
+		return step(start.steps[whole], t0 + whole * STEP, t);
+	}
 
-  /** The orientation of a ball at time t, a quaternion: followed from its start, the same whichever way a time is come to. */
-  turn(ball, t) {
-    const k = this.find(ball, t), log = this.logs[ball], before = this.previous, known = this.turns.get(ball) ?? [];
-    this.turns.set(ball, known);
-    if (!known.length) known.push({ at: 0, q: ball < before?.n ? before.turn(ball, before.duration) : turned([1, 0, 0, 0], ball + 0.4, 0.5 - ball, 2 * ball) });
-    for (let j = known.length - 1; j <= k; j++) { // segment j
-      const at = this.rows[7 * log[j]];
-      known.push({ at, q: j ? this.rolled(log[j - 1], known[j], at) : known[0].q });
-      known[j].steps = null; // so that a match does not fill the memory
-    }
-    return k < 0 ? known[0].q : this.rolled(log[k], known[k + 1], min(t, this.duration));
-  }
-
-  /** On from the start of segment s to time t: exact in one step where the axis stays, else by the middle of small steps. */
-  rolled(s, start, t) {
-    const dt = t - start.at, z = this.spins[3 * s + 2];
-    if (this.state(s) === GONE || !(dt > 0)) return start.q;
-    const step = (q, from, to) => {
-      const [, , ...w] = this.motion(s, (from + to) / 2);
-      return turned(q, ...w.map(value => value * (to - from)));
-    };
-    if (this.state(s) === ROLL && !z) return step(start.q, 0, dt);
-    start.steps ??= [start.q];
-    const whole = floor(dt / STEP);
-    for (let m = start.steps.length; m <= whole; m++) start.steps.push(step(start.steps[m - 1], (m - 1) * STEP, m * STEP));
-    return step(start.steps[whole], whole * STEP, dt);
-  }
-
-  /** Add a ball's way until time t to two paths in metres, where it slides and where it rolls. A parabola is a quadratic curve, exactly. */
-  trace(ball, t, slide, roll) {
-    const log = this.logs[ball], { rows } = this;
-    for (let j = 0; j < log.length; j++) {
-      const s = log[j], k = 7 * s, from = rows[k], to = min(t, j + 1 < log.length ? rows[7 * log[j + 1]] : this.duration);
-      if (from >= t) break;
-      if (!(to > from) || !(rows[k + 3] || rows[k + 4]) || this.state(s) === GONE) continue;
-      const path = this.state(s) === ROLL || this.state(s) === BEND ? roll : slide, half = (to - from) / 2;
-      path.moveTo(rows[k + 1], rows[k + 2]);
-      path.quadraticCurveTo(rows[k + 1] + rows[k + 3] * half, rows[k + 2] + rows[k + 4] * half, ...this.place(s, to - from));
-    }
-  }
+	/** Add a ball's way until time t to two paths in metres. A parabola is a quadratic curve, exactly. */
+	trace(ball, t, slide, roll) {
+		this.logs[ball].forEach((segment, j, log) => {
+			const { t0, x, y, vx, vy, state } = segment, end = min(t, log[j + 1]?.t0 ?? this.duration), half = (end - t0) / 2;
+			if (half <= 0 || !(vx || vy)) return;
+			const path = state === ROLL || state === BEND ? roll : slide;
+			path.moveTo(x, y);
+			path.quadraticCurveTo(x + vx * half, y + vy * half, ...this.moving(segment, end).slice(0, 2));
+		});
+	}
 }
 
-/** A replay (`{"format": "snooker-replay", "version": 1, ...}`) with its strokes ready to be evaluated. */
+/** A replay with its strokes ready to be evaluated. */
 export function decode(replay) {
-  if (replay?.format !== "snooker-replay" || replay.version !== 1) throw new Error(`no replay of version 1: ${replay?.format} ${replay?.version}`);
-  let last = null;
-  return { ...replay, strokes: replay.strokes.map(data => (last = new Stroke(data, replay, last))) };
+	if (replay?.format !== "snooker-replay" || replay.version !== 1) throw new Error(`no replay of version 1: ${replay?.format} ${replay?.version}`);
+	let last = null;
+	return { ...replay, strokes: replay.strokes.map(data => (last = new Stroke(data, replay, last))) };
 }
-
-// ---- the table ----
 
 /** A canvas of its own, and its pen. */
 function sheet(width, height) {
-  const canvas = document.createElement("canvas");
-  canvas.width = max(1, ceil(width));
-  canvas.height = max(1, ceil(height));
-  return [canvas, canvas.getContext("2d")];
+	const canvas = document.createElement("canvas");
+	canvas.width = max(1, ceil(width));
+	canvas.height = max(1, ceil(height));
+	return [canvas, canvas.getContext("2d")];
 }
 
 /** Grey unrest for cloth and wood, the same at every call. */
 function unrest(strength) {
-  const [canvas, pen] = sheet(256, 256), image = pen.createImageData(256, 256);
-  for (let k = 0, seed = 1; k < image.data.length; k += 4) {
-    seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
-    image.data.fill(seed & 0x8000000 ? 255 : 0, k, k + 3);
-    image.data[k + 3] = (seed >>> 16 & 255) * strength;
-  }
-  pen.putImageData(image, 0, 0);
-  return canvas;
+	const [canvas, pen] = sheet(256, 256), image = pen.createImageData(256, 256);
+	for (let k = 0; k < 65536; k++) {
+		const noise = sin(12.9898 * k) * 43758.5453 % 1;
+		image.data.set([...(noise > 0 ? WHITE : BLACK), 255 * strength * abs(noise)], 4 * k);
+	}
+	pen.putImageData(image, 0, 0);
+	return canvas;
 }
 
 /** Fill what a pen has drawn; a filling may be a gradient with its stops [place, colour]. */
 function fill(pen, filling, ...stops) {
-  for (const [at, colour] of stops) filling.addColorStop(at, colour);
-  pen.fillStyle = filling;
-  pen.fill();
+	for (const [at, colour] of stops) filling.addColorStop(at, colour);
+	pen.fillStyle = filling;
+	pen.fill();
+}
+
+/** The same with a soft shadow around it. */
+function cast(pen, colour, blur, ...filling) {
+	pen.shadowColor = colour;
+	pen.shadowBlur = blur;
+	fill(pen, ...filling);
+	pen.shadowColor = "#0000";
 }
 
 function disc(pen, x, y, radius, filling, ...stops) {
-  pen.beginPath();
-  pen.arc(x, y, radius, 0, TURN);
-  if (filling) fill(pen, filling, ...stops); else pen.stroke();
+	pen.beginPath();
+	pen.arc(x, y, radius, 0, TURN);
+	if (filling) fill(pen, filling, ...stops); else pen.stroke();
 }
 
 function polyline(pen, points, width, colour) {
-  pen.beginPath();
-  for (const point of points) pen.lineTo(...point);
-  if (!width) return;
-  pen.lineWidth = width;
-  pen.strokeStyle = colour;
-  pen.stroke();
-}
-
-function shade(pen, colour = "#0000", blur = 0) {
-  pen.shadowColor = colour;
-  pen.shadowBlur = blur;
+	pen.beginPath();
+	for (const point of points) pen.lineTo(...point);
+	if (!width) return;
+	pen.lineWidth = width;
+	pen.strokeStyle = colour;
+	pen.stroke();
 }
 
 /** Draws a table on a canvas. What never moves is drawn once for each size. */
 export class TableView {
-  constructor(canvas, scene) {
-    Object.assign(this, { canvas, scene, R: scene.ball_radius });
-    this.pen = canvas.getContext("2d", { alpha: false });
-    this.colours = { ...PALETTE, ...scene.palette };
-    this.ink = Object.fromEntries(Object.entries(this.colours).map(([name, rgb]) => [name, css(rgb)]));
-    this.lamp = css(this.colours.lamp, 0.9);
-    this.resize();
-  }
+	constructor(canvas, scene) {
+		Object.assign(this, { canvas, scene, R: scene.ball_radius });
+		this.pen = canvas.getContext("2d", { alpha: false });
+		this.colours = { ...PALETTE, ...scene.palette };
+		this.ink = Object.fromEntries(Object.entries(this.colours).map(([name, rgb]) => [name, css(rgb)]));
+		this.lamp = css(this.colours.lamp, 0.9);
+		this.resize();
+	}
 
-  /** Breadth and height [m] of what is shown. */
-  static size(scene) {
-    const [[x0, x1], [y0, y1]] = scene.extent, out = scene.cushions.length ? 2 * scene.rail + 0.04 : 0.1;
-    return [y1 - y0 + out, x1 - x0 + out];
-  }
+	/** Breadth and height [m] of what is shown. */
+	static size(scene) {
+		const [[x0, x1], [y0, y1]] = scene.extent, out = scene.cushions.length ? 2 * scene.rail + 0.04 : 0.1;
+		return [y1 - y0 + out, x1 - x0 + out];
+	}
 
-  /** Fit the table into the canvas as it is laid out now. */
-  resize() {
-    const { canvas, scene } = this, [[x0, x1], [y0, y1]] = scene.extent, [wide, high] = TableView.size(scene);
-    this.ratio = min(window.devicePixelRatio || 1, 3);
-    const w = max(1, round(canvas.clientWidth * this.ratio || canvas.width)), h = max(1, round(canvas.clientHeight * this.ratio || canvas.height));
-    if (canvas.width !== w) canvas.width = w;
-    if (canvas.height !== h) canvas.height = h;
-    this.scale = min(w / wide, h / high);
-    this.left = w / 2 - this.scale * (y0 + y1) / 2;
-    this.top = h / 2 - this.scale * (x0 + x1) / 2;
-    this.sprites = new Map();
-    this.still = null;
-  }
+	/** Fit the table into the canvas as it is laid out now. */
+	resize() {
+		const { canvas, scene } = this, [[x0, x1], [y0, y1]] = scene.extent, [wide, high] = TableView.size(scene);
+		this.ratio = min(devicePixelRatio, 3);
+		const w = (canvas.width = round(canvas.clientWidth * this.ratio) || canvas.width), h = (canvas.height = round(canvas.clientHeight * this.ratio) || canvas.height);
+		this.scale = min(w / wide, h / high);
+		this.left = w / 2 - this.scale * (y0 + y1) / 2;
+		this.top = h / 2 - this.scale * (x0 + x1) / 2;
+		this.sprites = new Map();
+		this.still = null;
+	}
 
-  /** CSS pixels on the canvas of a place [m]. */
-  toScreen(x, y) { return this.pixel(x, y).map(value => value / this.ratio); }
+	/** CSS pixels on the canvas of a place [m]. */
+	toScreen(x, y) { return this.pixel(x, y).map(value => value / this.ratio); }
 
-  /** The place [m] of CSS pixels on the canvas. */
-  toTable(px, py) { return [(py * this.ratio - this.top) / this.scale, (px * this.ratio - this.left) / this.scale]; }
+	/** The place [m] of CSS pixels on the canvas. */
+	toTable(px, py) { return [(py * this.ratio - this.top) / this.scale, (px * this.ratio - this.left) / this.scale]; }
 
-  /** The canvas's own pixels of a place [m]. */
-  pixel(x, y) { return [this.left + this.scale * y, this.top + this.scale * x]; }
+	/** The canvas's own pixels of a place [m]. */
+	pixel(x, y) { return [this.left + this.scale * y, this.top + this.scale * x]; }
 
-  /** From here on a pen draws in metres. */
-  metres(pen) { pen.setTransform(0, this.scale, this.scale, 0, this.left, this.top); }
+	/** From here on a pen draws in metres. */
+	metres(pen) { pen.setTransform(0, this.scale, this.scale, 0, this.left, this.top); }
 
-  /** The table without balls, as a canvas. */
-  paint() {
-    const { scene, scene: { rail, lines }, colours, ink, scale, canvas: { width, height } } = this, [[x0, x1], [y0, y1]] = scene.extent, px = 1 / scale;
-    const [still, pen] = sheet(width, height), framed = scene.cushions.length > 0, bed = framed ? scene.cushion : 9;
-    const box = (out, round = 0) => pen.roundRect(x0 - out, y0 - out, x1 - x0 + 2 * out, y1 - y0 + 2 * out, round);
-    const start = (...shape) => { pen.beginPath(); box(...shape); };
-    const texture = (strength, along, across, swap) => { // stretched along y, or along x
-      const pattern = pen.createPattern(unrest(strength), "repeat"), a = along * px, b = across * px;
-      pattern.setTransform(new DOMMatrix(swap ? [a, 0, 0, b, 0, 0] : [0, a, b, 0, 0, 0]));
-      fill(pen, pattern);
-    };
-    pen.fillStyle = ink.floor;
-    pen.fillRect(0, 0, width, height);
-    this.metres(pen);
+	/** The table without balls, as a canvas. */
+	paint() {
+		const { scene, scene: { rail, lines }, colours, ink, scale, canvas: { width, height } } = this, [[x0, x1], [y0, y1]] = scene.extent, px = 1 / scale;
+		const [still, pen] = sheet(width, height), framed = scene.cushions.length > 0, bed = framed ? scene.cushion : 9;
+		const box = (out, round = 0) => pen.roundRect(x0 - out, y0 - out, x1 - x0 + 2 * out, y1 - y0 + 2 * out, round);
+		const start = (...shape) => { pen.beginPath(); box(...shape); };
+		const texture = (strength, along, across, swap) => { // stretched along y, or along x
+			const pattern = pen.createPattern(unrest(strength), "repeat"), a = along * px, b = across * px;
+			pattern.setTransform(new DOMMatrix(swap ? [a, 0, 0, b, 0, 0] : [0, a, b, 0, 0, 0]));
+			fill(pen, pattern);
+		};
+		pen.fillStyle = ink.floor;
+		pen.fillRect(0, 0, width, height);
+		this.metres(pen);
 
-    if (framed) {
-      const { wood, wood_edge: edge, lamp } = colours, corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
-      const at = ([x, y], out) => [x === x0 ? x - out : x + out, y === y0 ? y - out : y + out];
-      start(rail, 0.085);
-      shade(pen, "#000c", 0.04 * scale);
-      fill(pen, ink.wood_edge);
-      shade(pen);
-      start(rail - 0.004, 0.08);
-      pen.save();
-      pen.clip();
-      corners.forEach((one, k) => { // four boards, mitred
-        const next = corners[(k + 1) % 4], [ix, iy] = at(one, bed), [ox, oy] = at(one, rail), end = k % 2 === 0;
-        const board = pen.createLinearGradient(ix, iy, end ? ix : ox, end ? oy : iy);
-        polyline(pen, [at(one, 0), at(one, rail), at(next, rail), at(next, 0)]);
-        fill(pen, board, ...[edge, mix(wood, edge, 0.3), mix(wood, lamp, 0.07), wood, mix(wood, edge, 0.1), mix(wood, edge, 0.3), edge].map((rgb, m) => [m / 6, css(rgb)]));
-        texture(0.1, 24, 1.3, end);
-      });
-      pen.restore();
-    }
-    const hole = ([x, y, u, v, half], rim) => { // from a pocket's mouth to its back
-      const turn = atan2(v - y, u - x), ex = cos(turn), ey = sin(turn), wide = half + rim;
-      polyline(pen, [[x - ey * wide, y + ex * wide]]);
-      pen.arc(u, v, wide, turn + PI / 2, turn - PI / 2, true);
-      pen.lineTo(x + ey * wide, y - ex * wide);
-      return pen.createLinearGradient(u, v, u + ex * half, v + ey * half);
-    };
-    for (const throat of scene.throats) {
-      hole(throat, 0.017);
-      shade(pen, "#000b", 0.012 * scale);
-      fill(pen, ink.leather);
-      shade(pen);
-      hole(throat, 0.011);
-      pen.strokeStyle = ink.leather_edge;
-      pen.lineWidth = 0.005;
-      pen.stroke();
-      fill(pen, hole(throat, 0), [0.2, ink.hole], [1, css(mix(colours.hole, colours.leather, 0.8))]); // its leather, in the dark
-    }
+		if (framed) {
+			const { wood, wood_edge: edge, lamp } = colours, corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+			const at = ([x, y], out) => [x === x0 ? x - out : x + out, y === y0 ? y - out : y + out];
+			start(rail, 0.085);
+			cast(pen, "#000c", 0.04 * scale, ink.wood_edge);
+			start(rail - 0.004, 0.08);
+			pen.save();
+			pen.clip();
+			corners.forEach((one, k) => { // four boards, mitred
+				const next = corners[(k + 1) % 4], [ix, iy] = at(one, bed), [ox, oy] = at(one, rail), end = k % 2 === 0;
+				const board = pen.createLinearGradient(ix, iy, end ? ix : ox, end ? oy : iy);
+				polyline(pen, [at(one, 0), at(one, rail), at(next, rail), at(next, 0)]);
+				fill(pen, board, ...[edge, mix(wood, edge, 0.3), mix(wood, lamp, 0.07), wood, mix(wood, edge, 0.1), mix(wood, edge, 0.3), edge].map((rgb, m) => [m / 6, css(rgb)]));
+				texture(0.1, 24, 1.3, end);
+			});
+			pen.restore();
+		}
+		const hole = ([x, y, u, v, half], rim) => { // from a pocket's mouth to its back
+			const turn = atan2(v - y, u - x), ex = cos(turn), ey = sin(turn), wide = half + rim;
+			polyline(pen, [[x - ey * wide, y + ex * wide]]);
+			pen.arc(u, v, wide, turn + PI / 2, turn - PI / 2, true);
+			pen.lineTo(x + ey * wide, y - ex * wide);
+			return pen.createLinearGradient(u, v, u + ex * half, v + ey * half);
+		};
+		for (const throat of scene.throats) {
+			hole(throat, 0.017);
+			cast(pen, "#000b", 0.012 * scale, ink.leather);
+			hole(throat, 0.011);
+			pen.strokeStyle = ink.leather_edge;
+			pen.lineWidth = 0.005;
+			pen.stroke();
+			fill(pen, hole(throat, 0), [0.2, ink.hole], [1, css(mix(colours.hole, colours.leather, 0.8))]); // its leather, in the dark
+		}
 
-    pen.save();
-    start(bed);
-    pen.clip();
-    fill(pen, ink.hole);
-    pen.save();
-    start(bed);
-    for (const [x, y, r] of scene.falls) { pen.moveTo(x + r, y); pen.arc(x, y, r, 0, TURN); } // the slate is cut out there
-    pen.clip("evenodd");
-    start(bed);
-    fill(pen, ink.cloth);
-    texture(0.09, 1.5, 0.8);
-    texture(0.04, 11, 2);
-    const chalk = css(colours.line, 0.9);
-    for (const points of lines ? [lines.baulk, lines.d] : []) polyline(pen, points, max(0.0035, 1.2 * px), chalk);
-    for (const [x, y] of lines?.spots ?? []) disc(pen, x, y, max(0.006, 1.4 * px), chalk);
-    for (const [x, y, r] of scene.falls) // the cloth bends down
-      disc(pen, x, y, r + 0.014, pen.createRadialGradient(x, y, r, x, y, r + 0.014), [0, ink.cloth_edge], [1, css(colours.cloth_edge, 0)]);
-    pen.restore();
-    scene.cushions.forEach((points, k) => {
-      const nose = scene.noses[k], a = nose[(nose.length >> 1) - 1], b = nose[nose.length >> 1], [x, y] = points[0];
-      const slope = abs(a[0] - b[0]) > abs(a[1] - b[1]) ? pen.createLinearGradient(0, a[1], 0, y) : pen.createLinearGradient(a[0], 0, x, 0);
-      shade(pen, css(colours.shadow, 0.8), 0.024 * scale);
-      polyline(pen, points);
-      fill(pen, slope, [0, css(mix(colours.cushion, colours.nose, 0.4))], [0.14, ink.cushion], [1, css(mix(colours.cushion, BLACK, 0.5))]);
-      shade(pen);
-      polyline(pen, nose, max(0.0032, px), ink.nose);
-    });
-    pen.restore();
+		pen.save();
+		start(bed);
+		pen.clip();
+		fill(pen, ink.hole);
+		pen.save();
+		start(bed);
+		for (const [x, y, r] of scene.falls) { pen.moveTo(x + r, y); pen.arc(x, y, r, 0, TURN); } // the slate is cut out there
+		pen.clip("evenodd");
+		start(bed);
+		fill(pen, ink.cloth);
+		texture(0.09, 1.5, 0.8);
+		texture(0.04, 11, 2);
+		const chalk = css(colours.line, 0.9);
+		for (const points of lines ? [lines.baulk, lines.d] : []) polyline(pen, points, max(0.0035, 1.2 * px), chalk);
+		for (const [x, y] of lines?.spots ?? []) disc(pen, x, y, max(0.006, 1.4 * px), chalk);
+		for (const [x, y, r] of scene.falls) // the cloth bends down
+			disc(pen, x, y, r + 0.014, pen.createRadialGradient(x, y, r, x, y, r + 0.014), [0, ink.cloth_edge], [1, css(colours.cloth_edge, 0)]);
+		pen.restore();
+		scene.cushions.forEach((points, k) => {
+			const nose = scene.noses[k], a = nose[(nose.length >> 1) - 1], b = nose[nose.length >> 1], [x, y] = points[0];
+			const slope = abs(a[0] - b[0]) > abs(a[1] - b[1]) ? pen.createLinearGradient(0, a[1], 0, y) : pen.createLinearGradient(a[0], 0, x, 0);
+			polyline(pen, points);
+			cast(pen, css(colours.shadow, 0.8), 0.024 * scale, slope, [0, css(mix(colours.cushion, colours.nose, 0.4))], [0.14, ink.cushion], [1, css(mix(colours.cushion, BLACK, 0.5))]);
+			polyline(pen, nose, max(0.0032, px), ink.nose);
+		});
+		pen.restore();
 
-    pen.setTransform(scale * (y1 - y0), 0, 0, scale * (x1 - x0), ...this.pixel((x0 + x1) / 2, (y0 + y1) / 2)); // the lamps: brightest in the middle
-    disc(pen, 0, 0, 9, pen.createRadialGradient(0, 0, 0, 0, 0, 0.85), [0, "#ffffe018"], [0.4, "#ffffe008"], [0.55, "#0000"], [1, "#0006"]);
-    return still;
-  }
+		pen.setTransform(scale * (y1 - y0), 0, 0, scale * (x1 - x0), ...this.pixel((x0 + x1) / 2, (y0 + y1) / 2)); // the lamps: brightest in the middle
+		disc(pen, 0, 0, 9, pen.createRadialGradient(0, 0, 0, 0, 0, 0.85), [0, "#ffffe018"], [0.4, "#ffffe008"], [0.55, "#0000"], [1, "#0006"]);
+		return still;
+	}
 
-  /** A ball's picture, or its shadow if rgb is null: [canvas, half its width]. */
-  sprite(rgb, radius) {
-    const key = `${rgb} ${radius}`, known = this.sprites.get(key);
-    if (known) return known;
-    const reach = rgb ? radius : 1.7 * radius, half = ceil(reach) + 1, [canvas, pen] = sheet(2 * half, 2 * half);
-    const put = (r, ...stops) => disc(pen, half, half, r, pen.createRadialGradient(half, half, 0, half, half, r), ...stops.map(([at, colour, alpha]) => [at, css(colour, alpha)]));
-    const { cloth, lamp, shadow } = this.colours;
-    if (rgb) {
-      const lit = mix(rgb, WHITE, 0.16), dark = mix(rgb, BLACK, 0.52);
-      put(radius, [0, lit], [0.6, mix(rgb, BLACK, 0.06)], [0.9, mix(rgb, BLACK, 0.36)], [1, mix(dark, cloth, 0.16)]);
-      put(0.72 * radius, [0, lamp, 0.3], [0.5, lamp, 0.1], [1, lamp, 0]);
-    } else put(reach, [0.4, shadow, 0.8], [0.68, shadow, 0.4], [0.85, shadow, 0.12], [1, shadow, 0]);
-    this.sprites.set(key, [canvas, half]);
-    return [canvas, half];
-  }
+	/** A ball's picture, or its shadow if rgb is null: [canvas, half its width]. */
+	sprite(rgb, radius) {
+		const key = `${rgb} ${radius}`, known = this.sprites.get(key);
+		if (known) return known;
+		const reach = rgb ? radius : 1.7 * radius, half = ceil(reach) + 1, [canvas, pen] = sheet(2 * half, 2 * half);
+		const put = (r, ...stops) => disc(pen, half, half, r, pen.createRadialGradient(half, half, 0, half, half, r), ...stops.map(([at, colour, alpha]) => [at, css(colour, alpha)]));
+		const { cloth, lamp, shadow } = this.colours;
+		if (rgb) {
+			const lit = mix(rgb, WHITE, 0.16), dark = mix(rgb, BLACK, 0.52);
+			put(radius, [0, lit], [0.6, mix(rgb, BLACK, 0.06)], [0.9, mix(rgb, BLACK, 0.36)], [1, mix(dark, cloth, 0.16)]);
+			put(0.72 * radius, [0, lamp, 0.3], [0.5, lamp, 0.1], [1, lamp, 0]);
+		} else put(reach, [0.4, shadow, 0.8], [0.68, shadow, 0.4], [0.85, shadow, 0.12], [1, shadow, 0]);
+		this.sprites.set(key, [canvas, half]);
+		return [canvas, half];
+	}
 
-  /** The lamps as a ball at (x, y) mirrors them: two rows along the table, 1 m above it. */
-  lamps(x, y, px, py, radius) {
-    const { pen, scene: { extent: [[x0, x1], [y0, y1]] } } = this;
-    pen.beginPath();
-    for (let k = 0; k < 8; k++) {
-      const dx = (x0 + x1) / 2 + (k % 2 - 0.5) * 0.5 * (x1 - x0) - x, dy = (y0 + y1) / 2 + ((k >> 1) - 1.5) * 0.24 * (y1 - y0) - y;
-      const far = hypot(dx, dy, 1), norm = hypot(dx, dy, 1 + far), u = px + radius * dy / norm, v = py + radius * dx / norm;
-      pen.moveTo(u + 0.085 * radius, v);
-      pen.ellipse(u, v, 0.085 * radius, 0.06 * radius, 0, 0, TURN);
-    }
-    fill(pen, this.lamp);
-  }
+	/** The lamps as a ball at (x, y) mirrors them: two rows along the table, 1 m above it. */
+	lamps(x, y, px, py, radius) {
+		const { pen, scene: { extent: [[x0, x1], [y0, y1]] } } = this;
+		pen.beginPath();
+		for (let k = 0; k < 8; k++) {
+			const dx = (k % 2 - 0.5) * 0.5 * (x1 - x0) - x, dy = ((k >> 1) - 1.5) * 0.24 * (y1 - y0) - y;
+			const far = hypot(dx, dy, 1), norm = hypot(dx, dy, 1 + far), u = px + radius * dy / norm, v = py + radius * dx / norm;
+			pen.moveTo(u + 0.085 * radius, v);
+			pen.ellipse(u, v, 0.085 * radius, 0.06 * radius, 0, 0, TURN);
+		}
+		fill(pen, this.lamp);
+	}
 
-  /** Spots on a ball where its six half axes come out, turned with it. */
-  spots([w, a, b, c], rgb, alpha, px, py, radius) {
-    const { pen } = this, axes = [
-      [1 - 2 * (b * b + c * c), 2 * (a * b + w * c), 2 * (a * c - w * b)], [2 * (a * b - w * c), 1 - 2 * (a * a + c * c), 2 * (b * c + w * a)],
-      [2 * (a * c + w * b), 2 * (b * c - w * a), 1 - 2 * (a * a + b * b)],
-    ];
-    pen.beginPath();
-    for (const axis of axes) {
-      const [x, y, z] = axis[2] < 0 ? axis.map(value => -value) : axis, u = px + 0.96 * radius * y, v = py + 0.96 * radius * x, turn = atan2(x, y);
-      pen.moveTo(u + 0.27 * radius * z * cos(turn), v + 0.27 * radius * z * sin(turn));
-      pen.ellipse(u, v, 0.27 * radius * z, 0.27 * radius, turn, 0, TURN);
-    }
-    fill(pen, css(rgb, alpha));
-  }
+	/** Spots on a ball where its six half axes come out, turned with it. */
+	spots([w, a, b, c], colour, px, py, radius) {
+		const { pen } = this, axes = [[1 - 2 * (b * b + c * c), 2 * (a * b + w * c), 2 * (a * c - w * b)],
+			[2 * (a * b - w * c), 1 - 2 * (a * a + c * c), 2 * (b * c + w * a)], [2 * (a * c + w * b), 2 * (b * c - w * a), 1 - 2 * (a * a + b * b)]];
+		pen.beginPath();
+		for (const axis of axes) {
+			const [x, y, z] = axis[2] < 0 ? axis.map(value => -value) : axis, u = px + 0.96 * radius * y, v = py + 0.96 * radius * x, size = 0.27 * radius, turn = atan2(x, y);
+			pen.moveTo(u + size * z * cos(turn), v + size * z * sin(turn));
+			pen.ellipse(u, v, size * z, size, turn, 0, TURN);
+		}
+		fill(pen, colour);
+	}
 
-  /** Draw the table with what lies on it now; of a frame only x, y and on must be there. */
-  draw(frame) {
-    this.still ??= this.paint();
-    const { pen, scene, ink, ratio, scene: { extent: [[x0, x1], [y0, y1]] } } = this, radius = this.R * this.scale;
-    pen.resetTransform();
-    pen.drawImage(this.still, 0, 0);
-    for (const heat of frame.heat ?? []) this.heat(heat);
-    for (const line of frame.lines ?? []) this.line(line);
-    for (const { x, y, ball, alpha = 0.45 } of frame.rings ?? []) {
-      const [px, py] = this.pixel(x, y);
-      pen.globalAlpha = alpha;
-      if (ball !== undefined) this.stamp(scene.balls[ball].rgb, px, py, radius);
-      pen.globalAlpha = min(1, alpha + 0.3);
-      pen.strokeStyle = ink.text;
-      pen.lineWidth = 1.5 * ratio;
-      disc(pen, px, py, radius);
-      pen.globalAlpha = 1;
-    }
-    const depth = i => frame.depth?.[i] ?? 1 - frame.on[i], here = Object.keys(frame.x).map(Number).filter(i => depth(i) < 1).sort((a, b) => depth(b) - depth(a));
-    for (const i of here) if (!depth(i)) { // shadows fall away from the lamps
-      const x = frame.x[i], y = frame.y[i], [px, py] = this.pixel(x, y);
-      this.stamp(null, px + radius * (y - (y0 + y1) / 2) / (y1 - y0) / 2, py + radius * (0.14 + (x - (x0 + x1) / 2) / (x1 - x0) / 2), radius);
-    }
-    for (const i of here) if (depth(i)) this.falling(frame.x[i], frame.y[i], depth(i), scene.balls[i].rgb); else this.ball(frame, i, radius);
-    pen.strokeStyle = ink.aim;
-    pen.lineWidth = 2 * ratio;
-    for (const i of frame.highlight ?? []) disc(pen, ...this.pixel(frame.x[i], frame.y[i]), radius + 3 * ratio);
-    if (frame.cue) this.cue(frame.cue);
-  }
+	/** Draw the table with what lies on it now; of a frame only x, y and on must be there. */
+	draw(frame) {
+		this.still ??= this.paint();
+		const { pen, scene, ink, ratio, scene: { extent: [[x0, x1], [y0, y1]] } } = this, radius = this.R * this.scale;
+		pen.resetTransform();
+		pen.drawImage(this.still, 0, 0);
+		for (const heat of frame.heat ?? []) this.heat(heat);
+		for (const line of frame.lines ?? []) this.line(line);
+		for (const { x, y, ball, alpha = 0.45 } of frame.rings ?? []) {
+			const [px, py] = this.pixel(x, y);
+			pen.globalAlpha = alpha;
+			if (ball !== undefined) this.stamp(scene.balls[ball].rgb, px, py, radius);
+			pen.globalAlpha = min(1, alpha + 0.3);
+			pen.strokeStyle = ink.text;
+			pen.lineWidth = 1.5 * ratio;
+			disc(pen, px, py, radius);
+			pen.globalAlpha = 1;
+		}
+		const depth = i => frame.depth?.[i] ?? 1 - frame.on[i], here = Object.keys(frame.x).map(Number).filter(i => depth(i) < 1).sort((a, b) => depth(b) - depth(a));
+		for (const i of here) if (!depth(i)) { // shadows fall away from the lamps
+			const x = frame.x[i], y = frame.y[i], [px, py] = this.pixel(x, y);
+			this.stamp(null, px + radius * y / (y1 - y0) / 2, py + radius * (0.14 + x / (x1 - x0) / 2), radius);
+		}
+		for (const i of here) if (depth(i)) this.falling(frame.x[i], frame.y[i], depth(i), scene.balls[i].rgb); else this.ball(frame, i, radius);
+		pen.strokeStyle = ink.aim;
+		pen.lineWidth = 2 * ratio;
+		for (const i of frame.highlight ?? []) disc(pen, ...this.pixel(frame.x[i], frame.y[i]), radius + 3 * ratio);
+		if (frame.cue) this.cue(frame.cue);
+	}
 
-  stamp(rgb, px, py, radius, size = 1) {
-    const [image, half] = this.sprite(rgb, radius), wide = half * size;
-    this.pen.drawImage(image, px - wide, py - wide, 2 * wide, 2 * wide);
-  }
+	stamp(rgb, px, py, radius, size = 1) {
+		const [image, half] = this.sprite(rgb, radius), wide = half * size;
+		this.pen.drawImage(image, px - wide, py - wide, 2 * wide, 2 * wide);
+	}
 
-  /** A ball on its way into the pocket at hand: darker, smaller, towards the middle of the hole. */
-  falling(x, y, depth, rgb) {
-    const far = ([u, v]) => hypot(u - x, v - y), fall = this.scene.falls.reduce((a, b) => (far(b) < far(a) ? b : a), [x, y]);
-    this.pen.globalAlpha = 1 - depth;
-    this.stamp(rgb, ...this.pixel(x + (fall[0] - x) * depth / 2, y + (fall[1] - y) * depth / 2), this.R * this.scale, 1 - 0.3 * depth);
-    this.pen.globalAlpha = 1;
-  }
+	/** A ball on its way into the pocket at hand: darker, smaller, towards the middle of the hole. */
+	falling(x, y, depth, rgb) {
+		const far = ([u, v]) => hypot(u - x, v - y), fall = this.scene.falls.reduce((a, b) => (far(b) < far(a) ? b : a), [x, y]);
+		this.pen.globalAlpha = 1 - depth;
+		this.stamp(rgb, ...this.pixel(x + (fall[0] - x) * depth / 2, y + (fall[1] - y) * depth / 2), this.R * this.scale, 1 - 0.3 * depth);
+		this.pen.globalAlpha = 1;
+	}
 
-  ball(frame, i, radius) {
-    const { pen } = this, [px, py] = this.pixel(frame.x[i], frame.y[i]), { rgb, letter } = this.scene.balls[i], ink = isPale(rgb) ? BLACK : WHITE, turn = frame.turns?.[i];
-    this.stamp(rgb, px, py, radius);
-    if (turn) this.spots(turn, i ? ink : this.colours.bar_accent, i ? 0.32 : 0.9, px, py, radius);
-    if (radius > 3) this.lamps(frame.x[i], frame.y[i], px, py, radius);
-    if (!frame.labels) return;
-    pen.font = `700 ${max(1.25 * radius, 9 * this.ratio)}px system-ui,sans-serif`;
-    pen.textAlign = "center";
-    pen.lineJoin = "round";
-    pen.lineWidth = 0.3 * radius;
-    const text = letter.toUpperCase(), box = pen.measureText(text), down = py + (box.actualBoundingBoxAscent - box.actualBoundingBoxDescent) / 2;
-    pen.strokeStyle = css(ink === BLACK ? WHITE : BLACK, 0.75);
-    pen.strokeText(text, px, down);
-    pen.fillStyle = css(ink);
-    pen.fillText(text, px, down);
-  }
+	ball(frame, i, radius) {
+		const { pen } = this, x = frame.x[i], y = frame.y[i], at = this.pixel(x, y), { rgb, letter } = this.scene.balls[i], turn = frame.turns?.[i];
+		const pale = 0.3 * rgb[0] + 0.59 * rgb[1] + 0.11 * rgb[2] > 110, [ink, edge] = pale ? [BLACK, WHITE] : [WHITE, BLACK];
+		this.stamp(rgb, ...at, radius);
+		if (turn) this.spots(turn, i ? css(ink, 0.32) : this.ink.bar_accent, ...at, radius);
+		if (radius > 3) this.lamps(x, y, ...at, radius);
+		if (!frame.labels) return;
+		const size = max(1.25 * radius, 9 * this.ratio);
+		at[1] += 0.36 * size; // half a capital letter
+		pen.font = `700 ${size}px system-ui,sans-serif`;
+		pen.textAlign = "center";
+		pen.lineJoin = "round";
+		pen.lineWidth = 0.3 * radius;
+		pen.strokeStyle = css(edge, 0.75);
+		pen.strokeText(letter.toUpperCase(), ...at);
+		pen.fillStyle = css(ink);
+		pen.fillText(letter.toUpperCase(), ...at);
+	}
 
-  /** A line through points, or a `path` in metres, at least 3 pixels wide, with a dark edge. */
-  line({ points = [], path, colour, width = 0.007, dash = [], arrow }) {
-    const { pen } = this, px = this.ratio / this.scale, wide = max(width, 3 * px), way = path ?? new Path2D();
-    for (const point of points) way.lineTo(...point);
-    if (arrow && points.length > 1) {
-      const [[ax, ay], [bx, by]] = points.slice(-2), turn = atan2(by - ay, bx - ax), size = 4 * wide;
-      for (const side of [-2.6, 2.6]) { way.moveTo(bx, by); way.lineTo(bx + size * cos(turn + side), by + size * sin(turn + side)); }
-    }
-    this.metres(pen);
-    pen.lineJoin = pen.lineCap = "round";
-    pen.setLineDash(dash);
-    for (const [style, thick] of [[css(this.colours.path_edge, 0.55), wide + 2 * px], [colour?.map ? css(colour) : colour ?? this.ink.text, wide]]) {
-      pen.strokeStyle = style;
-      pen.lineWidth = thick;
-      pen.stroke(way);
-    }
-    pen.setLineDash([]);
-    pen.resetTransform();
-  }
+	/** A line through points, or a `path` in metres, at least 3 pixels wide, with a dark edge. */
+	line({ points = [], path, colour, width = 0.007, dash = [], arrow }) {
+		const { pen } = this, px = this.ratio / this.scale, wide = max(width, 3 * px), way = path ?? new Path2D();
+		for (const point of points) way.lineTo(...point);
+		if (arrow && points.length > 1) {
+			const [[ax, ay], [bx, by]] = points.slice(-2), turn = atan2(by - ay, bx - ax), size = 4 * wide;
+			for (const side of [-2.6, 2.6]) { way.moveTo(bx, by); way.lineTo(bx + size * cos(turn + side), by + size * sin(turn + side)); }
+		}
+		this.metres(pen);
+		pen.lineJoin = pen.lineCap = "round";
+		pen.setLineDash(dash);
+		for (const [style, thick] of [[css(this.colours.path_edge, 0.55), wide + 2 * px], [colour?.map ? css(colour) : colour ?? this.ink.text, wide]]) {
+			pen.strokeStyle = style;
+			pen.lineWidth = thick;
+			pen.stroke(way);
+		}
+		pen.setLineDash([]);
+		pen.resetTransform();
+	}
 
-  /** Cells, ny rows along y of nx along x, the stronger the more is in them. */
-  heat({ x0, y0, cell, nx, ny, values, rgb }) {
-    const [canvas, p] = sheet(nx, ny), image = p.createImageData(nx, ny), most = values.reduce((a, b) => max(a, b), 0) || 1;
-    for (let k = 0; k < nx * ny; k++) image.data.set([...rgb, 225 * sqrt(values[k] / most)], 4 * k);
-    p.putImageData(image, 0, 0);
-    this.metres(this.pen);
-    this.pen.drawImage(canvas, x0, y0, nx * cell, ny * cell);
-    this.pen.resetTransform();
-  }
+	/** Cells, ny rows along y of nx along x, the stronger the more is in them. */
+	heat({ x0, y0, cell, nx, ny, values, rgb }) {
+		const [canvas, p] = sheet(nx, ny), image = p.createImageData(nx, ny), most = values.reduce((a, b) => max(a, b), 0) || 1;
+		for (let k = 0; k < nx * ny; k++) image.data.set([...rgb, 225 * sqrt(values[k] / most)], 4 * k);
+		p.putImageData(image, 0, 0);
+		this.metres(this.pen);
+		this.pen.drawImage(canvas, x0, y0, nx * cell, ny * cell);
+		this.pen.resetTransform();
+	}
 
-  /** The cue, its tip `pull` [m] behind the ball at (x, y). */
-  cue({ x, y, aim, pull = 0.05, elevation = 0, alpha = 1 }) {
-    const { pen } = this, ex = cos(aim), ey = sin(aim);
-    const part = (from, to, colour) => {
-      polyline(pen, [[from, 1], [to, 1], [to, -1], [from, -1]].map(([d, side]) => {
-        const back = this.R + pull + d * cos(elevation), half = side * (0.0048 + 0.0065 * d);
-        return [x - ex * back - ey * half, y - ey * back + ex * half];
-      }));
-      fill(pen, colour);
-    };
-    this.metres(pen);
-    pen.globalAlpha = alpha;
-    shade(pen, css(this.colours.shadow, 0.6), 0.02 * this.scale);
-    part(0, 1.45, "#d9b27c");
-    shade(pen);
-    part(0.95, 1.45, "#20130d");
-    part(0, 0.008, "#3c6a9c");
-    pen.globalAlpha = 1;
-    pen.resetTransform();
-  }
+	/** The cue, its tip `pull` [m] behind the ball at (x, y). */
+	cue({ x, y, aim, pull = 0.05, elevation = 0, alpha = 1 }) {
+		const { pen } = this, ex = cos(aim), ey = sin(aim);
+		const part = (from, to, colour) => {
+			polyline(pen, [[from, 1], [to, 1], [to, -1], [from, -1]].map(([d, side]) => {
+				const back = this.R + pull + d * cos(elevation), half = side * (0.0048 + 0.0065 * d);
+				return [x - ex * back - ey * half, y - ey * back + ex * half];
+			}));
+			cast(pen, css(this.colours.shadow, 0.4), 0.02 * this.scale, colour);
+		};
+		this.metres(pen);
+		pen.globalAlpha = alpha;
+		part(0, 1.45, "#d9b27c");
+		part(0.95, 1.45, "#20130d");
+		part(0, 0.008, "#3c6a9c");
+		pen.globalAlpha = 1;
+		pen.resetTransform();
+	}
 }
 
-// ---- the player ----
-
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
-/** Seconds shown before a stroke, in which the cue is drawn back, and after it. */
+/** Seconds shown before a stroke, of the cue, and after it. */
 const LEAD = 0.9, PAUSE = 1.4;
-/** What can be done: key, what it does, what its button shows (an icon or a word; none: no button), the method, what it is told. */
+/** Key, what it does, what its button shows (an icon or a word; none: no button), the method, its argument. */
 const COMMANDS = [
-  ["shift ←", "previous stroke", "back", "skip", -1], ["←", "previous event", "last", "step", -1], ["space", "play or pause", "play", "toggle"],
-  ["→", "next event", "next", "step", 1], ["shift →", "next stroke", "on", "skip", 1], ["↓", "slower", "−", "faster", -1], ["↑", "faster", "+", "faster", 1],
-  ["p", "paths, dashed where a ball slides", "paths", "flip", "paths"], ["g", "cue ball where it met others", "ghosts", "flip", "ghosts"],
-  ["s", "spots that show spin", "spin", "flip", "spin"], ["l", "letters on balls", "labels", "flip", "labels"],
-  ["home", "first moment", "", "seekTotal", 0], ["end", "last moment", "", "seekTotal", Infinity], ["?", "help", "?", "help"],
+	["Shift ArrowLeft", "previous stroke", "back", "skip", -1], ["ArrowLeft", "previous event", "last", "step", -1], ["Space", "play or pause", "play", "toggle"],
+	["ArrowRight", "next event", "next", "step", 1], ["Shift ArrowRight", "next stroke", "on", "skip", 1], ["ArrowDown", "slower", "−", "faster", -1], ["ArrowUp", "faster", "+", "faster", 1],
+	["p", "paths, dashed where a ball slides", "paths", "flip", "paths"], ["g", "cue ball where it met others", "ghosts", "flip", "ghosts"],
+	["s", "spots that show spin", "spin", "flip", "spin"], ["l", "letters on balls", "labels", "flip", "labels"],
+	["Home", "first moment", "", "seekTotal", 0], ["End", "last moment", "", "seekTotal", Infinity], ["?", "help", "?", "help"],
 ];
 const ICONS = { play: "M7 4v16l13-8z", pause: "M6 4h4v16H6zM14 4h4v16h-4z", on: "M4 5l8 7-8 7zM12 5l8 7-8 7z", next: "M9 5l8 7-8 7z",
-  back: "M20 5l-8 7 8 7zM12 5l-8 7 8 7z", last: "M15 5l-8 7 8 7z" };
+	back: "M20 5l-8 7 8 7zM12 5l-8 7 8 7z", last: "M15 5l-8 7 8 7z" };
 const STYLE = `
-.snk{position:relative;container-type:inline-size;display:flex;flex-direction:column;justify-content:center;background:var(--floor);color:var(--text);overflow:hidden;
-font:15px/1.3 system-ui,"Segoe UI",Roboto,Helvetica,Arial,sans-serif;font-variant-numeric:tabular-nums}
-.snk *{box-sizing:border-box}.snk [hidden]{display:none}.snk-fill{height:100%}
-.snk-stage{position:relative;min-height:0}.snk-stage canvas{position:absolute;width:100%;height:100%;touch-action:manipulation}
-.snk-score{display:flex;flex-wrap:wrap;background:var(--bar);border-top:3px solid var(--bar_accent);font-size:clamp(14px,1.5cqw,26px);line-height:2}
-.snk-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.snk-who{flex:1 1 30%;min-width:0;font-weight:600}.snk-now+.snk-who{flex-direction:row-reverse;text-align:right}
-.snk-who span{flex:1;overflow:hidden;text-overflow:ellipsis;white-space:nowrap}.snk-who b{background:var(--text);color:var(--bar);line-height:1.5;min-width:2.6em;text-align:center}
-.snk-turn{background:var(--bar_edge)}.snk .snk-now{justify-content:center;flex-wrap:wrap;column-gap:1.4em;font-size:.8em}
-.snk i{display:inline-block;width:.85em;height:.85em;border-radius:50%;margin:0 1px;vertical-align:-.08em;box-shadow:inset 0 0 0 1px #fff6}
-.snk-bar{position:relative;height:30px;margin:0 14px;cursor:pointer;touch-action:none}.snk-bar *{position:absolute;top:12px;height:6px;background:var(--bar_accent)}
-.snk-bar :first-child{width:100%;background:var(--bar_edge)}.snk-bar u{width:2px;background:var(--text_quiet)}.snk-bar b{top:6px;width:18px;height:18px;margin-left:-9px;border-radius:9px;background:var(--text)}
-.snk-foot{display:flex;flex-wrap:wrap;align-items:center;gap:6px 10px;padding:0 10px 8px}.snk-foot>*{flex:1 1 250px}.snk-words{text-align:right}
-.snk-about{display:flex;align-items:center;gap:10px;min-height:50px;color:var(--text_quiet)}.snk-about canvas{width:50px;height:50px}
-.snk-foot .snk-keys{flex:0 1 auto;display:flex;flex-wrap:wrap;justify-content:center;gap:4px}.snk output{width:3.4em;line-height:40px;text-align:center}
-.snk button{min-width:42px;height:40px;padding:0 8px;border:0;border-radius:6px;background:#fff1;color:inherit;font:inherit;cursor:pointer}.snk button:hover{background:#fff3}
-.snk [aria-pressed=true]{box-shadow:inset 0 -3px var(--bar_accent)}.snk svg{width:22px;fill:currentColor;vertical-align:middle}
-.snk:focus-visible,.snk :focus-visible{outline:2px solid var(--aim);outline-offset:-2px}
-.snk-help{position:absolute;inset:0;margin:auto;padding:12px;background:var(--bar);border:1px solid var(--bar_edge)}.snk-help td{padding:2px 8px}
-@container (max-width:900px){.snk-now,.snk-keys{order:1}.snk .snk-now{flex:1 0 100%}.snk-words{text-align:left}}`;
+.sn{position:relative;container-type:inline-size;display:flex;flex-direction:column;justify-content:center;background:var(--floor);color:var(--text);overflow:hidden;
+font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
+.sn *{box-sizing:border-box}.sn-fill{height:100%}
+.sn-stage{position:relative;min-height:0}.sn-stage canvas{position:absolute;width:100%;height:100%;touch-action:manipulation}
+.sn-score{display:flex;flex-wrap:wrap;background:var(--bar);border-top:3px solid var(--bar_accent);font-size:clamp(14px,1.5cqw,26px);line-height:2}
+.sn-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.sn-who{flex:1 1 30%;min-width:0;font-weight:600}.sn-now+.sn-who{flex-direction:row-reverse;text-align:right}
+.sn-who span{flex:1;overflow:hidden;text-overflow:ellipsis;white-space:nowrap}.sn-who b{background:var(--text);color:var(--bar);line-height:1.5;min-width:2.6em;text-align:center}
+.sn-turn{background:var(--bar_edge)}.sn .sn-now{justify-content:center;flex-wrap:wrap;column-gap:1.4em;font-size:.8em}
+.sn i{display:inline-block;width:.85em;height:.85em;border-radius:50%;margin:0 1px;vertical-align:-.08em;box-shadow:inset 0 0 0 1px #fff6}
+.sn-bar{position:relative;height:30px;margin:0 14px;cursor:pointer;touch-action:none}.sn-bar *{position:absolute;top:12px;height:6px;background:var(--bar_accent)}
+.sn-bar :first-child{width:100%;background:var(--bar_edge)}.sn-bar u{width:2px;background:var(--text_quiet)}.sn-bar b{top:6px;width:18px;height:18px;margin-left:-9px;border-radius:9px;background:var(--text)}
+.sn-foot{display:flex;flex-wrap:wrap;align-items:center;gap:6px 10px;padding:0 10px 8px}.sn-foot>*{flex:1 1 250px}.sn-words{text-align:right}
+.sn-about{display:flex;align-items:center;gap:10px;min-height:50px;color:var(--text_quiet)}.sn-about canvas{width:50px;height:50px}
+.sn-foot .sn-keys{flex:0 1 auto;display:flex;flex-wrap:wrap;justify-content:center;gap:4px}.sn output{width:3.4em;line-height:40px;text-align:center}
+.sn button{min-width:42px;height:40px;padding:0 8px;border:0;border-radius:6px;background:#fff1;color:inherit;font:inherit;cursor:pointer}.sn button:hover{background:#fff3}
+.sn [aria-pressed=true]{box-shadow:inset 0 -3px var(--bar_accent)}.sn svg{width:22px;fill:currentColor;vertical-align:middle}
+.sn:focus-visible,.sn :focus-visible{outline:2px solid var(--aim)}
+.sn-help{position:absolute;inset:0;margin:auto;padding:12px;background:var(--bar);border:1px solid var(--bar_edge)}.sn-help td{padding:2px 8px}
+@container (max-width:900px){.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}`;
 
 /** A new element at the end of its parent. */
-function put(parent, tag, name = "") {
-  const made = document.createElement(tag);
-  made.className = name;
-  parent.append(made);
-  return made;
+function put(parent, tag) {
+	const made = document.createElement(tag);
+	parent.append(made);
+	return made;
 }
 
 const setAll = (element, attributes) => Object.entries(attributes).forEach(([name, value]) => element.setAttribute(name, value));
 
 /** Plays a replay in an element. */
 export class Player {
-  constructor(element, replay, options = {}) {
-    const data = decode(replay), { strokes } = data;
-    if (!strokes.length) throw new Error("a replay must hold at least one stroke");
-    this.options = { autoplay: !matchMedia("(prefers-reduced-motion: reduce)").matches, ...options };
-    this.show = { paths: !data.players.length, ghosts: true, spin: "cue", labels: false };
-    for (const name in this.show) this.show[name] = options[name] ?? this.show[name];
-    Object.assign(this, { replay: data, strokes, speed: options.speed ?? 1, k: 0, playing: false });
-    this.leads = strokes.map(stroke => (stroke.cue ? LEAD : 0));
-    this.t = -this.leads[0];
-    this.total = -PAUSE;
-    this.starts = strokes.map((stroke, k) => { // on the scale of the whole replay
-      this.total += this.leads[k] + stroke.duration + PAUSE;
-      return this.total - stroke.duration;
-    });
-    this.build(element);
-    this.tick = this.tick.bind(this);
-    this.watch = new ResizeObserver(() => { this.view.resize(); this.update(); });
-    this.watch.observe(this.canvas);
-    this.update();
-    if (this.options.autoplay) this.play();
-  }
+	constructor(element, replay, options = {}) {
+		const data = decode(replay), { strokes } = data;
+		if (!strokes.length) throw new Error("a replay must hold at least one stroke");
+		this.options = { autoplay: !matchMedia("(prefers-reduced-motion: reduce)").matches, ...options };
+		this.show = { paths: !data.players.length, ghosts: true, spin: "cue", labels: false };
+		for (const name in this.show) this.show[name] = options[name] ?? this.show[name];
+		Object.assign(this, { replay: data, strokes, speed: options.speed ?? 1, k: 0, playing: false });
+		this.leads = strokes.map(stroke => (stroke.cue ? LEAD : 0));
+		this.t = -this.leads[0];
+		this.total = -PAUSE;
+		this.starts = strokes.map((stroke, k) => { // on the scale of the whole replay
+			this.total += this.leads[k] + stroke.duration + PAUSE;
+			return this.total - stroke.duration;
+		});
+		this.build(element);
+		this.tick = this.tick.bind(this);
+		this.watch = new ResizeObserver(() => { this.view.resize(); this.update(); });
+		this.watch.observe(this.canvas);
+		this.update();
+		if (this.options.autoplay) this.play();
+	}
 
-  /** Which stroke is shown, from 0. */
-  get stroke() { return this.k; }
-  /** Time within the stroke [s]; below 0 before it. */
-  get time() { return this.t; }
-  get isLast() { return this.k === this.strokes.length - 1; }
+	/** Which stroke is shown, from 0. */
+	get stroke() { return this.k; }
+	/** Time within the stroke [s]; below 0 before it. */
+	get time() { return this.t; }
+	get isLast() { return this.k === this.strokes.length - 1; }
 
-  build(element) {
-    const { replay: { scene, players, title }, options } = this, root = (this.root = put(element, "div", options.fill ? "snk snk-fill" : "snk"));
-    const [wide, high] = TableView.size(scene), who = '<div class="snk-who"><span></span><b></b></div>', now = '<div class="snk-now"></div>';
-    const part = name => root.querySelector(`.snk-${name}`), percent = t => `${100 * t / this.total}%`;
-    setAll(root, { tabindex: 0, role: "group", "aria-label": title || "replay" });
-    for (const [name, rgb] of Object.entries({ ...PALETTE, ...scene.palette })) root.style.setProperty(`--${name}`, css(rgb));
-    root.innerHTML = `<style>${STYLE}</style><div class="snk-stage" style="aspect-ratio:${wide / high}"><canvas></canvas></div>
-      ${players.length ? `<div class="snk-score">${[who, now, who].slice(0, players.length + 1).join("")}</div>` : ""}
-      <div class="snk-bar" role="slider" tabindex="0" aria-label="time" aria-valuemin="0" aria-valuemax="${this.total.toFixed(1)}"><div></div><div></div><b></b></div>
-      <div class="snk-foot"><div class="snk-about"><canvas></canvas><span></span></div><div class="snk-keys"></div><div class="snk-words" aria-live="polite"></div></div>
-      <table class="snk-help" hidden></table>`;
-    [this.canvas, this.tip] = root.querySelectorAll("canvas");
-    this.canvas.onclick = () => this.toggle();
-    this.view = new TableView(this.canvas, scene);
-    this.who = [...root.querySelectorAll(".snk-who")];
-    this.who.forEach((one, k) => { one.firstChild.textContent = players[k]; });
-    this.about = part("about").lastChild;
-    this.words = part("words");
-    this.sheet = part("help");
-    this.sheet.onclick = () => this.help();
-    const bar = (this.bar = part("bar")), many = ceil(this.strokes.length / 200);
-    [, this.done, this.thumb] = bar.children;
-    this.starts.forEach((start, k) => { if (k && k % many === 0) put(bar, "u").style.left = percent(start - this.leads[k]); });
-    const drag = event => {
-      const box = bar.getBoundingClientRect();
-      this.seekTotal((event.clientX - box.left) / box.width * this.total);
-    };
-    bar.onpointerdown = event => { this.pause(); bar.setPointerCapture(event.pointerId); drag(event); };
-    bar.onpointermove = event => { if (bar.hasPointerCapture(event.pointerId)) drag(event); };
-    this.buttons = {};
-    for (const [key, what, shows, act, way] of COMMANDS) {
-      const row = put(this.sheet, "tr");
-      put(row, "td").textContent = key;
-      put(row, "td").textContent = what;
-      if (!shows) continue;
-      const button = (this.buttons[shows] = put(part("keys"), "button"));
-      setAll(button, { type: "button", title: `${what} (${key})`, "aria-label": what });
-      if (ICONS[shows]) this.icon(button, shows); else button.textContent = shows;
-      if (shows === "−") this.pace = put(part("keys"), "output");
-      button.onclick = () => this[act](way);
-    }
-    this.keys = options.keys ?? root;
-    this.onkey = event => this.key(event);
-    this.keys.addEventListener("keydown", this.onkey);
-  }
+	build(element) {
+		const { replay: { scene, players, title }, options } = this, root = (this.root = put(element, "div"));
+		const [wide, high] = TableView.size(scene), who = '<div class="sn-who"><span></span><b></b></div>', now = '<div class="sn-now"></div>';
+		setAll(root, { class: options.fill ? "sn sn-fill" : "sn", tabindex: 0, role: "group", "aria-label": title || "replay" });
+		root.innerHTML = `<style>${STYLE}</style><div class="sn-stage" style="aspect-ratio:${wide / high}"><canvas></canvas></div>
+			${players.length ? `<div class="sn-score">${[who, now, who].slice(0, players.length + 1).join("")}</div>` : ""}
+			<div class="sn-bar" role="slider" tabindex="0" aria-label="time" aria-valuemin="0" aria-valuemax="${this.total.toFixed(1)}"><div></div><div></div><b></b></div>
+			<div class="sn-foot"><div class="sn-about"><canvas></canvas><span></span></div><div class="sn-keys"></div><div class="sn-words" aria-live="polite"></div></div>
+			<table class="sn-help" hidden></table>`;
+		[this.canvas, this.tip] = root.querySelectorAll("canvas");
+		this.canvas.onclick = () => this.toggle();
+		this.view = new TableView(this.canvas, scene);
+		for (const name in this.view.ink) root.style.setProperty(`--${name}`, this.view.ink[name]);
+		this.who = [...root.querySelectorAll(".sn-who")];
+		this.who.forEach((one, k) => { one.firstChild.textContent = players[k]; });
+		const sheet = this.part("help"), bar = (this.bar = this.part("bar")), keys = this.part("keys"), drag = event => this.seekTotal((event.clientX - bar.getBoundingClientRect().left) / bar.clientWidth * this.total);
+		[, this.done, this.thumb] = bar.children;
+		this.starts.forEach((start, k) => { if (k % ceil(this.strokes.length / 200) === 0) put(bar, "u").style.left = `${100 * (start - this.leads[k]) / this.total}%`; });
+		bar.onpointerdown = event => { this.pause(); bar.setPointerCapture(event.pointerId); drag(event); };
+		bar.onpointermove = event => { if (bar.hasPointerCapture(event.pointerId)) drag(event); };
+		sheet.onclick = () => this.help();
+		this.buttons = {};
+		for (const [key, what, shows, act, way] of COMMANDS) {
+			const row = put(sheet, "tr");
+			put(row, "td").textContent = key;
+			put(row, "td").textContent = what;
+			if (!shows) continue;
+			const button = (this.buttons[shows] = put(keys, "button"));
+			setAll(button, { type: "button", title: `${what} (${key})`, "aria-label": what });
+			if (ICONS[shows]) this.icon(button, shows); else button.textContent = shows;
+			if (shows === "−") this.pace = put(keys, "output");
+			button.onclick = () => this[act](way);
+		}
+		this.keys = options.keys ?? root;
+		this.onkey = event => this.key(event);
+		this.keys.addEventListener("keydown", this.onkey);
+	}
 
-  icon(button, name) { button.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg>`; }
+	part(name) { return this.root.querySelector(`.sn-${name}`); }
 
-  key(event) {
-    const { target } = event, named = { " ": "space", ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓" }[event.key] ?? event.key.toLowerCase();
-    const found = COMMANDS.find(([key]) => key === (/[←→]/.test(named) && event.shiftKey ? `shift ${named}` : named));
-    if (!found || event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName)) return;
-    if (named === "space" && target.tagName === "BUTTON") return; // it presses that button
-    this[found[3]](found[4]);
-    event.preventDefault();
-  }
+	icon(button, name) { button.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg>`; }
 
-  toggle() { if (this.playing) this.pause(); else this.play(); }
-  help() { this.sheet.hidden = !this.sheet.hidden; }
+	key(event) {
+		const { target, shiftKey, key: one } = event, named = one === " " ? "Space" : one.length > 1 ? one : one.toLowerCase();
+		const found = COMMANDS.find(([key]) => key === (shiftKey && one.startsWith("Arrow") ? `Shift ${named}` : named));
+		if (!found || event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName)) return;
+		if (named === "Space" && target.tagName === "BUTTON") return; // it presses that button
+		this[found[3]](found[4]);
+		event.preventDefault();
+	}
 
-  faster(way) {
-    this.speed = SPEEDS[SPEEDS.indexOf(this.speed) + way] ?? this.speed;
-    this.update();
-  }
+	toggle() { if (this.playing) this.pause(); else this.play(); }
+	help() { this.part("help").hidden = !this.part("help").hidden; }
 
-  /** Switch "paths", "ghosts" or "labels", or go on to the next choice of "spin". */
-  flip(name) {
-    this.show[name] = name === "spin" ? { cue: "all", all: "off", off: "cue" }[this.show.spin] : !this.show[name];
-    this.update();
-  }
+	faster(way) {
+		this.speed = SPEEDS[SPEEDS.indexOf(this.speed) + way] ?? this.speed;
+		this.update();
+	}
 
-  play() {
-    if (this.isLast && this.t >= this.strokes[this.k].duration) this.seekTotal(0);
-    this.playing = true;
-    this.clock = null;
-    this.waiting ??= requestAnimationFrame(this.tick);
-    this.update();
-  }
+	/** Switch "paths", "ghosts" or "labels", or go on to the next choice of "spin". */
+	flip(name) {
+		this.show[name] = name === "spin" ? { cue: "all", all: "off", off: "cue" }[this.show.spin] : !this.show[name];
+		this.update();
+	}
 
-  pause() {
-    this.playing = false;
-    this.update();
-  }
+	play() {
+		if (this.isLast && this.t >= this.strokes[this.k].duration) this.seekTotal(0);
+		this.playing = true;
+		this.clock = null;
+		this.waiting ??= requestAnimationFrame(this.tick);
+		this.update();
+	}
 
-  /** Show a stroke at a time within it [s]. */
-  seek(stroke, t = 0) {
-    const before = this.k;
-    this.k = min(this.strokes.length - 1, max(0, stroke));
-    this.t = min(this.strokes[this.k].duration + (this.isLast ? 0 : PAUSE), max(-this.leads[this.k], t));
-    if (before !== this.k) this.options.onstroke?.(this.k);
-    this.update();
-  }
+	pause() {
+		this.playing = false;
+		this.update();
+	}
 
-  /** Show a time of the whole replay [s]. */
-  seekTotal(sum) {
-    const k = max(0, this.starts.findLastIndex((start, j) => start - this.leads[j] <= sum));
-    this.seek(k, sum - this.starts[k]);
-  }
+	/** Show a stroke at a time within it [s]. */
+	seek(stroke, t = 0) {
+		const before = this.k;
+		this.k = min(this.strokes.length - 1, max(0, stroke));
+		this.t = min(this.strokes[this.k].duration + (this.isLast ? 0 : PAUSE), max(-this.leads[this.k], t));
+		if (before !== this.k) this.options.onstroke?.(this.k);
+		this.update();
+	}
 
-  /** On by a stroke, or back: first to the beginning of this one. */
-  skip(way) {
-    const k = this.k + (way < 0 && this.t > 0.5 ? 0 : way);
-    this.seek(k, k < this.strokes.length ? -LEAD : Infinity);
-  }
+	/** Show a time of the whole replay [s]. */
+	seekTotal(sum) {
+		const k = max(0, this.starts.findLastIndex((start, j) => start - this.leads[j] <= sum));
+		this.seek(k, sum - this.starts[k]);
+	}
 
-  /** Stop at the next event (+1) or the one before (-1), over strokes' ends. */
-  step(way) {
-    this.pause();
-    const { events, duration } = this.strokes[this.k], stops = [0, ...events.filter(event => EVENTS[event[1]]).map(event => event[0]), duration];
-    const next = way > 0 ? stops.find(t => t > this.t) : stops.findLast(t => t < this.t);
-    if (next !== undefined) this.seek(this.k, next);
-    else if (this.strokes[this.k + way]) this.seek(this.k + way, way > 0 ? 0 : Infinity);
-  }
+	/** On by a stroke, or back: first to the beginning of this one. */
+	skip(way) {
+		const k = this.k + (way < 0 && this.t > 0.5 ? 0 : way);
+		this.seek(k, k < this.strokes.length ? -LEAD : Infinity);
+	}
 
-  tick(now) {
-    this.waiting = null;
-    if (!this.playing) return;
-    const { duration } = this.strokes[this.k], end = duration + (this.isLast ? 0 : PAUSE), rest = this.t < 0 || this.t >= duration;
-    const t = this.t + min(0.1, (now - (this.clock ?? now)) / 1000) * (rest ? max(1, this.speed) : this.speed);
-    this.clock = now;
-    if (this.isLast && t >= end) this.playing = false;
-    if (this.isLast || t < end) this.seek(this.k, t); else this.seek(this.k + 1, -LEAD);
-    if (this.playing) this.waiting = requestAnimationFrame(this.tick); else this.options.onend?.();
-  }
+	/** Stop at the next event (+1) or the one before (-1), over strokes' ends. */
+	step(way) {
+		this.pause();
+		const { events, duration } = this.strokes[this.k], stops = [0, ...events.filter(event => EVENTS[event[1]]).map(event => event[0]), duration];
+		const next = way > 0 ? stops.find(t => t > this.t) : stops.findLast(t => t < this.t);
+		if (next !== undefined) this.seek(this.k, next);
+		else if (this.strokes[this.k + way]) this.seek(this.k + way, way > 0 ? 0 : Infinity);
+	}
 
-  /** What is to be seen now. */
-  frame() {
-    const stroke = this.strokes[this.k], { t, show, replay: { scene } } = this, over = t > stroke.duration + PAUSE / 2 && stroke.later;
-    const frame = over ? { ...stroke.later } : stroke.at(t);
-    frame.labels = show.labels;
-    if (show.spin !== "off") frame.turns = Array.from({ length: show.spin === "cue" ? 1 : stroke.n }, (_, ball) => stroke.turn(ball, t));
-    if (over) return frame;
-    if (show.paths && t > 0) frame.lines = stroke.logs.flatMap((log, ball) => {
-      if (!log.length) return [];
-      const slide = new Path2D(), roll = new Path2D(), colour = mix(scene.balls[ball].rgb, WHITE, 1 / 3);
-      stroke.trace(ball, t, slide, roll);
-      return [{ path: roll, colour }, { path: slide, colour: mix(colour, WHITE, 0.3), dash: [0.012, 0.022] }];
-    });
-    if (show.ghosts) { // the cue ball where it met others
-      stroke.met ??= stroke.events.filter(([, kind, i, j]) => kind === BALL_BALL && !(i && j)).map(([at]) => ({ x: stroke.at(at).x[0], y: stroke.at(at).y[0], at, ball: 0, alpha: 0.3 }));
-      frame.rings = stroke.met.filter(ring => ring.at < t);
-    }
-    if (stroke.cue && t < 0.35) { // drawn back, through the ball, away
-      const { speed, aim, elevation } = stroke.cue, u = 1 + t / LEAD, back = 0.06 + 0.02 * min(5, speed);
-      const pull = t >= 0 ? -min(0.16, 0.4 * t * speed) : back * (u < 0.75 ? (1.2 - cos(PI * u / 0.75)) / 2.2 : 1 - (4 * u - 3) ** 2);
-      frame.cue = { x: stroke.first[0], y: stroke.first[1], aim, elevation, pull, alpha: t > 0 ? 1 - t / 0.35 : min(1, 4 * u) };
-    }
-    return frame;
-  }
+	tick(now) {
+		this.waiting = null;
+		if (!this.playing) return;
+		const { duration } = this.strokes[this.k], end = duration + (this.isLast ? 0 : PAUSE), rest = this.t < 0 || this.t >= duration;
+		const t = this.t + min(0.1, (now - (this.clock ?? now)) / 1000) * (rest ? max(1, this.speed) : this.speed);
+		this.clock = now;
+		if (this.isLast && t >= end) this.playing = false;
+		if (this.isLast || t < end) this.seek(this.k, t); else this.seek(this.k + 1, -LEAD);
+		if (this.playing) this.waiting = requestAnimationFrame(this.tick); else this.options.onend?.();
+	}
 
-  /** [[x, y], ...] [m] of all balls as they are on screen. */
-  positions() { return Array.from(this.shown.x, (x, k) => [x, this.shown.y[k]]); }
+	/** What is to be seen now. */
+	frame() {
+		const stroke = this.strokes[this.k], { t, show, replay: { scene } } = this, over = t > stroke.duration + PAUSE / 2 && stroke.later;
+		const frame = over ? { ...stroke.later } : stroke.at(t);
+		frame.labels = show.labels;
+		if (show.spin !== "off") frame.turns = Array.from({ length: show.spin === "cue" ? 1 : stroke.n }, (_, ball) => stroke.turn(ball, t));
+		if (over) return frame;
+		if (show.paths && t > 0) frame.lines = stroke.logs.flatMap((log, ball) => {
+			if (!log.length) return [];
+			const slide = new Path2D(), roll = new Path2D(), colour = mix(scene.balls[ball].rgb, WHITE, 1 / 3);
+			stroke.trace(ball, t, slide, roll);
+			return [{ path: roll, colour }, { path: slide, colour: mix(colour, WHITE, 0.3), dash: [0.012, 0.022] }];
+		});
+		if (show.ghosts) { // the cue ball where it met others
+			const met = ([at]) => { const { x, y } = stroke.at(at); return { x: x[0], y: y[0], at, ball: 0, alpha: 0.3 }; };
+			stroke.met ??= stroke.events.filter(([, kind, i, j]) => kind === BALL_BALL && !(i && j)).map(met);
+			frame.rings = stroke.met.filter(ring => ring.at < t);
+		}
+		if (stroke.cue && t < 0.35) { // drawn back, through the ball, away
+			const { speed, aim, elevation } = stroke.cue, u = 1 + t / LEAD, back = 0.06 + 0.02 * min(5, speed);
+			const pull = t >= 0 ? -min(0.16, 0.4 * t * speed) : back * (u < 0.75 ? (1.2 - cos(PI * u / 0.75)) / 2.2 : 1 - (4 * u - 3) ** 2);
+			frame.cue = { x: stroke.first[0], y: stroke.first[1], aim, elevation, pull, alpha: t > 0 ? 1 - t / 0.35 : min(1, 4 * u) };
+		}
+		return frame;
+	}
 
-  /** Draw and say everything anew. */
-  update() {
-    const sum = this.starts[this.k] + this.t;
-    this.shown = this.frame();
-    this.view.draw(this.shown);
-    this.done.style.width = this.thumb.style.left = `${100 * sum / this.total}%`;
-    this.bar.setAttribute("aria-valuenow", sum.toFixed(1));
-    this.say();
-    this.options.ontime?.(this.t, this.k);
-  }
+	/** [[x, y], ...] [m] of all balls as they are on screen. */
+	positions() { return Array.from(this.shown.x, (x, k) => [x, this.shown.y[k]]); }
 
-  /** Words and buttons; they are left alone while they stay the same. */
-  say() {
-    const { k, playing, speed, show, t, replay: { scene: { balls }, title } } = this, stroke = this.strokes[k], { cue } = stroke, over = t >= stroke.duration;
-    const event = !playing && stroke.events.findLast(one => one[0] === t && EVENTS[one[1]]), reds = this.shown.on.slice(1, 16).reduce((sum, on) => sum + on, 0);
-    const key = JSON.stringify([k, over, playing, speed, show, reds, event, this.view.ratio]);
-    if (key === this.said) return;
-    this.said = key;
-    this.icon(this.buttons.play, playing ? "pause" : "play");
-    this.buttons.play.setAttribute("aria-label", playing ? "pause" : "play");
-    this.pace.textContent = `${speed}×`;
-    for (const name in show) this.buttons[name].setAttribute("aria-pressed", ![false, "off"].includes(show[name]));
-    const about = [`${k + 1} of ${this.strokes.length}`, cue && `${cue.speed.toFixed(2)} m/s`, cue?.elevation > 0.1 && `raised ${round(cue.elevation * 360 / TURN)}°`];
-    this.about.textContent = about.filter(Boolean).join(" · ");
-    const [at, kind, i, j] = event || [];
-    this.words.textContent = event ? `${at.toFixed(3)} s: ${balls[i].name} ${EVENTS[kind]}${kind === BALL_BALL ? ` ${balls[j].name}` : ""}` : (over && stroke.words) || title || "";
-    this.drawTip(cue);
-    if (this.who.length) this.score(stroke, over, reds);
-  }
+	/** Draw and say everything anew. */
+	update() {
+		const sum = this.starts[this.k] + this.t;
+		this.shown = this.frame();
+		this.view.draw(this.shown);
+		this.done.style.width = this.thumb.style.left = `${100 * sum / this.total}%`;
+		this.bar.setAttribute("aria-valuenow", sum.toFixed(1));
+		this.say();
+		this.options.ontime?.(this.t, this.k);
+	}
 
-  /** The cue ball as the player sees it, and where the tip strikes it. */
-  drawTip(cue) {
-    const { tip, view } = this, size = (tip.width = tip.height = round(50 * view.ratio)), pen = tip.getContext("2d"), R = size * 0.46, c = size / 2;
-    tip.hidden = !cue;
-    if (!cue) return;
-    const [image, half] = view.sprite(this.replay.scene.balls[0].rgb, R);
-    pen.drawImage(image, c - half, c - half);
-    polyline(pen, [[c - R, c], [c + R, c]], 1, "#0006");
-    polyline(pen, [[c, c - R], [c, c + R]], 1, "#0006");
-    disc(pen, c + R * cue.side, c - R * cue.top, 0.17 * R, view.ink.bar_accent);
-  }
+	/** Words and buttons; they are left alone while they stay the same. */
+	say() {
+		const { k, playing, speed, show, t, replay: { scene: { balls }, title } } = this, stroke = this.strokes[k], { cue } = stroke, over = t >= stroke.duration;
+		const event = !playing && stroke.events.findLast(one => one[0] === t && EVENTS[one[1]]), reds = this.shown.on.slice(1, 16).filter(Boolean).length;
+		const key = JSON.stringify([k, over, playing, speed, show, reds, event, this.view.ratio]);
+		if (key === this.said) return;
+		this.said = key;
+		this.icon(this.buttons.play, playing ? "pause" : "play");
+		this.buttons.play.setAttribute("aria-label", playing ? "pause" : "play");
+		this.pace.textContent = `${speed}×`;
+		for (const name in show) this.buttons[name].setAttribute("aria-pressed", ![false, "off"].includes(show[name]));
+		const about = [`${k + 1} of ${this.strokes.length}`, cue && `${cue.speed.toFixed(2)} m/s`, cue?.elevation > 0.1 && `raised ${round(cue.elevation * 360 / TURN)}°`];
+		this.part("about").lastChild.textContent = about.filter(Boolean).join(" · ");
+		const [at, kind, i, j] = event || [];
+		this.part("words").textContent = event ? `${at.toFixed(3)} s: ${balls[i].name} ${EVENTS[kind]}${kind === BALL_BALL ? ` ${balls[j].name}` : ""}` : (over && stroke.words) || title || "";
+		this.drawTip(cue);
+		if (this.who.length) this.score(stroke, over, reds);
+	}
 
-  /** The score bar: as it was before the stroke until the balls rest. */
-  score(stroke, over, reds) {
-    const { strokes, replay: { scene: { balls } } } = this, upTo = over ? this.k : this.k - 1, seen = strokes[upTo], mine = stroke.player;
-    this.who.forEach((one, k) => {
-      one.lastChild.textContent = (seen ? seen.score[k] : stroke.score[k] - (k === mine ? stroke.points : stroke.penalty)) ?? 0;
-      one.classList.toggle("snk-turn", mine === k);
-    });
-    const pots = [], run = seen?.player === mine ? seen?.break : 0, now = this.root.querySelector(".snk-now");
-    for (let k = upTo; run > 0 && k >= 0 && strokes[k].player === mine && strokes[k].points > 0; k--) pots.unshift(...strokes[k].pots);
-    now.textContent = "";
-    const say = (what, dots, after = "") => {
-      const one = put(now, "span");
-      one.append(what);
-      for (const ball of dots) put(one, "i").style.background = css(balls[ball].rgb);
-      one.append(after);
-    };
-    say(`break ${run} `, pots);
-    if (stroke.n === 22) say(`reds ${reds}`, []);
-    const on = balls.findIndex(one => one.name === stroke.ball_on);
-    if (stroke.ball_on) say("on ", on < 0 ? [] : [on], ` ${stroke.ball_on}`);
-  }
+	/** The cue ball as the player sees it, and where the tip strikes it. */
+	drawTip(cue) {
+		const { tip, view } = this, size = (tip.width = tip.height = round(50 * view.ratio)), pen = tip.getContext("2d"), R = size * 0.46, c = size / 2;
+		tip.hidden = !cue;
+		if (!cue) return;
+		const [image, half] = view.sprite(this.replay.scene.balls[0].rgb, R);
+		pen.drawImage(image, c - half, c - half);
+		polyline(pen, [[c - R, c], [c + R, c]], 1, "#0006");
+		polyline(pen, [[c, c - R], [c, c + R]], 1, "#0006");
+		disc(pen, c + R * cue.side, c - R * cue.top, 0.17 * R, view.ink.bar_accent);
+	}
 
-  /** Stop, and leave the element as it was. */
-  destroy() {
-    this.playing = false;
-    cancelAnimationFrame(this.waiting);
-    this.watch.disconnect();
-    this.keys.removeEventListener("keydown", this.onkey);
-    this.root.remove();
-  }
+	/** The score bar: as it was before the stroke until the balls rest. */
+	score(stroke, over, reds) {
+		const { strokes, replay: { scene: { balls } } } = this, upTo = over ? this.k : this.k - 1, seen = strokes[upTo], mine = stroke.player;
+		this.who.forEach((one, k) => {
+			one.lastChild.textContent = (seen ? seen.score[k] : stroke.score[k] - (k === mine ? stroke.points : stroke.penalty)) ?? 0;
+			one.classList.toggle("sn-turn", mine === k);
+		});
+		const pots = [], run = seen?.player === mine ? seen?.break : 0, now = this.part("now");
+		for (let k = upTo; run > 0 && k >= 0 && strokes[k].player === mine && strokes[k].points > 0; k--) pots.unshift(...strokes[k].pots);
+		now.textContent = "";
+		const say = (what, dots, after = "") => {
+			const one = put(now, "span");
+			one.append(what);
+			for (const ball of dots) put(one, "i").style.background = css(balls[ball].rgb);
+			one.append(after);
+		};
+		say(`break ${run} `, pots);
+		if (stroke.n === 22) say(`reds ${reds}`, []);
+		const on = balls.findIndex(one => one.name === stroke.ball_on);
+		if (stroke.ball_on) say("on ", on < 0 ? [] : [on], ` ${stroke.ball_on}`);
+	}
+
+	/** Stop, and leave the element as it was. */
+	destroy() {
+		this.playing = false;
+		cancelAnimationFrame(this.waiting);
+		this.watch.disconnect();
+		this.keys.removeEventListener("keydown", this.onkey);
+		this.root.remove();
+	}
 }
 
 /** A player of a replay in an element. */
