@@ -375,7 +375,7 @@ export class TableView {
 			disc(pen, px, py, radius);
 			pen.globalAlpha = 1;
 		}
-		const depth = i => frame.depth?.[i] ?? 1 - frame.on[i], here = Object.keys(frame.x).map(Number).filter(i => depth(i) < 1).sort((a, b) => depth(b) - depth(a));
+		const depth = i => frame.depth?.[i] ?? 1 - frame.on[i], here = [...frame.x.keys()].filter(i => depth(i) < 1).sort((a, b) => depth(b) - depth(a));
 		for (const i of here) if (!depth(i)) { // shadows fall away from the lamps
 			const x = frame.x[i], y = frame.y[i], [px, py] = this.pixel(x, y);
 			this.stamp(null, px + radius * y / (y1 - y0) / 2, py + radius * (0.14 + x / (x1 - x0) / 2), radius);
@@ -394,14 +394,14 @@ export class TableView {
 
 	/** A ball on its way into the pocket at hand: darker, smaller, towards the middle of the hole. */
 	falling(x, y, depth, rgb) {
-		const far = ([u, v]) => hypot(u - x, v - y), fall = this.scene.falls.reduce((a, b) => (far(b) < far(a) ? b : a), [x, y]);
+		const [u, v] = this.scene.falls.find(fall => hypot(fall[0] - x, fall[1] - y) < 0.2) ?? [x, y];
 		this.pen.globalAlpha = 1 - depth;
-		this.stamp(rgb, ...this.pixel(x + (fall[0] - x) * depth / 2, y + (fall[1] - y) * depth / 2), this.R * this.scale, 1 - 0.3 * depth);
+		this.stamp(rgb, ...this.pixel(x + (u - x) * depth / 2, y + (v - y) * depth / 2), this.R * this.scale, 1 - 0.3 * depth);
 		this.pen.globalAlpha = 1;
 	}
 
 	ball(frame, i, radius) {
-		const { pen } = this, x = frame.x[i], y = frame.y[i], at = this.pixel(x, y), { rgb, letter } = this.scene.balls[i], turn = frame.turns?.[i];
+		const { pen } = this, x = frame.x[i], y = frame.y[i], at = this.pixel(x, y), { rgb, letter: name } = this.scene.balls[i], letter = name.toUpperCase(), turn = frame.turns?.[i];
 		const pale = 0.3 * rgb[0] + 0.59 * rgb[1] + 0.11 * rgb[2] > 110, [ink, edge] = pale ? [BLACK, WHITE] : [WHITE, BLACK];
 		this.stamp(rgb, ...at, radius);
 		if (turn) this.spots(turn, i ? css(ink, 0.32) : this.ink.bar_accent, ...at, radius);
@@ -414,9 +414,9 @@ export class TableView {
 		pen.lineJoin = "round";
 		pen.lineWidth = 0.3 * radius;
 		pen.strokeStyle = css(edge, 0.75);
-		pen.strokeText(letter.toUpperCase(), ...at);
+		pen.strokeText(letter, ...at);
 		pen.fillStyle = css(ink);
-		pen.fillText(letter.toUpperCase(), ...at);
+		pen.fillText(letter, ...at);
 	}
 
 	/** A line through points, or a `path` in metres, at least 3 pixels wide, with a dark edge. */
@@ -680,9 +680,8 @@ export class Player {
 			frame.rings = stroke.met.filter(ring => ring.at < t);
 		}
 		if (stroke.cue && t < 0.35) { // drawn back, through the ball, away
-			const { speed, aim, elevation } = stroke.cue, u = 1 + t / LEAD, back = 0.06 + 0.02 * min(5, speed);
-			const pull = t >= 0 ? -min(0.16, 0.4 * t * speed) : back * (u < 0.75 ? (1.2 - cos(PI * u / 0.75)) / 2.2 : 1 - (4 * u - 3) ** 2);
-			frame.cue = { x: stroke.first[0], y: stroke.first[1], aim, elevation, pull, alpha: t > 0 ? 1 - t / 0.35 : min(1, 4 * u) };
+			const { speed, aim, elevation } = stroke.cue, pull = t < 0 ? (0.06 + 0.02 * min(5, speed)) * sin(PI * (-t / LEAD) ** 0.6) : -min(0.16, 0.4 * t * speed);
+			frame.cue = { x: stroke.first[0], y: stroke.first[1], aim, elevation, pull, alpha: min(1, t < 0 ? 4 + 4 * t / LEAD : 1 - t / 0.35) };
 		}
 		return frame;
 	}
@@ -714,8 +713,8 @@ export class Player {
 		for (const name in show) this.buttons[name].setAttribute("aria-pressed", ![false, "off"].includes(show[name]));
 		const about = [`${k + 1} of ${this.strokes.length}`, cue && `${cue.speed.toFixed(2)} m/s`, cue?.elevation > 0.1 && `raised ${round(cue.elevation * 360 / TURN)}°`];
 		this.part("about").lastChild.textContent = about.filter(Boolean).join(" · ");
-		const [at, kind, i, j] = event || [];
-		this.part("words").textContent = event ? `${at.toFixed(3)} s: ${balls[i].name} ${EVENTS[kind]}${kind === BALL_BALL ? ` ${balls[j].name}` : ""}` : (over && stroke.words) || title || "";
+		const told = event && `${t.toFixed(3)} s: ${balls[event[2]].name} ${EVENTS[event[1]]} ${event[1] === BALL_BALL ? balls[event[3]].name : ""}`;
+		this.part("words").textContent = told || (over && stroke.words) || title || "";
 		this.drawTip(cue);
 		if (this.who.length) this.score(stroke, over, reds);
 	}
