@@ -10,6 +10,7 @@ Public are the names in ``__all__`` of this package and of these modules of it; 
 * ``snooker_env.checks``: bad input reported as the package does
 * ``snooker_env.render``: the scene of a table, and its pictures
 * ``snooker_env.tasks.saved_models``: what a model's file says of itself, read as plain data
+* ``snooker_env.replays``: what was played, as a page, as data and as a film
 * ``snooker_env.sb3``: many tables for Stable-Baselines3
 """
 
@@ -33,19 +34,20 @@ if _typing.TYPE_CHECKING:
     from .envs.snooker import SnookerEnv
     from .envs.vector import SnookerVectorEnv
     from .planning import Planner, Position, Positions
+    from .replays import RecordReplay, Replay, replay
     from .tasks.options import Options
 
 __version__ = "0.3.0.dev0"
 
 __all__ = [
-    "POCKETS", "EventKind", "Options", "Physics", "Planner", "Pocket", "Position", "Positions", "Shot", "ShotBatch", "SimulationError",
-    "SnookerEnv", "SnookerVectorEnv", "Table", "collide_balls", "collide_cushion", "match_env", "planning", "simulate", "simulate_batch",
-    "strike", "warmup",
+    "POCKETS", "EventKind", "Options", "Physics", "Planner", "Pocket", "Position", "Positions", "RecordReplay", "Replay", "Shot",
+    "ShotBatch", "SimulationError", "SnookerEnv", "SnookerVectorEnv", "Table", "collide_balls", "collide_cushion", "match_env", "planning",
+    "replay", "simulate", "simulate_batch", "strike", "warmup",
 ]  # fmt: skip
 
 _LATER = {
     "Options": "tasks.options", "SnookerEnv": "envs.snooker", "SnookerVectorEnv": "envs.vector", "Planner": "planning",
-    "Position": "planning", "Positions": "planning",
+    "Position": "planning", "Positions": "planning", "RecordReplay": "replays", "Replay": "replays", "replay": "replays",
 }  # fmt: skip
 """Where the names are that are imported only when they are asked for: shots alone need no environment."""
 

@@ -75,9 +75,10 @@ class SnookerVecEnv(VecEnv):
             self.seed(seed)
 
     def reset(self) -> Observation:
-        """New visits on all tables, with the seeds and options set before: ``set_options([{"state": ...}, ...])`` starts from states.
+        """New visits on all tables, with the seeds and options set before: ``set_options([{"state": ...}, ...])`` starts from states,
+        ``set_options([{"position": ...}, ...])`` from positions.
 
-        These hold their random numbers; with ``seed`` called too, those of the seeds take their place.
+        States hold their random numbers; with ``seed`` called too, those of the seeds take their place.
 
         Returns
         -------
@@ -85,10 +86,12 @@ class SnookerVecEnv(VecEnv):
         """
         options = None
         if any(self._options):
+            key = "position" if "position" in self._options[0] else "state"
             for k, own in enumerate(self._options):
-                if set(own) != {"state"}:
-                    raise refuse(f"keys of options[{k}]", list(own), 'must be "state" alone, for each table, or nothing for all')
-            options = {"states": [own["state"] for own in self._options]}
+                if set(own) != {key}:
+                    wanted = '"state" alone or "position" alone, the same for each table, or nothing for all'
+                    raise refuse(f"keys of options[{k}]", list(own), f"must be {wanted}")
+            options = {f"{key}s": [own[key] for own in self._options]}
         observation, info = self.tables.reset(seed=self._seeds, options=options)
         self.reset_infos = [{key: info[key][k] for key in self.info_keys} for k in range(self.num_envs)]
         self._reset_seeds()

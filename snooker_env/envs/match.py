@@ -1,6 +1,7 @@
 """How do two agents play a frame against each other? PettingZoo's AEC interface around one table of ``tasks.frame``."""
 
 import copy
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
@@ -19,14 +20,15 @@ from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.options import Options, options_of
 from ..tasks.rewards import frame_reward
-from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import I_FOULS, I_PENALTY, I_POINTS, Crew
-from .pictures import FPS, MODES, Picture, Pictures
+from .pictures import FPS, MODES, SIZE, Picture, Pictures
+from .record import HasHistory, Record
+from .reset_options import Start, start_of
 
 PLAYERS = ("player_0", "player_1")
 
 
-class MatchEnv(AECEnv[str, Any, Any]):
+class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
     """A frame of snooker between two players, one stroke a step.
 
     ## Turns
@@ -67,6 +69,9 @@ class MatchEnv(AECEnv[str, Any, Any]):
     holds the random numbers too, so that playing on from it again repeats the errors of ``noise``. With a seed, ``reset(seed=...,
     options={"state": ...})``, table and frame are those of the state and the random numbers those of the seed. From a state of a frame that
     has ended both players are terminated, or truncated, at once.
+
+    ``reset(options={"position": position})`` begins a frame with a ``snooker_env.Position``, checked on this environment's table: player_0
+    is to play it, a break of its points so far, both scores 0. The random numbers are those of the seed, or go on.
     """
 
     metadata: dict[str, Any] = {"name": "snooker_match_v0", "render_modes": list(MODES), "is_parallelizable": False, "render_fps": FPS}  # noqa: RUF012
@@ -83,10 +88,10 @@ class MatchEnv(AECEnv[str, Any, Any]):
     truncations: dict[str, bool]
     infos: dict[str, dict[str, Any]]
     np_random: np.random.Generator
-    last_shot: Shot | None
-    """The ``Shot`` of the last turn, with its path when a render mode is set; None where none was played."""
 
-    def __init__(self, options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any):
+    def __init__(
+        self, options: Options | None = None, *, render_mode: RenderMode | None = None, render_size: Sequence[int] = SIZE, **given: Any
+    ):
         super().__init__()
         if options is None:
             box = given.get("action", "box") == "box"
@@ -105,9 +110,9 @@ class MatchEnv(AECEnv[str, Any, Any]):
         self.action_spaces = {name: copy.deepcopy(self.options.rules.actions.space) for name in PLAYERS}  # each with its own generator
         self.np_random, _ = seeding.np_random()
         self._seeded = False
-        self._buffers, self._last = ShotBuffers(1, path=render_mode is not None), None
-        self.last_shot = None
-        self._pictures = Pictures(self.options.rules.table, render_mode)
+        self._record, self._last = Record(full=render_mode is not None), None
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size, ("Player 1", "Player 2"))
+        self._pictures.require_display()
 
     @property
     def positions(self) -> Floats:
@@ -123,6 +128,11 @@ class MatchEnv(AECEnv[str, Any, Any]):
     def frame(self) -> Frame:
         """The ``snooker_env.game.frame.Frame`` that is played."""
         return self.tables.frame(0)
+
+    @property
+    def last_shot(self) -> Shot | None:
+        """The ``Shot`` of the last turn, with its path where a history is kept; None where none was played."""
+        return self._record.last_shot if self._last is not None else None
 
     @property
     def strokes(self) -> int:
@@ -202,7 +212,8 @@ class MatchEnv(AECEnv[str, Any, Any]):
         seed : int, optional
             Of all random numbers to come; None: they go on.
         options : dict, optional
-            {"state": a state of ``get_state``} starts from there. Other keys are not read: PettingZoo's own test gives some.
+            {"state": a state of ``get_state``} or {"position": a ``snooker_env.Position``, or its ``to_dict()``} starts from there. Other
+            keys are not read: PettingZoo's own test gives some.
 
         Returns
         -------
@@ -211,29 +222,28 @@ class MatchEnv(AECEnv[str, Any, Any]):
         Raises
         ------
         ValueError
-            For a state that is not sound.
+            For a state or position that is not sound.
         """
         if options is not None and not isinstance(options, dict):
-            raise refuse("options", options, 'must be None or {"state": ...}')
-        given = None
-        if options and "state" in options:
-            given = self.tables.checked(options["state"], self.np_random, either=True)
+            raise refuse("options", options, 'must be None or a dict, of which "state" or "position" is read')
+        start = start_of(options or {}, self.tables, lambda state: self.tables.checked(state, self.np_random, either=True))
         if seed is not None:
             self.np_random, _ = seeding.np_random(seed)
-        if given is not None:
-            self._take(given, seeded=seed is not None)
-        else:
-            if seed is not None or not self._seeded:
-                self.tables.seed(0, self.np_random)
-                self._seeded = True
+        if start is not None:
+            self._take(start, seeded=seed is not None)
+        if seed is not None or not self._seeded:
+            self.tables.seed(0, self.np_random)
+            self._seeded = True
+        if start is None:
             self.tables.deal(np.zeros(1, np.int64), drawn=True)
-            self._begin()
+        self._begin()
         if self.render_mode == "human":
-            self._show(film=False)
+            self._show()
 
     def _begin(self):
         """PettingZoo's book-keeping for a table as it is."""
-        self._last = self.last_shot = None
+        self._last = None
+        self._record.begin_episode()
         self.agents = list(PLAYERS)
         self.rewards = dict.fromkeys(PLAYERS, 0.0)
         self._cumulative_rewards = dict.fromkeys(PLAYERS, 0.0)
@@ -275,21 +285,20 @@ class MatchEnv(AECEnv[str, Any, Any]):
         a = self.options.rules.actions.check(action)
         before = self.tables.lead()[0]
         out = self.tables.output()
-        crew = Crew(self._buffers, (), self._watch)
+        crew = Crew(self._record.buffers, (), self._watch)
+        self._record.begin_step()
         played = self.tables.turn(lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers), out, crew)[0]
         self._last = out if played else None
-        if not played:
-            self.last_shot = None
         self._cumulative_rewards[name] = 0.0
         gained, winner = int(self.tables.lead()[0] - before), self.frame.winner
         self.rewards = {player: frame_reward(self.options.reward, gained, winner, k) for k, player in enumerate(PLAYERS)}
         self._account()
         self._accumulate_rewards()
         if self.render_mode == "human":
-            self._show(film=bool(played))
+            self._show(played=bool(played))
 
     def _watch(self, k, buffers, j, own):
-        self.last_shot = buffers.shot(j, self.options.rules)
+        self._record.saw(self.tables, k, buffers, j, own)
 
     def _info(self, frame, player):
         last, row = self._last, self.tables.game[0]
@@ -332,16 +341,14 @@ class MatchEnv(AECEnv[str, Any, Any]):
         ValueError
             If it is not sound; then nothing has changed.
         """
-        self._take(self.tables.checked(state, self.np_random, either=True), seeded=False)
-
-    def _take(self, sound, *, seeded):
-        self.tables.set_state(0, sound)
-        if seeded:
-            self.tables.seed(0, self.np_random)
-        else:
-            self.np_random.bit_generator.state = sound.rng
-        self._seeded = True
+        self._take(Start(state=self.tables.checked(state, self.np_random, either=True)), seeded=False)
         self._begin()
+
+    def _take(self, start, *, seeded):
+        rng = start.take(self.tables, 0)
+        if rng is not None and not seeded:
+            self.np_random.bit_generator.state = rng
+            self._seeded = True
 
     def render(self) -> Picture:
         """The table with the cue ball's last path.
@@ -351,10 +358,10 @@ class MatchEnv(AECEnv[str, Any, Any]):
         uint8 (H, W, 3), str or None
             By the render mode: "rgb_array", "ansi", another.
         """
-        return self._pictures.render(self.tables.positions[0], self.tables.on_table[0], self.last_shot, self.tables.text(0))
+        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent)
 
-    def _show(self, *, film):
-        self._pictures.show(self.tables.positions[0], self.tables.on_table[0], self.last_shot, self.tables.text(0), film=film)
+    def _show(self, *, played=False):
+        self._pictures.show(self.tables, self._record.strokes, played=played)
 
     def close(self) -> None:
         """Close the window, if there is one."""

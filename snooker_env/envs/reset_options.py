@@ -1,11 +1,20 @@
-"""Which tables does a reset begin anew, and with which seeds? The arguments of the vector environment's ``reset``, checked."""
+"""Which tables does a reset begin anew, from where, and with which seeds? The arguments of every environment's ``reset``, checked."""
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from .._check import refuse, refuse_what
-from .._types import Bools
+from .._check import choice, refuse, refuse_what
+from .._types import Bools, Floats, Ints
+from ..game.balls import mask_of_present
+from ..game.frame import MOST_BREAK, points_available
+from ..game.frame_columns import BALL_ON, POINTS
+from ..tasks.tables import Tables
+
+ONE, MANY = ("state", "position"), ("reset_mask", "state", "states", "position", "positions")
+"""What the options of one table's reset and of many tables' may say."""
 
 
 def seeds_of(seed: Any, n: int) -> list[int | None]:
@@ -29,14 +38,97 @@ def mask_of(options: dict[str, Any], n: int) -> Bools:
     return mask.copy()
 
 
-def states_of(options: dict[str, Any], n: int) -> tuple[list[Any] | tuple[Any, ...], int] | None:
-    """The states to start n tables from, not checked yet, and for how many tables each is; None without any."""
+@dataclass(frozen=True)
+class Start:
+    """From where an episode begins that is not dealt: a sound state of a table, or else the arrays of a sound position."""
+
+    state: Any = None
+    """``states.State`` or ``states.FrameState``."""
+    arrays: tuple[Floats, Bools, Ints] | None = None
+    """``planning.Position.arrays``."""
+
+    def take(self, tables: Tables, k: int) -> dict[str, Any] | None:
+        """Take over on table k; returns the state of a numpy generator if one came with it, as with every state and no position."""
+        if self.arrays is not None:
+            tables.set_position(k, *self.arrays)
+            return None
+        tables.set_state(k, self.state)
+        return self.state.rng
+
+
+Check = Callable[[Any], Any]
+"""What makes a sound state of a dict, or raises ValueError: ``tasks.tables.Tables.checked``."""
+
+
+def given_of(options: Any, known: tuple[str, ...]) -> dict[str, Any]:
+    """The options of a reset as a dict; ValueError unless each is ``known`` and at most one of them says where to start."""
+    if options is None:
+        return {}
+    if not isinstance(options, dict):
+        raise refuse("options", options, "must be None or a dict with " + " or ".join(map(repr, known)))
+    for key in options:
+        choice("options", key, known)
+    _one_start(options)
+    return options
+
+
+def _one_start(options):
+    starts = [key for key in MANY[1:] if key in options]
+    if len(starts) > 1:
+        raise refuse("keys of options", starts, "must be one of them: each says where to start")
+
+
+def start_of(options: dict[str, Any], tables: Tables, check: Check) -> Start | None:
+    """Where one table starts, checked; None to deal it."""
+    _one_start(options)
     if "state" in options:
-        return [options["state"]], n
-    if "states" not in options:
-        return None
-    states = options["states"]
-    if not isinstance(states, list | tuple) or len(states) != n:
-        found = f"{type(states).__name__} of {len(states)}" if isinstance(states, list | tuple) else type(states).__name__
-        raise refuse_what('options["states"]', found, f"must be a list of {n} states")
-    return states, 1
+        return Start(state=check(options["state"]))
+    if "position" in options:
+        return Start(arrays=_position('options["position"]', options["position"], tables))
+    return None
+
+
+def starts_of(options: dict[str, Any], n: int, tables: Tables, check: Check) -> list[Start] | None:
+    """Where each of n tables starts, checked; None to deal them."""
+    one = start_of(options, tables, check)
+    if one is not None:
+        return [one] * n
+    if "states" in options:
+        return [Start(state=check(state)) for state in _list_of("states", options, n)]
+    if "positions" in options:
+        positions = enumerate(_list_of("positions", options, n))
+        return [Start(arrays=_position(f'options["positions"][{k}]', position, tables)) for k, position in positions]
+    return None
+
+
+def _list_of(key, options, n):
+    given = options[key]
+    if not isinstance(given, list | tuple) or len(given) != n:
+        found = f"{type(given).__name__} of {len(given)}" if isinstance(given, list | tuple) else type(given).__name__
+        raise refuse_what(f'options["{key}"]', found, f"must be a list of {n} {key}")
+    return given
+
+
+def _position(field, given, tables):
+    """The arrays of a ``Position``, or of what its ``to_dict`` gives, checked on the table that is played on; ``field``: its name."""
+    from ..planning import Position
+
+    if isinstance(given, Position):
+        given = given.to_dict()
+    if not isinstance(given, Mapping):
+        raise refuse(field, given, "must be a snooker_env.Position, or a dict as its to_dict() gives")
+    names = list(Position.__dataclass_fields__)
+    names.remove("table")
+    for name in given:
+        choice(f"keys of {field}", name, names)
+    if given.get("over", False) is True:
+        raise refuse(f"{field}.over", True, "must be False: the visit has ended, there is no stroke to play")
+    try:
+        arrays = Position(**given, table=tables.rules.table).arrays()
+    except ValueError as error:
+        raise ValueError(f"{field}.{error}") from None
+    _, on_table, game = arrays
+    more = points_available(mask_of_present(on_table), int(game[BALL_ON]))
+    if game[POINTS] + more > MOST_BREAK:
+        raise refuse(f"{field}.points", int(game[POINTS]), f"must be at most {MOST_BREAK - more}: the balls on the table offer {more} more")
+    return arrays

@@ -1,5 +1,6 @@
 """What is ``Snooker-v0``? The Gymnasium environment: composes action, noise, strike, engine, referee, observation and reward."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
@@ -12,22 +13,20 @@ from ..game.frame import Frame
 from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..simulation import Shot
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
+from ..tasks.kinds import TABLES
 from ..tasks.noise import Noise
 from ..tasks.options import Options, options_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, Tables
-from ..tasks.visit import Visits
-from .pictures import FPS, MODES, Picture, Pictures
-
-TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames}
-"""Who plays each task."""
+from .pictures import FPS, MODES, SIZE, Picture, Pictures
+from .record import HasHistory, Record
+from .reset_options import ONE, Start, given_of, start_of
 
 
-class SnookerEnv(gymnasium.Env[Any, Any]):
+class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
     """Snooker shot selection: one step is one whole shot.
 
     ## Description
@@ -102,7 +101,8 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
     | table | "match" | or "tight", or a ``Table`` of your own whose noses are where theirs are |
     | fidelity | "standard" | "fast", "reference", "euler:N" |
     | options | None | an ``Options`` that holds all of the above, in place of them |
-    | render_mode | None | "human", "rgb_array", "ansi" |
+    | render_mode | None | "human", "rgb_array", "ansi": see Pictures and films |
+    | render_size | (1920, 1080) | width and height of pictures [pixels] |
 
     ## Info
     Always the same keys: ``points``, ``break``, ``seconds`` (float; the shot's duration), ``foul`` (bool), ``penalty``, ``pots``,
@@ -117,10 +117,19 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
     ``reset(seed=..., options={"state": state})``, table and game are those of the state and the random numbers those of the seed: other
     seeds, other errors. A state that is not sound is refused, with nothing changed.
 
+    ``reset(options={"position": position})`` starts from a ``snooker_env.Position``, checked on this environment's table: balls, what is
+    on, in hand and points are the position's; the random numbers are the seed's, or go on. In a frame the agent is to play it: a break of
+    its points so far, both scores 0.
+
+    ## Pictures and films
+    ``render()`` gives the table with the paths of the last stroke and a score bar. ``RecordVideo`` and ``vector.RecordVideo`` of Gymnasium
+    and ``VecVideoRecorder`` of Stable-Baselines3, in the same process, get the motion of every stroke of a step at ``render_fps`` (30 a
+    second, in real time): ``render()`` knows when a recorder asks. They keep all pictures in memory, 6 MB each at the usual size:
+    ``render_size=(960, 540)`` takes a quarter, ``sn.RecordReplay`` none. "human" raises RuntimeError where there is no display.
+
     ## Version history
     v0: first version. Results of package versions 0.1 and 0.2 do not compare: the pockets, the cushions of "match" and the levels of noise
     moved (CHANGELOG.md).
-
     ## References
     S. Mathavan, M. R. Jackson, R. M. Parkin: Numerical simulations of the frictional collisions of solid balls on a rough surface, Sports
     Engineering 17 (2014); A theoretical analysis of billiard ball dynamics under cushion impacts, Proc. IMechE C 224 (2010). Rules: WPBSA,
@@ -129,7 +138,9 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
 
     metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012 - Gymnasium's own convention
 
-    def __init__(self, options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any):
+    def __init__(
+        self, options: Options | None = None, *, render_mode: RenderMode | None = None, render_size: Sequence[int] = SIZE, **given: Any
+    ):
         self.options: Options = options_of(options, given)
         self.tables: Tables = TABLES[self.options.task](self.options.rules, 1)
         """The one table: ``tasks.tables.Tables``."""
@@ -138,10 +149,10 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
-        self._pictures = Pictures(self.options.rules.table, render_mode)
-        self._buffers, self._seeded = ShotBuffers(1, path=render_mode is not None), False
-        self.last_shot: Shot | None = None
-        """The ``Shot`` that the agent played last; with a render mode that of either player, with its path. None before the first."""
+        names = (("Agent",), ("Agent", "Opponent"))[self.options.task == "frame"]
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
+        self._pictures.require_display()
+        self._record, self._seeded = Record(full=render_mode is not None), False
 
     # the state of the table ------------------------------------------------------------------------------------------------
 
@@ -239,16 +250,14 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         ValueError
             If it is not sound; then nothing has changed.
         """
-        self._take(self.tables.checked(state, self.np_random), seed=None)
+        self._take(Start(state=self.tables.checked(state, self.np_random)), seed=None)
 
-    def _take(self, sound: Any, *, seed: int | None) -> None:
-        """Take over a sound state; with a seed the random numbers are not the state's but those of ``np_random``."""
-        if seed is None:
-            self.np_random.bit_generator.state, self._np_random_seed = sound.rng, -1  # Gymnasium's number for "not from a seed"
-        self.tables.set_state(0, sound)
-        if seed is not None:
-            self.tables.seed(0, self.np_random)
-        self._seeded = True
+    def _take(self, start: Start, *, seed: int | None) -> None:
+        """Begin from there; the random numbers that come with a state are taken over unless there is a seed."""
+        rng = start.take(self.tables, 0)
+        if rng is not None and seed is None:
+            self.np_random.bit_generator.state, self._np_random_seed = rng, -1  # Gymnasium's number for "not from a seed"
+            self._seeded = True
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
@@ -260,7 +269,8 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         seed : int, optional
             Of all random numbers to come; None: they go on.
         options : dict, optional
-            {"state": a state of ``get_state``} starts from there; with a seed too, see States.
+            {"state": a state of ``get_state``} or {"position": a ``snooker_env.Position``, or its ``to_dict()``} starts from there; see
+            States.
 
         Returns
         -------
@@ -272,7 +282,7 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         Raises
         ------
         ValueError
-            For other options, or a state that is not sound or has no shot left.
+            For other options, or a state or position that is not sound here or has no shot left.
 
         Examples
         --------
@@ -281,20 +291,17 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         >>> observation.shape, info["points"]
         ((121,), 0.0)
         """
-        if options is not None and not isinstance(options, dict):
-            raise refuse("options", options, 'must be None or {"state": ...}')
-        for key in options or {}:
-            choice("options", key, ("state",))
-        sound = self.tables.checked(options["state"], self.np_random, to_play=True) if options else None
+        check = lambda state: self.tables.checked(state, self.np_random, to_play=True)  # noqa: E731
+        start = start_of(given_of(options, ONE), self.tables, check)
         super().reset(seed=seed)
-        if sound is not None:
-            self._take(sound, seed=seed)
-        elif seed is not None or not self._seeded:
+        if start is not None:
+            self._take(start, seed=seed)
+        if seed is not None or not self._seeded:
             self.tables.seed(0, self.np_random)
             self._seeded = True
-        self.last_shot = None
+        self._record.begin_episode()
         out = self.tables.output()
-        self.tables.reset(np.array([sound is None]), out, self._crew())
+        self.tables.reset(np.array([start is None]), out, self._crew())
         if self.render_mode == "human":
             self._show()
         return observations.shaped(self.options.observation, out.observations[0]), self.tables.info(out, 0)
@@ -341,6 +348,7 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         if tables.ended()[0]:
             raise gymnasium.error.ResetNeeded(f"the {self.options.task} is over: call reset() before step()")
         out = tables.output()
+        self._record.begin_step()
         try:
             tables.step(np.array([a]), np.zeros(1, np.bool_), out, self._crew())
         except BaseException:
@@ -366,28 +374,27 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         return self.tables.action_masks()[0]
 
     def _crew(self) -> Crew:
-        return Crew(self._buffers, (self.np_random,), self._watch)
+        return Crew(self._record.buffers, (self.np_random,), self._watch)
 
     def _watch(self, k: int, buffers: ShotBuffers, j: int, own: bool) -> None:
-        """Called after each stroke of either player: all are shown, else the agent's own is kept."""
-        if own or self.render_mode is not None:
-            self.last_shot = buffers.shot(j, self.options.rules)
+        """Called after each stroke of either player."""
+        self._record.saw(self.tables, k, buffers, j, own)
         if self.render_mode == "human":
-            self._show(film=True)
+            self._show(played=True)
 
     def render(self) -> Picture:
-        """The table with the cue ball's last path.
+        """The table with the paths of the last shot; to a recorder the motion of the strokes, see Pictures and films.
 
         Returns
         -------
         uint8 (H, W, 3), str or None
             By the render mode: "rgb_array", "ansi", another.
         """
-        return self._pictures.render(self.positions, self.on_table, self.last_shot, self.tables.text(0))
+        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent)
 
     def close(self) -> None:
         """Close the window, if there is one."""
         self._pictures.close()
 
-    def _show(self, *, film: bool = False) -> None:
-        self._pictures.show(self.positions, self.on_table, self.last_shot, self.tables.text(0), film=film)
+    def _show(self, *, played: bool = False) -> None:
+        self._pictures.show(self.tables, self._record.strokes, played=played)

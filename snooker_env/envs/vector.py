@@ -4,7 +4,7 @@ gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry
 """
 
 import copy
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import Any, Literal
 
 import gymnasium
@@ -17,28 +17,24 @@ from .._check import choice, integer, refuse
 from .._types import Bools, Floats, Observation
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
+from ..tasks.kinds import TABLES
 from ..tasks.options import NEVER, Options, options_of
 from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
 from .given_arrays import OUTPUTS, arrays_given
-from .pictures import Picture, Pictures
-from .reset_options import mask_of, seeds_of, states_of
-from .snooker import TABLES, SnookerEnv
+from .pictures import SIZE, Picture, Pictures
+from .record import Recent
+from .reset_options import MANY, Start, given_of, mask_of, seeds_of, starts_of
+from .snooker import SnookerEnv
+from .table_calls import check_name
 
 PICTURES = ("rgb_array", "ansi")
-NOT_OF_A_TABLE = {
-    "reset": 'reset(options={"reset_mask": ...})', "step": "step", "set_state": 'reset(options={"states": ...})', "render": "render",
-    "close": "close", "last_shot": "simulate_batch, or SnookerEnv for one table", "spec": "the attribute spec",
-    "unwrapped": "this environment", "get_wrapper_attr": "call", "set_wrapper_attr": "another environment",
-}  # fmt: skip
-"""What ``call`` does not do for single tables, and what there is instead: the tables play, end and begin together."""
 
 
 class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
-    Pictures show the balls as they lie, without paths; a window ("human") shows one environment only.
-
+    Pictures show the paths of the last shots; a window ("human") shows one environment only.
     In a frame the opponents "random" and "ghost_ball" play as kernels. A callable is asked in Python, table by table; one that has a method
     ``many(observations, generators, masks) -> actions`` is called once for all tables that wait for it, and so is a saved model (whose
     arithmetic on many rows may differ in the last bits from that on one).
@@ -46,6 +42,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     ``reset(seed=...)`` takes an int, a list or None as ``SyncVectorEnv`` does; options: "reset_mask" (bool array: only those tables),
     "state" (of ``SnookerEnv.get_state``, for all of them) or "states" (of ``get_state``: a list of one each). A state holds its random
     numbers, so that all tables given one state meet the same errors of ``noise``; with a seed too, table k draws them from seed + k.
+    In place of states "position" or "positions" (``snooker_env.Position``), which hold none: each table draws its own.
 
     ``reset`` and ``step`` write into arrays that they are given: ``out={"observations": ..., "rewards": ..., "terminations": ...,
     "truncations": ...}``, any of them, of the right shape and dtype, C-contiguous (shared memory, for instance); these are returned.
@@ -63,6 +60,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         NEXT_STEP, SAME_STEP or DISABLED.
     threads : int, optional
         How many to use; None: one for each core. Results do not depend on it.
+    render_size : (int, int)
+        Width and height of a table's picture [pixels].
     **given
         The keywords of ``Options``, in place of ``options``.
 
@@ -92,7 +91,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     def __init__(
         self, num_envs: int = 1, options: Options | None = None, *, max_episode_steps: int | None = None,
         render_mode: Literal["rgb_array", "ansi"] | None = None, autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
-        threads: int | None = None, **given: Any,
+        threads: int | None = None, render_size: Sequence[int] = SIZE, **given: Any,
     ):  # fmt: skip
         self.num_envs = integer("num_envs", num_envs, 1, 2**24)
         threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
@@ -103,19 +102,20 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self.options = options_of(options, given)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode = render_mode
-        self._one = SnookerEnv(self.options, render_mode=render_mode)
+        self._one = SnookerEnv(self.options, render_mode=render_mode, render_size=render_size)
         self.single_action_space: Any = self._one.action_space
         self.single_observation_space: Any = self._one.observation_space
         self.action_space: Any = batch_space(self.single_action_space, self.num_envs)
         self.observation_space: Any = batch_space(self.single_observation_space, self.num_envs)
         self.tables = TABLES[self.options.task](self.options.rules, self.num_envs, limit=limit)
-        self._pictures = Pictures(self.options.rules.table, render_mode)
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size)
         self._generators: list[Any] = [None] * self.num_envs
         self._generator_seeds = [-1] * self.num_envs
         self._keyed = np.zeros(self.num_envs, np.bool_)  # has the table's stream a key?
         self._begun = np.zeros(self.num_envs, np.bool_)
         self._done = np.zeros(self.num_envs, np.bool_)
-        self._crew = Threads(threads)
+        self._recent = Recent(self.tables)
+        self._crew = Threads(threads, watch=None if render_mode is None else self._recent.saw)
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
@@ -129,7 +129,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         seed : int, list or None
             Table k draws from seed + k, or from the k-th of the list; None: the random numbers go on.
         options : dict, optional
-            "reset_mask", "state" or "states", see above.
+            "reset_mask"; "state", "states", "position" or "positions": see above.
         out : dict of arrays, optional
             {"observations": where to write them}.
 
@@ -141,17 +141,14 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         Raises
         ------
         ValueError
-            For other options, and states that are not sound.
+            For other options, and states and positions that are not sound.
         gymnasium.error.ResetNeeded
             If a table that is not reset has never been.
         """
-        options = {} if options is None else options
-        if not isinstance(options, dict):
-            raise refuse("options", options, "must be None or a dict")
-        for key in options:
-            choice("options", key, ("reset_mask", "state", "states"))
+        options = given_of(options, MANY)
         seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
-        states = self._states(options)
+        check = lambda state: self.tables.checked(state, self.np_random[0], to_play=True)  # noqa: E731
+        starts = starts_of(options, self.num_envs, self.tables, check)
         if not (wanted | self._begun).all():
             raise gymnasium.error.ResetNeeded(f"table {int(np.argmin(wanted | self._begun))} has no visit yet: reset all tables first")
         given = self._given(out, ("observations",))
@@ -160,14 +157,14 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         for k, own in made.items():
             self._generators[k], self._generator_seeds[k] = own
         for k in tables:
-            if states is not None:
-                self._set_state(k, states[k], seeded=seeds[k] is not None)
+            if starts is not None:
+                self._take(k, starts[k], seeded=seeds[k] is not None)
             if seeds[k] is not None or not self._keyed[k]:
                 self.tables.seed(k, self._generators[k])
                 self._keyed[k] = True
-        fresh = wanted if states is None else np.zeros(self.num_envs, np.bool_)
+        fresh = wanted if starts is None else np.zeros(self.num_envs, np.bool_)
         written = self.tables.output(given=given)
-        self._crew.generators = self._generators
+        self._prepare_crew()
         try:
             self.tables.reset(fresh, written, self._crew)
         except BaseException:
@@ -216,7 +213,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         same_step = mode == AutoresetMode.SAME_STEP
         waiting = self._done if mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, np.bool_)
         written = self.tables.output(last=same_step, given=given)
-        self._crew.generators = self._generators
+        self._prepare_crew()
         try:
             self.tables.step(a, waiting, written, self._crew, same_step=same_step)
         except BaseException:
@@ -270,9 +267,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         AttributeError
             For what is not there.
         """
-        if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
-            instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
-            raise refuse("name", name, "must be something public that a table has for itself" + (f"; use {instead}" if instead else ""))
+        check_name(name)
         found = [getattr(self._table(k, generator), name) for k, generator in enumerate(self.np_random)]
         return tuple(each(*args, **kwargs) if callable(each) else each for each in found)
 
@@ -313,15 +308,19 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return env
 
     def render(self) -> tuple[Picture, ...]:
-        """A picture of each table.
+        """A picture of each table; to a recorder the motion of all of them at once, see Pictures and films of ``SnookerEnv``.
 
         Returns
         -------
         tuple of uint8 (H, W, 3) or str
             With "rgb_array", with "ansi".
         """
-        t = self.tables
-        return tuple(self._pictures.render(t.positions[k], t.on_table[k], None, t.text(k)) for k in range(self.num_envs))
+        return self._pictures.render_all(self.tables, self._recent.strokes)
+
+    def _prepare_crew(self) -> None:
+        self._crew.generators = self._generators
+        if self.render_mode is not None:
+            self._recent.begin()
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""
@@ -359,21 +358,14 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         """
         return [self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)]
 
-    def _set_state(self, k: int, state: Any, *, seeded: bool) -> None:
-        if not seeded:
-            self._generators[k].bit_generator.state, self._generator_seeds[k] = state.rng, -1
-        self.tables.set_state(k, state)
-        self._keyed[k] = True
+    def _take(self, k: int, start: Start, *, seeded: bool) -> None:
+        rng = start.take(self.tables, k)
+        if rng is not None:
+            self._keyed[k] = True
+            if not seeded:
+                self._generators[k].bit_generator.state, self._generator_seeds[k] = rng, -1
 
     # parts of reset and step -----------------------------------------------------------------------------------------------
-
-    def _states(self, options):
-        """The sound state of each table, or None."""
-        if (given := states_of(options, self.num_envs)) is None:
-            return None
-        states, each = given
-        generator = self.np_random[0]
-        return [self.tables.checked(state, generator, to_play=True) for state in states] * each
 
     def _given(self, out: Any, names: Collection[str]) -> dict[str, Any]:
         """The arrays to write into, checked."""

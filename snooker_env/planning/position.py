@@ -94,7 +94,8 @@ class Position:
         for name in ("cue", *COLOUR_NAMES):
             if getattr(self, name) is not None:
                 put(name, tuple(array(name, getattr(self, name), (2,)).tolist()))
-        reds = array("reds", self.reds, (-1, 2)) if len(self.reds) else np.empty((0, 2))
+        none = isinstance(self.reds, Sequence | np.ndarray) and not len(self.reds)
+        reds = np.empty((0, 2)) if none else array("reds", self.reds, (-1, 2))
         if len(reds) > N_REDS:
             raise refuse_what("reds", f"{len(reds)} places", f"must be at most {N_REDS}")
         put("reds", tuple(map(tuple, reds.tolist())))

@@ -17,9 +17,23 @@ import numpy as np
 
 from .._check import refuse
 from .._types import Bools, Floats, Ints, Singles
-from ..game.balls import COLOURS_MASK, N_BALLS, SPOTS, mask_of_present
+from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
 from ..game.frame import Frame
-from ..game.frame_columns import COLUMNS, FREE_BALL, PHASE, SCORE_0, SCORE_1, STRIKER, STROKES, Layouts, frame_of, write_frame
+from ..game.frame_columns import (
+    BALL_ON,
+    COLUMNS,
+    FREE_BALL,
+    IN_HAND,
+    PHASE,
+    POINTS,
+    SCORE_0,
+    SCORE_1,
+    STRIKER,
+    STROKES,
+    Layouts,
+    frame_of,
+    write_frame,
+)
 from ..game.layouts import deal_tables
 from . import frame_kernels
 from .frame_kernels import AGENT
@@ -236,6 +250,26 @@ class Frames(Tables):
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
         self.streams[k] = np.array(state.stream, np.uint64)
+        self._replies[k], self.begun[k] = 0, True
+
+    def standing(self, k: int) -> dict[str, Any]:
+        """Of a ``Played`` on table k what the frame says."""
+        frame = self.frame(k)
+        return {
+            "next_player": frame.striker, "scores": frame.scores, "break_points": frame.break_points, "choice": frame.phase == "choice",
+            "winner": frame.winner,
+        }  # fmt: skip
+
+    def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
+        """Begin a frame on table k with a sound position, ``game`` being the row of a visit: player 0 is at the table, scores are 0, the
+        points of the visit are his break so far; its random numbers go on."""
+        ball_on, in_hand, points = game[[BALL_ON, IN_HAND, POINTS]].tolist()
+        frame = Frame(
+            break_points=points, on_table=mask_of_present(on_table) & ~CUE_BIT, ball_on=BallOn(ball_on), in_hand=bool(in_hand),
+            miss="clear_path" if self.rules.miss else "off",
+        )  # fmt: skip
+        self.positions[k], self.on_table[k] = positions, on_table
+        write_frame(frame, 0, self.game[k], self.saved, k)
         self._replies[k], self.begun[k] = 0, True
 
     def text(self, k: int) -> str:

@@ -38,20 +38,34 @@ ALLOWED = {
     "game": BASE,
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
-    "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
+    "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render", "replays"},
+    "replays": BASE | {"physics", "simulation", "game", "tasks", "render"},
     "render": {"_check", "_types", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {"geometry", "physics", "impacts", "shot", "simulation", "tasks", "planning", "envs", "match", "_warmup", "_registration"},
+    "__init__": {
+        "geometry",
+        "physics",
+        "impacts",
+        "shot",
+        "simulation",
+        "tasks",
+        "planning",
+        "envs",
+        "match",
+        "replays",
+        "_warmup",
+        "_registration",
+    },
 }
-OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
+OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"}, "pygame": {"render"}, "pettingzoo": {"envs"}, "imageio_ffmpeg": {"replays"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "abc", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools",
-    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "sys", "tempfile", "textwrap",
+    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "subprocess", "sys", "tempfile", "textwrap",
     "threading", "time", "types", "typing", "warnings", "zipfile", "zlib",
 }  # fmt: skip
 
@@ -120,7 +134,7 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
             assert not top, f"{name} imports {library} when it is imported, not when it is wanted"
 
 
-LATE = {"envs": (".render", ".planning"), "_warmup": (".planning", ".envs")}
+LATE = {"envs": (".render", ".planning", ".replays"), "_warmup": (".planning", ".envs")}
 """What these parts import only when it is asked for."""
 
 

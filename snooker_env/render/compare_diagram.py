@@ -1,0 +1,87 @@
+"""How are two ways to play a stroke compared? Their diagrams side by side, of the same part of the table."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._check import refuse, refuse_what
+from ..physics.table import Table
+from ..simulation import Shot
+from .shot_diagram import View, area, plot, window_of
+from .sketch import CAPTIONS, WIDTH, pyplot, rgb
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_GAP = 0.015  # between two diagrams, as a part of the figure's width
+
+
+def compare(
+    shots: Sequence[Shot],
+    labels: Sequence[str] = (),
+    axes: "Sequence[Axes] | None" = None,
+    *,
+    cues: Sequence[Mapping[str, float] | None] | None = None,
+    view: View = "shot",
+    **options: Any,
+) -> "tuple[Axes, ...]":
+    """Draw shots side by side, each as ``plot`` does, all of them showing the same part of the table.
+
+    Parameters
+    ----------
+    shots : sequence of Shot
+        On one table.
+    labels : sequence of str
+        A title for each; left out, there is none.
+    axes : sequence of matplotlib.axes.Axes, optional
+        Where to draw each; None: in a figure of their own.
+    cues : sequence of mapping or None, optional
+        How each cue ball was struck, see ``plot``.
+    view : "table", "shot" or ((float, float), (float, float))
+        See ``plot``; "shot": as much as all of them need.
+    **options
+        Others of ``plot``.
+
+    Returns
+    -------
+    tuple of matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        If there is no shot, if they were played on different tables, or if labels, axes or cues are not one for each.
+    ImportError
+        Without matplotlib.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.render.diagrams import compare
+    >>> struck = [sn.strike(speed=2.0, aim=1.5708, top=top) for top in (-0.3, 0.3)]
+    >>> balls, still = [(0.0, 0.5), (0.02, 1.2)], (0.0, 0.0, 0.0)
+    >>> shots = [sn.simulate(balls, [v[:2], (0.0, 0.0)], [w, still]) for v, w in struck]
+    >>> len(compare(shots, ["screw", "follow"]))
+    2
+    """
+    shots = list(shots)
+    if not shots:
+        raise refuse("shots", shots, "must hold at least one")
+    for field, given in (("labels", labels), ("axes", axes), ("cues", cues)):
+        if given is not None and len(given) not in ({0, len(shots)} if field == "labels" else {len(shots)}):
+            raise refuse_what(field, f"{len(given)} of them", f"must be {len(shots)}, one for each shot")
+    table = shots[0].table
+    for k, shot in enumerate(shots):
+        if shot.table is not table:
+            raise refuse_what(f"shots[{k}].table", "another table", "must be that of shots[0]")
+    window = window_of(view, np.concatenate([area(shot) for shot in shots]), Table.of(None) if table is None else table)
+    caption = options.pop("caption", "full" if len(shots) == 1 else "short")
+    if axes is None:
+        n = len(shots)
+        wide = (1.0 - (n - 1) * _GAP) / n
+        high = wide * (window.height / window.width + CAPTIONS.get(caption, 0.0))
+        figure = pyplot().figure(figsize=(WIDTH, WIDTH * high), facecolor=rgb("floor"))
+        axes = [figure.add_axes((k * (wide + _GAP), 0.0, wide, 1.0)) for k in range(n)]
+    seen = np.array(window).reshape(2, 2)
+    each = zip(shots, axes, labels or [""] * len(shots), cues or [None] * len(shots), strict=True)
+    return tuple(plot(shot, ax, cue=cue, view=seen, title=label, caption=caption, **options) for shot, ax, label, cue in each)  # pyright: ignore[reportArgumentType]

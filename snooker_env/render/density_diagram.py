@@ -1,0 +1,193 @@
+"""Where does a ball stop, how likely? A cloud of points as a heat map on the table, with the areas that hold half and nine tenths of it."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._check import array, number, refuse, refuse_what
+from .._types import Floats, Vectors
+from ..game.balls import N_BALLS
+from ..geometry import BALL_RADIUS
+from ..physics.table import Table, TableLike
+from .scene import extent
+from .shot_diagram import View, window_of
+from .sketch import Sketch, rgb
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+HEAT = (255, 176, 46)
+"""Of the cloud."""
+CELL = 0.01
+"""The cells of the map [m]."""
+_REACH = 3.0  # how far a point's bell is followed, in bandwidths
+
+
+def bandwidth_of(points: Floats) -> float:
+    """Scott's rule for points (m, 2): their spread times m^(-1/6), at least 1 cm and at most 15 cm."""
+    spread = float(np.sqrt(points.var(axis=0).mean()))
+    return float(np.clip(spread * len(points) ** (-1 / 6), 0.01, 0.15))
+
+
+def density_of(points: Floats, low: Floats, high: Floats, bandwidth: float, cell: float = CELL) -> tuple[Floats, Floats]:
+    """How densely points (m, 2) lie between the corners ``low`` and ``high`` (2,) [m], each spread as a bell of that bandwidth [m].
+
+    Returns
+    -------
+    values : float64 (nx, ny)
+        Per square metre; the bells' tails beyond the corners are folded back, so that the sum times the cell's area is the share of the
+        points that lie within.
+    size : float64 (2,)
+        Of a cell, close to ``cell`` [m].
+    """
+    n = np.maximum(1, np.round((high - low) / cell).astype(int))
+    size = (high - low) / n
+    counts, _, _ = np.histogram2d(*points.T, bins=n.tolist(), range=[(low[0], high[0]), (low[1], high[1])])
+    values = counts / (len(points) * size.prod())
+    for axis in range(2):
+        half = int(min(np.ceil(_REACH * bandwidth / size[axis]), n[axis]))
+        bell = np.exp(-0.5 * (np.arange(-half, half + 1) * size[axis] / bandwidth) ** 2)
+        wide = np.pad(values, [(half, half) if k == axis else (0, 0) for k in range(2)], mode="symmetric")
+        values = np.apply_along_axis(np.convolve, axis, wide, bell / bell.sum(), mode="valid")
+    return values, size
+
+
+def level_of(values: Floats, share: float) -> float:
+    """The density above which that share of everything lies."""
+    ranked = np.sort(values.ravel())[::-1]
+    return float(ranked[min(np.searchsorted(np.cumsum(ranked), share * ranked.sum()), len(ranked) - 1)])
+
+
+def density(
+    points: Vectors,
+    ax: "Axes | None" = None,
+    *,
+    table: TableLike = "match",
+    position: Any = None,
+    shares: Sequence[float] = (0.5, 0.9),
+    bandwidth: float | None = None,
+    colour: Sequence[int] = HEAT,
+    view: View = "table",
+    title: str = "",
+) -> "Axes":
+    """Draw where a ball stops: the density of points, lines around the densest areas that hold given shares of it, and their mean.
+
+    Parameters
+    ----------
+    points : array_like, float (m, 2)
+        Where it stopped each time [m]. Rows of NaN, times at which it did not, are left out, and the share of the others is written.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw, on a diagram that is there too: then the table stays as it is. None: in a figure of its own.
+    table : str, Table or None
+        As in ``snooker_env.simulate``.
+    position : Position, or array_like, float (n, 2), optional
+        Balls to be seen.
+    shares : sequence of float
+        Each within (0, 1): what part of the points the lines hold.
+    bandwidth : float, optional
+        How widely a point is spread [m]; None: Scott's rule.
+    colour : sequence of int
+        Red, green and blue of the cloud, up to 255.
+    view : "table", "shot" or ((float, float), (float, float))
+        As in ``plot``; "shot": as much as the points need.
+    title : str
+        A line at the top left.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        If there is no point, or an argument is wrong.
+    ImportError
+        Without matplotlib.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.render.diagrams import density
+    >>> ax = density(np.random.default_rng(0).normal((0.2, 0.9), 0.1, (500, 2)))
+    >>> ax.figure.savefig("/tmp/density.png")
+    """
+    try:
+        given = np.array(points, np.float64)
+    except (TypeError, ValueError):
+        given = np.empty(0)
+    if given.ndim != 2 or given.shape[1] != 2:
+        raise refuse_what("points", f"array of shape {given.shape}", "must be real numbers of shape (m, 2)")
+    there = ~np.isnan(given).all(axis=1)
+    sound = array("points", given[there], (-1, 2))
+    if not len(sound):
+        raise refuse_what("points", f"{len(given)} rows, none of them a place", "must hold at least one")
+    lines = [number(f"shares[{k}]", share, 0, 1, open_low=True) for k, share in enumerate(shares)]
+    if any(share >= 1 for share in lines):
+        raise refuse("shares", list(shares), "must each be below 1")
+    wide = bandwidth_of(sound) if bandwidth is None else number("bandwidth", bandwidth, 1e-4, 1.0)
+    table = Table.of(table)
+    sketch = Sketch(table, table.ball_radius or BALL_RADIUS, window_of(view, sound, table), ax)
+    sketch.title(title)
+    _draw_balls(sketch, position)
+    _draw_cloud(sketch, sound, wide, lines, colour)
+    sketch.mark(sound.mean(axis=0), "+", "text", 9.0, 8.0, mew=2.0, mec=rgb("text"), gid="mean")
+    if not there.all():
+        sketch.label(sound.mean(axis=0), f"stops on the table in {100 * there.mean():.0f} %")
+    return sketch.ax
+
+
+def _draw_balls(sketch, position):
+    if position is None:
+        return
+    if hasattr(position, "arrays"):
+        r, here, _ = position.arrays()
+    else:
+        r = array("position", position, (-1, 2))
+        here = np.ones(len(r), bool)
+        if len(r) > N_BALLS:
+            raise refuse_what("position", f"{len(r)} places", f"must be at most {N_BALLS}")
+    for ball in np.flatnonzero(here).tolist():
+        sketch.ball(ball, r[ball])
+
+
+def _draw_cloud(sketch, points, bandwidth, shares, colour):
+    """The map where the cloud is, as opaque as it is dense, and a line around each share."""
+    from matplotlib.image import AxesImage
+    from matplotlib.patheffects import withStroke
+
+    bounds = extent(sketch.table)
+    reach = 4.5 * bandwidth + 0.02
+    low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
+    if np.isfinite(sketch.table.bounds).all():  # no ball stops beyond the cushions
+        low, high = np.maximum(low, bounds[:, 0]), np.minimum(high, bounds[:, 1])
+    values, size = density_of(points, low, high, bandwidth)
+    strength = values / values.max()
+    picture = np.empty((*values.shape, 4))
+    picture[..., :3] = np.array(rgb(colour)[:3]) + (1 - np.array(rgb(colour)[:3])) * (0.55 * strength[..., None] ** 3)
+    picture[..., 3] = 0.95 * (1 - np.exp(-5 * strength))
+    image = AxesImage(sketch.ax, extent=(low[1], high[1], high[0], low[0]), origin="upper", interpolation="bilinear", zorder=3.0)
+    image.set_data(picture)
+    image.set_gid("density")
+    sketch.ax.add_image(image)
+    ys, xs = (low[k] + size[k] * (np.arange(values.shape[k]) + 0.5) for k in (1, 0))
+    for share in sorted(shares):
+        level = level_of(values, share)
+        if values.min() < level < values.max():
+            style = {"colors": [rgb("text")], "linewidths": 1.3 if share <= 0.5 else 0.9, "zorder": 3.6}
+            lines = sketch.ax.contour(ys, xs, values, levels=[level], **style)
+            lines.set_gid(f"share-{share:g}")
+            lines.set_path_effects([withStroke(linewidth=2.6, foreground=rgb("path_edge", 0.6))])
+            _label(sketch, lines, share)
+
+
+def _label(sketch, lines, share):
+    """How much a line holds, at its rightmost point."""
+    from matplotlib.patheffects import withStroke
+
+    ring = max(lines.get_paths()[0].to_polygons(closed_only=False), key=len, default=None)
+    if ring is not None and len(ring):
+        y, x = ring[np.argmax(ring[:, 0])]
+        stroke = [withStroke(linewidth=2.0, foreground=rgb("path_edge", 0.8))]
+        away = y + 0.4 * sketch.font / sketch.points_per_metre
+        sketch.text(away, x, f"{100 * share:g} %", size=0.9, zorder=8.5, gid="share", path_effects=stroke)

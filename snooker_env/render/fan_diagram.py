@@ -1,0 +1,263 @@
+"""Where can the cue ball go? The same pot with every top and side of a range, and the cue ball's path of each: a fan."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from .._check import array, integer, number, refuse, refuse_what
+from .._types import Flags, Floats
+from ..game.balls import CUE, N_BALLS
+from ..impacts import strike
+from ..physics.engine import EventKind
+from ..physics.parameters import Physics, PhysicsLike
+from ..physics.table import Table, TableLike
+from ..simulation import Shot, simulate, simulate_batch
+from .shot_diagram import SLIDES, View, window_of
+from .shot_paths import contacts, cue_ball, paths
+from .sketch import CAPTIONS, Sketch, rgb
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+TOPS, SIDES = (-0.4, -0.2, 0.0, 0.2, 0.4), (-0.25, 0.0, 0.25)
+"""Tip offsets over R of a fan unless told."""
+SHADES = ((58, 132, 240), (150, 205, 255), (255, 255, 255), (255, 190, 120), (240, 84, 46))
+"""Colours of the tops from lowest to highest: screw is blue, follow is red."""
+_MARKS = ("<", "o", ">")  # of side: left, none, right
+_SHIFTS = np.radians(np.linspace(-4.0, 4.0, 321))
+
+
+class Option(NamedTuple):
+    """One stroke of a fan."""
+
+    top: float
+    side: float
+    aim: float
+    """Of the cue [rad]."""
+    shot: Shot
+
+
+def fan(
+    position: Any,
+    ball: int | None = None,
+    pocket: int | None = None,
+    ax: "Axes | None" = None,
+    *,
+    speed: float = 2.0,
+    tops: Sequence[float] = TOPS,
+    sides: Sequence[float] = SIDES,
+    elevation: float = 0.0,
+    aim: float | None = None,
+    table: TableLike = "match",
+    physics: PhysicsLike = None,
+    on_table: Flags | None = None,
+    view: View = "shot",
+    labels: bool = False,
+    title: str = "",
+) -> "Axes":
+    """Draw the cue ball's paths of one pot, played with every pair of a top and a side: as Fig. 1 of the paper.
+
+    Side and throw move the aim that pots; of the aims that do, the middle one is played. A path's colour is its top, from screw (blue) to
+    follow (red); the sign at its end is its side.
+
+    Parameters
+    ----------
+    position : Position, or array_like, float (n, 2)
+        Where the balls lie [m], the cue ball first.
+    ball : int, optional
+        Which ball is potted; None: the other one of two.
+    pocket : int, optional
+        Into which fall of the table; None: that with the smallest cut.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; None: in a figure of its own.
+    speed : float
+        Of the cue [m/s].
+    tops, sides : sequence of float
+        Tip offsets over R, up and to the right.
+    elevation : float
+        Of the cue's butt [rad].
+    aim : float, optional
+        The direction [rad] of every stroke; then nothing has to be potted.
+    table, physics
+        As in ``snooker_env.simulate``.
+    on_table : array_like, bool (n,), optional
+        Which balls are there, with an array of places.
+    view, labels, title
+        As in ``plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        If the ball cannot be potted there with one of the strokes, or an argument is wrong.
+    ImportError
+        Without matplotlib.
+
+    Examples
+    --------
+    >>> from snooker_env.render.diagrams import fan
+    >>> ax = fan([(0.45, 0.85), (0.62, 1.45)], tops=(-0.3, 0.3), sides=(0.0,))
+    >>> len([line for line in ax.get_lines() if line.get_gid() == "fan"])
+    2
+    """
+    table, physics = Table.of(table), Physics.of(physics)
+    r, here = _places(position, on_table)
+    options = fan_options(r, here, ball, pocket, speed, tops, sides, elevation, aim, table, physics)
+    shots = [option.shot for option in options]
+    window = window_of(view, np.concatenate([*map(_way, shots), _ends(shots)]), table)
+    sketch = Sketch(table, physics.R, window, ax, strip=0.8 * CAPTIONS["full"])
+    sketch.title(title)
+    for k in np.flatnonzero(here).tolist():
+        sketch.ball(k, r[k], label=labels)
+    ranked = sorted(set(tops))
+    for option in options:
+        path, met = _way(option.shot), _met(option.shot)
+        colour = shade(option.top, ranked)
+        sketch.line(path, colour, width=1.5, gid="fan")
+        mark = _MARKS[1 + int(np.sign(round(option.side, 9)))]
+        sketch.mark(path[-1], mark, colour, 7.0, gid="end")
+        if met is not None and option is options[len(options) // 2]:
+            sketch.line(np.array([r[CUE], met.centre]), "text", width=1.5, ls=(0, (4, 2)), gid="approach")
+            sketch.ghost(CUE, met.centre)
+            gone = np.concatenate([piece.points for piece in paths(option.shot)[met.other]])
+            sketch.line(gone, SLIDES, width=1.2, ls=(0, (4, 2)), gid="object")
+    _write(sketch, options, ranked, speed)
+    return sketch.ax
+
+
+def fan_options(
+    r: Floats, here: Any, ball: int | None, pocket: int | None, speed: float, tops: Sequence[float], sides: Sequence[float],
+    elevation: float, aim: float | None, table: Table, physics: Physics,
+) -> list[Option]:  # fmt: skip
+    """The strokes of a fan: for each top and side the aim, given or such that the ball is potted, and the shot."""
+    tops, sides = array("tops", tops, (-1,)).tolist(), array("sides", sides, (-1,)).tolist()
+    if not tops or not sides:
+        raise refuse("(tops, sides)", (tops, sides), "must hold at least one number each")
+    if aim is not None:
+        aims = np.array([number("aim", aim)])
+    else:
+        ball = _object(ball, here)
+        pocket, line = _line(r, ball, pocket, table, physics.R)
+        aims = line + _SHIFTS
+    found = []
+    for top in tops:
+        for side in sides:
+            struck = [strike(speed, one, side, top, elevation, physics) for one in aims]
+            k = 0
+            if aim is None:
+                batch = _batch(r, here, struck, table, physics)
+                good = np.flatnonzero(batch.potted[:, ball] == pocket)
+                if not len(good):
+                    near = f"no aim within {np.degrees(_SHIFTS[-1]):.0f} degrees of the ghost ball's does"
+                    allowed = f"must pot ball {ball} into pocket {pocket}, and {near}"
+                    raise refuse("(top, side, speed)", (top, side, speed), allowed)
+                k = int(good[len(good) // 2])
+            v, w = np.zeros((len(r), 2)), np.zeros((len(r), 3))
+            v[CUE], w[CUE] = struck[k][0][:2], struck[k][1]
+            found.append(Option(top, side, float(aims[k]), simulate(r, v, w, table, physics, on_table=here)))
+    return found
+
+
+def _batch(r, here, struck, table, physics):
+    b = len(struck)
+    v, w = np.zeros((b, len(r), 2)), np.zeros((b, len(r), 3))
+    v[:, CUE], w[:, CUE] = [one[:2] for one, _ in struck], [spin for _, spin in struck]
+    tiled = np.tile(r, (b, 1, 1)), v, w
+    return simulate_batch(*tiled, table, physics, on_table=np.tile(here, (b, 1)))
+
+
+def _places(position, on_table):
+    """(n, 2) and (n,) of a Position or of an array."""
+    if hasattr(position, "arrays"):
+        if on_table is not None:
+            raise refuse_what("on_table", "given", "must be left out with a Position, which says what is there")
+        return position.arrays()[:2]
+    r = array("position", position, (-1, 2))
+    if not 2 <= len(r) <= N_BALLS:
+        raise refuse_what("position", f"{len(r)} places", f"must be 2 to {N_BALLS}, the cue ball first")
+    here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
+    if here.shape != (len(r),) or here.dtype != np.bool_ or not here[CUE]:
+        raise refuse("on_table", on_table, f"must be bool of shape ({len(r)},), the cue ball there")
+    return r, here
+
+
+def _object(ball, here):
+    others = np.flatnonzero(here)[1:].tolist()
+    if ball is None and len(others) == 1:
+        return others[0]
+    if ball is None or integer("ball", ball, 0, N_BALLS - 1) not in others:
+        raise refuse("ball", ball, f"must be one of those on the table, {others}")
+    return ball
+
+
+def _line(r, ball, pocket, table, R):
+    """The pocket, and the direction [rad] from the cue ball to the ghost ball for it."""
+    if not len(table.falls):
+        raise refuse("aim", None, "must be given: the table has no pockets")
+    to_pocket = table.falls[:, :2] - r[ball]
+    units = to_pocket / np.hypot(*to_pocket.T)[:, None]
+    ways = r[ball] - 2 * R * units - r[CUE]
+    if pocket is None:
+        pocket = int(np.argmax((units * ways).sum(axis=1) / np.hypot(*ways.T)))
+    k = integer("pocket", pocket, 0, len(table.falls) - 1)
+    return k, float(np.arctan2(ways[k, 1], ways[k, 0]))
+
+
+def _met(shot):
+    """The cue ball's first meeting with another ball, or None."""
+    first = cue_ball(shot)
+    return None if first is None else next((c for c in contacts(shot, first) if c.kind == EventKind.BALL_BALL), None)
+
+
+def _way(shot):
+    """(m, 2): the cue ball's path after it has met a ball; all of it if it meets none."""
+    met = _met(shot)
+    since = -np.inf if met is None else met.time
+    own = [piece for piece in paths(shot).get(CUE, []) if piece.times[-1] > since]
+    points = [piece.points[piece.times >= since] for piece in own]
+    return np.concatenate(points) if points else shot.positions[[CUE]]
+
+
+def _ends(shots):
+    """(m, 2): where the cue ball starts and meets the ball, and where that goes."""
+    found = []
+    for shot in shots:
+        met = _met(shot)
+        found.append(shot.at(0.0)[0][CUE])
+        if met is not None:
+            found += [met.centre, shot.positions[met.other]]
+    return np.array(found)
+
+
+def shade(top: float, tops: Sequence[float]) -> tuple[int, ...]:
+    """The colour of one of the tops: of ``SHADES``, white where there is no top."""
+    most = max(map(abs, tops)) or 1.0
+    middle = len(SHADES) // 2
+    place = middle * (1.0 + top / most)
+    return tuple(round(float(np.interp(place, range(len(SHADES)), [colour[c] for colour in SHADES]))) for c in range(3))
+
+
+def _write(sketch, options, tops, speed):
+    """What the colours and the signs mean."""
+    w, depth = sketch.window, sketch.depth
+    if not depth:
+        return
+    rows = sketch.rows(2)
+    y = w.low_y + 0.03 * w.width
+    sketch.text(y, rows[0], f"{speed:.2f} m/s, tip offsets in R", weight="bold")
+    sketch.text(y, rows[1], "the sign at the end is the side:")
+    sides = sorted({option.side for option in options})
+    for k, side in enumerate(sides):
+        at = y + (0.36 + 0.17 * k) * w.width
+        sketch.mark((rows[1], at), _MARKS[1 + int(np.sign(round(side, 9)))], "text", 6.5, 9.5)
+        sketch.text(at + 0.018 * w.width, rows[1], "none" if side == 0 else f"{'right' if side > 0 else 'left'} {abs(side):.2f}")
+    step = 0.68 / max(len(tops), 4)
+    for k, top in enumerate(tops):
+        at = y + (0.285 + step * k) * w.width
+        sketch.ax.plot([at, at + 0.028 * w.width], [rows[0]] * 2, color=rgb(shade(top, tops)), lw=3.0, zorder=9.5)
+        words = "centre" if top == 0 else f"{'top' if top > 0 else 'screw'} {abs(top):.2f}"
+        sketch.text(at + 0.036 * w.width, rows[0], words)

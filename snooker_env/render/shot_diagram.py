@@ -1,0 +1,330 @@
+"""How is a shot drawn as a diagram? Paths by slide and roll, ghost balls, impacts, speeds, the cut and the tip, on a ``Sketch``."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+import numpy as np
+
+from .._check import array, choice, integer, number, refuse, truth
+from .._types import Floats
+from ..game.balls import N_BALLS, NAMES
+from ..physics.engine import EventKind
+from ..physics.table import Table
+from ..simulation import Shot
+from .palette import PALE
+from .shot_paths import Contact, Piece, Tip, arrow_places, contacts, cue_ball, cut_angle, paths, tip_of, velocity_before
+from .sketch import CAPTIONS, PATH_WIDTH, Sketch, Window, flipped, is_closed, rgb
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
+"""What is to be seen: all of the table, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) [m]."""
+
+SLIDES = (255, 168, 36)
+"""The stripes of a path on which the ball slides."""
+DASHES = (0, (2.0, 1.6))
+"""Of that path: lengths of the stripes, in its widths."""
+MOST_PATHS = 7
+"""If more balls than this move, only the cue ball, what it strikes first and what is potted are drawn in full, the others thinly."""
+
+_SIGNS: dict[EventKind, tuple[Any, Any, float]] = {
+    EventKind.BALL_BALL: ("o", "text", 4.5),
+    EventKind.CUSHION: ("D", SLIDES, 4.5),
+    EventKind.JAW: ("^", SLIDES, 5.5),
+    EventKind.POT: ("X", "text", 7.0),
+}
+"""Marker, colour and size of each kind of impact."""
+_WORDS = {EventKind.BALL_BALL: "ball", EventKind.CUSHION: "cushion", EventKind.JAW: "jaw", EventKind.POT: "pocket"}
+
+
+def plot(
+    shot: Shot,
+    ax: "Axes | None" = None,
+    *,
+    cue: Mapping[str, float] | None = None,
+    view: View = "table",
+    balls: Iterable[int] | None = None,
+    labels: bool = False,
+    speeds: bool = True,
+    caption: Literal["full", "short", "none"] = "full",
+    title: str = "",
+) -> "Axes":
+    """Draw a shot: from above, baulk left and black right.
+
+    Balls lie as before the shot. Paths are 3 pixels wide in the balls' colours, striped where the ball slides and plain where it rolls,
+    with arrowheads. Faded balls show where a ball is when it meets another, and where it comes to rest. Signs mark what is met: a disc a
+    ball, a diamond a cushion, a triangle a jaw, a cross a pocket. Under the table: where the tip struck, speeds and the cut.
+
+    Parameters
+    ----------
+    shot : Shot
+        With its path, of at most 22 balls.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; None: in a figure of its own. On axes that a diagram was drawn on before, the table and what is seen of it stay.
+        Their horizontal axis is y [m], the vertical one x [m], downwards: ``ax.plot(y, x)``.
+    cue : mapping, optional
+        How the cue ball was struck, as far as it is known: "side", "top" (tip offset over R, right and up), "speed" [m/s], "elevation"
+        and "aim" [rad]. None: it follows from the cue ball's velocity and spin, but for the elevation of a cue without side, which is
+        taken as level.
+    view : "table", "shot" or ((float, float), (float, float))
+        What is to be seen: all of the table (as far as it has cushions on all sides), as much as the shot needs, or a range of x and
+        one of y [m].
+    balls : iterable of int, optional
+        Whose paths to draw; None: all that moved, thinly those that matter less if many did.
+    labels : bool
+        Whether balls carry their letters.
+    speeds : bool
+        Whether the cue ball's speeds and the cut are written beside the path.
+    caption : {"full", "short", "none"}
+        The strip of words under the table: "short" is for axes of half the width, and leaves out what stripes and signs mean.
+    title : str
+        A line at the top left.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        If the shot has no path, more than 22 balls, or an option is wrong.
+    ImportError
+        Without matplotlib.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> v, w = sn.strike(speed=2.0, aim=1.5708, top=-0.3)
+    >>> shot = sn.simulate([(0.0, 0.5), (0.02, 1.2)], [v[:2], (0.0, 0.0)], [w, (0.0, 0.0, 0.0)])
+    >>> ax = shot.plot(view="shot")
+    >>> ax.figure.savefig("/tmp/shot.png")
+    """
+    if len(shot.positions) > N_BALLS:
+        raise refuse("balls of the shot", len(shot.positions), f"must be at most {N_BALLS}")
+    truth("labels", labels)
+    truth("speeds", speeds)
+    choice("caption", caption, CAPTIONS)
+    table, found = shot.table or Table.of(None), paths(shot)
+    wanted = set(found if balls is None else (integer("balls", ball, 0, len(shot.positions) - 1) for ball in balls))
+    first = cue_ball(shot)
+    tip = _tip(cue, shot, first)
+    sketch = Sketch(table, shot.physics.R, window_of(view, area(shot), table), ax, strip=CAPTIONS[caption])
+    sketch.title(title)
+    start, there = shot.at(0.0)[0], shot.on_table | (shot.potted >= 0)
+    for ball in np.flatnonzero(there).tolist():
+        sketch.ball(ball, start[ball], label=labels)
+    main = principals(shot, found, first) if balls is None else wanted
+    for ball in sorted(wanted & set(found), reverse=True):  # the cue ball last, on top
+        if ball in main:
+            draw_path(sketch, found[ball], ball)
+            _draw_impacts(sketch, shot, ball, start)
+        else:
+            thin = np.concatenate([piece.points for piece in found[ball]])
+            sketch.ax.plot(*flipped(thin).T, color=rgb(PALE[ball], 0.75), lw=0.8, zorder=4.0, gid="thin path")
+        if shot.on_table[ball]:
+            sketch.ghost(ball, shot.positions[ball], 0.62 if ball in main else 0.3)
+    if speeds and first is not None and first in wanted:
+        _write_speeds(sketch, shot, first, start)
+    if sketch.depth:
+        _write_strip(sketch, shot, first, tip, cue is not None, short=caption == "short")
+    return sketch.ax
+
+
+def window_of(view: Any, points: Floats, table: Table) -> Window:
+    """What of the table a view shows, if something happens at these points (m, 2)."""
+    if isinstance(view, str) and view in ("table", "shot"):
+        return Window.of_table(table) if view == "table" and is_closed(table) else Window.around(points, table)
+    if isinstance(view, str) or np.shape(view) != (2, 2):
+        raise refuse("view", view, 'must be "table", "shot" or ((lowest x, highest x), (lowest y, highest y))')
+    (low_x, high_x), (low_y, high_y) = array("view", view, (2, 2)).tolist()
+    if low_x >= high_x or low_y >= high_y:
+        raise refuse("view", view, "must have its lower ends first")
+    return Window(low_x, high_x, low_y, high_y)
+
+
+def area(shot: Shot) -> Floats:
+    """(m, 2) [m]: where something happens in a shot."""
+    found = paths(shot)
+    main = principals(shot, found, cue_ball(shot))
+    points = [piece.points for ball in main for piece in found.get(ball, [])]
+    return np.concatenate(points) if points else shot.positions[shot.on_table]
+
+
+def principals(shot: Shot, found: Mapping[int, Any], first: int | None) -> set[int]:
+    """Whose paths matter: all, or where many balls move the cue ball, what it meets first, and what is potted."""
+    if len(found) <= MOST_PATHS or first is None:
+        return set(found)
+    met = [contact.other for contact in contacts(shot, first) if contact.kind == EventKind.BALL_BALL]
+    return {first, *met[:1], *np.flatnonzero(shot.potted >= 0).tolist()} & set(found)
+
+
+def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = None) -> None:
+    """The path of a ball in its colour: striped while it slides, plain while it rolls, dotted while it falls."""
+    colour = PALE[ball] if colour is None else colour
+    for piece in path:
+        style: dict[str, Any] = {"gid": f"{piece.kind}-{ball}"}
+        if piece.kind == "slide":
+            style |= {"ls": DASHES, "gapcolor": rgb(SLIDES), "dash_capstyle": "butt", "solid_capstyle": "butt"}
+        elif piece.kind == "fall":
+            style |= {"ls": ":"}
+        sketch.line(piece.points, colour, level=5.0 + 0.3 * (ball == 0), **style)
+    points = np.concatenate([piece.points for piece in path])
+    points = points[np.append(True, np.hypot(*np.diff(points, axis=0).T) > 0)]
+    for place, direction in arrow_places(points, 0.085 * sketch.window.width):
+        sketch.arrow(place, direction, colour)
+
+
+def _draw_impacts(sketch, shot, ball, start):
+    """Signs where a ball meets something, and where it is then: a ghost unless it has not moved."""
+    for contact in contacts(shot, ball):
+        marker, colour, size = _SIGNS[contact.kind]
+        sketch.mark(contact.place, marker, colour, size, gid=f"{contact.kind.name.lower()}-{ball}")
+        if contact.kind == EventKind.BALL_BALL and np.hypot(*(contact.centre - start[ball])) > 0.2 * sketch.R:
+            sketch.ghost(ball, contact.centre)
+
+
+def _write_speeds(sketch, shot, first, start):
+    """The cue ball's speeds at the start and at what it meets, and the cut."""
+    v, _ = (part[first] for part in shot.at(0.0)[1:])
+    sketch.label(start[first], f"{np.hypot(*v):.2f} m/s")
+    for k, contact in enumerate(contacts(shot, first)):
+        if k < 6 and contact.kind != EventKind.POT and contact.speed > 0.02:
+            words = f"{contact.speed:.2f} m/s"
+            if contact.kind == EventKind.BALL_BALL:
+                words += f", cut {np.degrees(cut_angle(shot, contact)):.0f}°"
+                _draw_cut(sketch, shot, contact)
+            sketch.label(contact.place, words)
+
+
+def _draw_cut(sketch, shot, contact):
+    """The cut as an angle, where balls are large enough for it to be seen: the old direction, the line of centres, an arc between them."""
+    if sketch.R * sketch.points_per_metre < 5.0:
+        return
+    v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
+    angles = np.arctan2(line[1], line[0]), np.arctan2(v[1], v[0])
+    turn = (angles[1] - angles[0] + np.pi) % (2 * np.pi) - np.pi
+    rays = angles[0] + turn * np.linspace(0.0, 1.0, 17)
+    long = 7.0 * sketch.R
+    for far, ray in ((long, rays[[0, 0]]), (long, rays[[-1, -1]]), (0.85 * long, rays)):
+        points = contact.centre + far * np.stack([np.cos(ray), np.sin(ray)], axis=1)
+        if ray is not rays:
+            points[0] = contact.centre
+        sketch.ax.plot(*flipped(points).T, color=rgb("aim"), lw=1.0, ls="-" if ray is rays else (0, (3, 2)), zorder=6.5, gid="cut")
+
+
+# the strip under the table -------------------------------------------------------------------------------------------------------
+
+
+def _tip(cue: Mapping[str, float] | None, shot: Shot, first: int | None) -> Tip | None:
+    """Where the tip struck, as given or as the spin tells; None if no cue gives such a spin."""
+    if cue is not None:
+        known = ("speed", "side", "top", "aim", "elevation")
+        for key in cue:
+            if key not in known:
+                raise refuse("keys of cue", key, "must be of " + ", ".join(map(repr, known)))
+        for key in ("side", "top"):
+            if key not in cue:
+                raise refuse("keys of cue", list(cue), f"must hold {key!r}")
+        speed = cue.get("speed", 0.0 if first is None else float(np.hypot(*shot.at(0.0)[1][first])))
+        side, top = number("cue.side", cue["side"], -1, 1), number("cue.top", cue["top"], -1, 1)
+        return Tip(side, top, number("cue.speed", speed, 0), number("cue.elevation", cue.get("elevation", 0.0), 0, 1.5))
+    if first is None:
+        return None
+    _, v, w = shot.at(0.0)
+    tip = tip_of(v[first], w[first], shot.physics)
+    return tip if np.hypot(tip.side, tip.top) <= 1.0 else None
+
+
+def tip_words(tip: Tip) -> str:
+    """The strike in words: "top 0.30 R, right side 0.20 R"."""
+    words = []
+    if abs(tip.top) >= 0.005:
+        words.append(f"{'top' if tip.top > 0 else 'screw'} {abs(tip.top):.2f} R")
+    if abs(tip.side) >= 0.005:
+        words.append(f"{'right' if tip.side > 0 else 'left'} side {abs(tip.side):.2f} R")
+    return ", ".join(words) or "centre ball"
+
+
+def draw_tip(sketch: Sketch, tip: Tip | None, middle: tuple[float, float], radius: float, limit: float) -> None:
+    """The cue ball as the player sees it, and where the tip struck it; ``middle``: (y, x); ``limit``: of a miscue, over R."""
+    from matplotlib.patches import Circle
+
+    (y, x), add = middle, sketch.ax.add_patch
+    add(Circle((y, x), radius, fc=rgb((252, 248, 234)), ec=rgb("bar_edge"), lw=0.8, zorder=9.3, gid="inset"))
+    add(Circle((y, x), limit * radius, fc="none", ec=rgb("text_quiet"), lw=0.7, ls=(0, (3, 2)), zorder=9.35))
+    for line in ([(y - radius, y + radius), (x, x)], [(y, y), (x - radius, x + radius)]):
+        sketch.ax.plot(*line, color=rgb("text_quiet", 0.6), lw=0.6, zorder=9.35)
+    if tip is not None:
+        add(Circle((y + tip.side * radius, x - tip.top * radius), 0.13 * radius, fc=rgb("bar_accent"), ec="none", zorder=9.4, gid="tip"))
+
+
+def _write_strip(sketch: Sketch, shot: Shot, first: int | None, tip: Tip | None, known: bool, *, short: bool) -> None:
+    rows, left = sketch.rows(4 if short else 3), sketch.window.low_y + 0.12 * sketch.depth
+    said = summary(shot, first)
+    if first is not None:
+        radius = (0.32 if short else 0.40) * sketch.depth
+        draw_tip(sketch, tip, (left + radius, sketch.window.high_x + sketch.depth / 2), radius, shot.physics.max_offset)
+        left += 2 * radius + 0.16 * sketch.depth
+        if tip is None:
+            lines = ["a spin that no tip gives"]
+        else:
+            raised = f", butt raised {np.degrees(tip.elevation):.0f}°" if tip.elevation > 0.005 else ""
+            source = "as it was struck" if known else "worked out from the spin" + ("" if tip.elevation else ", cue level")
+            lines = [tip_words(tip), f"{tip.speed:.2f} m/s{raised}", *([] if short else [source])]
+        sketch.text(left, rows[0], lines[0], weight="bold")
+        for x, words in zip(rows[1:], lines[1:] + (said[::2] if short else []), strict=False):
+            sketch.text(left, x, words, "text_quiet" if words == lines[-1] and len(lines) == 3 else "text")
+    if not short:
+        for x, words in zip(rows, said, strict=False):
+            sketch.text(sketch.window.low_y + 0.425 * sketch.window.width, x, words)
+        _write_legend(sketch, shot, rows)
+
+
+def summary(shot: Shot, first: int | None) -> list[str]:
+    """What a shot comes to, in up to three lines."""
+    if first is None:
+        return ["nothing moves"]
+    lines = []
+    met = next((contact for contact in contacts(shot, first) if contact.kind == EventKind.BALL_BALL), None)
+    if met is not None:
+        other = contact_of(shot, met)
+        lines.append(f"{name(met.other)}: cut {np.degrees(cut_angle(shot, met)):.0f}°, leaves with {other.after:.2f} m/s")
+        lines.append(f"cue ball: {met.speed:.2f} m/s before, {met.after:.2f} after")
+    pots = [f"{name(ball)} into {pocket(shot, int(shot.potted[ball]))}" for ball in np.flatnonzero(shot.potted >= 0).tolist()]
+    return [*lines, "; ".join(pots[:2]) + (" ..." if len(pots) > 2 else "") if pots else f"at rest after {shot.duration:.1f} s"]
+
+
+def contact_of(shot: Shot, met: Contact) -> Contact:
+    """The same meeting of two balls as the other one sees it."""
+    return next(contact for contact in contacts(shot, met.other) if contact.time == met.time and contact.other == met.ball)
+
+
+def name(ball: int) -> str:
+    """What a ball is called."""
+    return "cue ball" if ball == 0 else NAMES[ball].replace("_", " ")
+
+
+def pocket(shot: Shot, k: int) -> str:
+    """What a pocket is called."""
+    names = () if shot.table is None else shot.table.pockets
+    return names[k] if names else f"pocket {k}"
+
+
+def _write_legend(sketch, shot, row):
+    """What stripes and signs mean; of the signs those that there are."""
+    w, long = sketch.window, 0.035 * sketch.window.width
+    y = w.low_y + 0.735 * w.width
+    line = {"lw": PATH_WIDTH, "zorder": 9.5}
+    sketch.ax.plot([y, y + long], [row[0]] * 2, color=rgb(PALE[0]), ls=DASHES, gapcolor=rgb(SLIDES), **line)
+    sketch.ax.plot([y, y + long], [row[1]] * 2, color=rgb(PALE[0]), **line)
+    sketch.text(y + 1.35 * long, row[0], "slides")
+    sketch.text(y + 1.35 * long, row[1], "rolls")
+    sketch.ghost(0, (row[2], y + long / 2), radius=0.095 * sketch.depth, level=9.5)
+    sketch.text(y + 1.35 * long, row[2], "at contact, at rest")
+    y = w.low_y + 0.90 * w.width
+    there = [kind for kind in _SIGNS if (shot.events["kind"] == int(kind)).any()]
+    for x, kind in zip(row[:2], [kind for kind in there if kind != EventKind.POT], strict=False):
+        marker, colour, size = _SIGNS[kind]
+        sketch.mark((x, y), marker, colour, size, 9.5)
+        sketch.text(y + 0.4 * long, x, _WORDS[kind])

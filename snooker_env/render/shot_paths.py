@@ -1,0 +1,187 @@
+"""What is worth drawing of a shot? Its paths in pieces that slide or roll, its contacts with their speeds, and where the tip struck.
+
+Without a drawing library, in metres. A piece of a path is sampled so finely that straight lines between its points lie within ``STRAY``
+of it: a rolling ball runs straight, a sliding one on a parabola.
+"""
+
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from .._check import refuse
+from .._types import Floats
+from ..physics.cloth import AX, AY, BEND, FALLING, ROLL, SEGMENT_BALL, SEGMENT_STATE, SLIDE, T0, VX, VY
+from ..physics.columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
+from ..physics.engine import EventKind
+from ..physics.parameters import Physics
+from ..simulation import Shot
+
+STRAY = 1e-4
+"""No point of a path is further than this [m] from the lines that are drawn."""
+STILL = 1e-3
+"""A ball that moved less than this [m] is drawn as one that did not."""
+
+Kind = Literal["slide", "roll", "fall"]
+_KINDS: dict[int, Kind] = {SLIDE: "slide", ROLL: "roll", BEND: "roll", FALLING: "fall"}
+
+
+class Piece(NamedTuple):
+    """A part of a ball's path in which it does one thing: slides, rolls, or falls into a pocket."""
+
+    kind: Kind
+    times: Floats
+    """(m,) [s]"""
+    points: Floats
+    """(m, 2) [m]: where ``Shot.at`` has the ball at these times."""
+
+
+class Contact(NamedTuple):
+    """A ball meets a ball, a cushion, a jaw or a pocket."""
+
+    time: float
+    kind: EventKind
+    ball: int
+    other: int
+    """Ball, nose, jaw or pocket, as the log of events has it."""
+    place: Floats
+    """(2,) [m] where they touch; of a pocket the middle of its fall."""
+    centre: Floats
+    """(2,) [m] of the ball."""
+    speed: float
+    """Of the ball, just before [m/s]."""
+    after: float
+    """Of the ball, just after [m/s]."""
+
+
+def check_path(shot: Shot) -> None:
+    """Raise ValueError unless the shot has its path."""
+    if not len(shot.segments):
+        raise refuse("shot.segments", "none", 'must be there: simulate() keeps them, an environment only with a render_mode ("rgb_array")')
+
+
+def pieces(shot: Shot, ball: int) -> list[Piece]:
+    """The path of a ball; empty if it never moves. Pieces of one kind that follow each other without an impact are one."""
+    own = shot.segments[shot.segments[:, SEGMENT_BALL] == ball]
+    ends = np.append(own[1:, T0], shot.duration)
+    impacts = set(shot.events["time"][_is_impact(shot) & ((shot.events["i"] == ball) | (shot.events["j"] == ball))].tolist())
+    found: list[tuple[Kind, list[float]]] = []
+    for row, end in zip(own, ends, strict=True):
+        kind = _KINDS.get(int(row[SEGMENT_STATE]))
+        start = float(row[T0])
+        if kind is None or end <= start or not (row[VX] or row[VY] or row[AX] or row[AY]):
+            continue
+        times = np.linspace(start, end, 1 + _steps(row, end - start)).tolist()
+        if found and found[-1][0] == kind and found[-1][1][-1] == start and start not in impacts:
+            found[-1][1].extend(times[1:])
+        else:
+            found.append((kind, times))
+    if not found:
+        return []
+    at = shot.at(np.concatenate([times for _, times in found]))[0][:, ball]
+    cuts = np.cumsum([len(times) for _, times in found])[:-1]
+    return [Piece(kind, np.array(times), points) for (kind, times), points in zip(found, np.split(at, cuts), strict=True)]
+
+
+def _steps(row, duration):
+    """How many straight lines stand for a segment: the chord of a parabola strays by a dt^2 / 8 at most."""
+    if row[SEGMENT_STATE] in (ROLL, FALLING):  # straight, and never back
+        return 1
+    return int(np.clip(np.ceil(duration * np.sqrt(np.hypot(row[AX], row[AY]) / (8 * STRAY))), 1, 256))
+
+
+def _is_impact(shot):
+    return shot.events["kind"] <= int(EventKind.POT)
+
+
+def paths(shot: Shot) -> dict[int, list[Piece]]:
+    """The pieces of each ball that moved, by its id."""
+    check_path(shot)
+    found = {ball: pieces(shot, ball) for ball in range(len(shot.positions))}
+    return {ball: own for ball, own in found.items() if any(np.ptp(piece.points, axis=0).max() > STILL for piece in own)}
+
+
+def cue_ball(shot: Shot) -> int | None:
+    """The ball that moves first, and fastest; None if none does."""
+    v = np.hypot(*shot.at(0.0)[1].T)
+    return int(v.argmax()) if v.max() > 0 else None
+
+
+def velocity_before(shot: Shot, ball: int, time: float) -> Floats:
+    """(2,) [m/s] of a ball just before something happens to it at that time."""
+    own = shot.segments[(shot.segments[:, SEGMENT_BALL] == ball) & (shot.segments[:, T0] < time)]
+    if not len(own):  # it happens at the start
+        return shot.at(0.0)[1][ball]
+    row = own[-1]
+    return row[[VX, VY]] + row[[AX, AY]] * (time - row[T0])
+
+
+def contacts(shot: Shot, ball: int) -> Iterator[Contact]:
+    """What a ball meets, in order of time. Of two balls that meet, ``ball`` is ``Contact.ball``. A ball that rests is only met."""
+    R = shot.physics.R
+    for time, number, i, j in shot.events[_is_impact(shot)].tolist():
+        kind = EventKind(number)
+        if ball != i and not (kind == EventKind.BALL_BALL and ball == j):
+            continue
+        other = int(j if ball == i else i)
+        r, v, _ = shot.at(time)
+        centre, place = r[ball], r[ball]
+        if kind == EventKind.BALL_BALL:
+            place = (r[ball] + r[other]) / 2
+        elif shot.table is not None and kind == EventKind.CUSHION:
+            nose = shot.table.noses[other]
+            place = centre.copy()
+            place[0 if nose[NOSE_AXIS] == AXIS_X else 1] = nose[NOSE_SIDE] * nose[NOSE_LEVEL]
+        elif shot.table is not None and kind == EventKind.JAW:
+            towards = shot.table.jaws[other, [JAW_X, JAW_Y]] - centre
+            place = centre + R * towards / np.hypot(*towards)
+        elif shot.table is not None and kind == EventKind.POT:
+            place = shot.table.falls[other, [FALL_X, FALL_Y]]
+        before, after = velocity_before(shot, ball, time), v[ball]
+        yield Contact(time, kind, ball, other, place, centre, float(np.hypot(*before)), float(np.hypot(*after)))
+
+
+def cut_angle(shot: Shot, contact: Contact) -> float:
+    """The cut [rad] of a contact with a ball: between the ball's direction just before and the line of centres; 0 is a full hit."""
+    v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
+    return float(np.arctan2(abs(v[0] * line[1] - v[1] * line[0]), v @ line))
+
+
+class Tip(NamedTuple):
+    """Where and how a cue strikes: offsets over R (+ right, + up), [m/s], [rad]."""
+
+    side: float
+    top: float
+    speed: float
+    elevation: float
+
+
+def tip_of(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
+    """The strike that gives a ball this velocity (2,) and spin (3,): ``physics.cue.struck`` solved for the tip.
+
+    Without side, no spin tells how far the cue was raised: it is taken as level.
+    """
+    v = float(np.hypot(*velocity))
+    c, s = velocity / v
+    about_path, about_up = float(spin[0] * c + spin[1] * s), float(spin[2])
+    elevation = float(np.arctan2(about_path * np.sign(about_up), abs(about_up))) if about_up else 0.0
+    elevation = elevation if elevation > 1e-9 else 0.0  # a lower one is no cue's
+    q = 2.5 * v / np.cos(elevation) / physics.R
+    return Tip(about_up / np.cos(elevation) / q, float(spin[1] * c - spin[0] * s) / q, v / float(np.cos(elevation)), elevation)
+
+
+def arrow_places(points: Floats, spacing: float) -> list[tuple[Floats, Floats]]:
+    """Where arrowheads stand on a line (m, 2), one each ``spacing`` [m] from half of that on, and their unit directions.
+
+    A line of half the spacing or more has one at least; a shorter one has none.
+    """
+    steps = np.diff(points, axis=0)
+    lengths = np.hypot(*steps.T)
+    total = float(lengths.sum())
+    n = max(round(total / spacing), int(total >= spacing / 2))
+    ends, found = np.cumsum(lengths), []
+    for far in (np.arange(n) + 0.5) * total / max(n, 1):
+        k = int(np.searchsorted(ends, far))
+        unit = steps[k] / lengths[k]
+        found.append((points[k + 1] - (ends[k] - far) * unit, unit))
+    return found

@@ -1,0 +1,327 @@
+"""How is a table drawn with matplotlib? A ``Sketch``: axes in metres, baulk left and black right, with cloth, cushions, balls and marks.
+
+The horizontal axis of the picture is y [m] to the right, the vertical one x [m] down, as from above on television: a point (x, y) of the
+table is drawn by ``ax.plot(y, x)``. Everything lies on the table's own colours, so that it looks the same in light and dark surroundings.
+"""
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from .._types import Floats, Vector
+from ..game.balls import N_BALLS
+from ..physics.table import Table
+from .palette import COLOURS, LETTERS, PALE, PALETTE
+from .scene import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, extent, is_marked, outline
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+WIDTH = 8.3
+"""Of a figure that is made for a diagram [inches]: 830 pixels, as wide as a README shows."""
+PATH_WIDTH, OUTLINE = 2.16, 1.6
+"""Of a path [points]: 3 pixels at 100 dots an inch; and how much wider its dark outline is."""
+TABLE = "snooker-table"
+"""The gid of what a sketch draws once on its axes."""
+CAPTIONS = {"full": 0.118, "short": 0.2, "none": 0.0}
+"""How high the strip for words under the picture is, as a part of its width: for wide axes, for those of half the width, and none."""
+
+_MARGIN = 0.02  # floor to be seen around the rails [m]
+
+
+def pyplot() -> Any:
+    """``matplotlib.pyplot``; ImportError with the line that installs it."""
+    try:
+        from matplotlib import pyplot as plt
+    except ImportError as error:
+        raise ImportError('diagrams need matplotlib; install it, in a clone of snooker_env, with: pip install -e ".[plot]"') from error
+    return plt
+
+
+class Window(NamedTuple):
+    """What of a table is to be seen [m]."""
+
+    low_x: float
+    high_x: float
+    low_y: float
+    high_y: float
+
+    @property
+    def width(self) -> float:
+        """From left to right in the picture [m]."""
+        return self.high_y - self.low_y
+
+    @property
+    def height(self) -> float:
+        """From top to bottom in the picture [m]."""
+        return self.high_x - self.low_x
+
+    @classmethod
+    def of_table(cls, table: Table) -> "Window":
+        """All of a table, with its rails."""
+        (low_x, high_x), (low_y, high_y) = extent(table)
+        rim = RAIL + _MARGIN if is_closed(table) else 0.0
+        return cls(low_x - rim, high_x + rim, low_y - rim, high_y + rim)
+
+    @classmethod
+    def around(cls, points: Floats, table: Table, margin: float = 0.18, ratio: tuple[float, float] = (1.35, 2.1)) -> "Window":
+        """As much as points (m, 2) need, at least 1 m wide, its width over its height within ``ratio``, and within the table's picture."""
+        low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
+        height, width = high - low
+        width, height = max(width, 1.0, ratio[0] * height), height
+        height = max(height, width / ratio[1])
+        whole = cls.of_table(table)
+        bounded = is_closed(table)
+        found = []
+        for size, middle, least, most in (
+            (height, (low[0] + high[0]) / 2, whole.low_x, whole.high_x),
+            (width, (low[1] + high[1]) / 2, whole.low_y, whole.high_y),
+        ):
+            size = min(size, most - least) if bounded else size
+            start = float(np.clip(middle - size / 2, least, most - size)) if bounded else middle - size / 2
+            found += [start, start + size]
+        return cls(*map(float, found))
+
+
+def is_closed(table: Table) -> bool:
+    """Is there a cushion on each side? Then there is wood around, else cloth as far as one sees."""
+    return bool(np.isfinite(table.bounds).all())
+
+
+def rgb(colour: Any, alpha: float = 1.0) -> tuple[float, float, float, float]:
+    """A colour of the palette by name, or three numbers up to 255, as matplotlib takes it."""
+    red, green, blue = (PALETTE[colour] if isinstance(colour, str) else colour)[:3]
+    return red / 255, green / 255, blue / 255, alpha
+
+
+def flipped(points: Any) -> Floats:
+    """(..., 2) as matplotlib is to draw them: y to the right, x down."""
+    return np.asarray(points, np.float64)[..., ::-1]
+
+
+class Sketch:
+    """Axes with a table on them; ``ax`` None: in a figure of their own.
+
+    Axes that a sketch has drawn on before keep their table and what they show of it.
+    """
+
+    def __init__(self, table: Table, R: float, window: Window | None = None, ax: "Axes | None" = None, *, strip: float = 0.0):
+        plt = pyplot()
+        window = Window.of_table(table) if window is None else window
+        self.table, self.R = table, R
+        depth = strip * window.width
+        if ax is None:
+            figure = plt.figure(figsize=(WIDTH, WIDTH * (window.height + depth) / window.width), facecolor=rgb("floor"))
+            ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        self.ax: Axes = ax
+        self.fresh = not any(artist.get_gid() == TABLE for artist in ax.get_children())
+        if self.fresh:
+            self.window, self.depth = window, depth
+            self._set_up()
+            self._draw_table()
+        else:
+            (low_y, high_y), (bottom, low_x) = ax.get_xlim(), ax.get_ylim()
+            self.window, self.depth = Window(low_x, bottom, low_y, high_y), 0.0
+        box, (wide, high) = ax.get_position(), ax.get_figure().get_size_inches()
+        self.points_per_metre = 72 * min(box.width * wide / self.window.width, box.height * high / (self.window.height + self.depth))
+        self.font = float(np.clip(9.0 * self.points_per_metre * self.window.width / (72 * WIDTH), 7.5, 11.0))
+        self._taken: list[tuple[float, float, float, float]] = []
+        self._busy: list[Floats] = []
+
+    def _set_up(self):
+        w, ax = self.window, self.ax
+        ax.set_xlim(w.low_y, w.high_y)
+        ax.set_ylim(w.high_x + self.depth, w.low_x)
+        ax.set_aspect("equal")
+        ax.set_xticks([])
+        ax.set_yticks([])
+        ax.set_facecolor(rgb("floor"))
+        for spine in ax.spines.values():
+            spine.set_visible(False)
+
+    # the table ---------------------------------------------------------------------------------------------------------------
+
+    def _draw_table(self):
+        from matplotlib.patches import Circle, FancyBboxPatch, Polygon, Rectangle
+
+        ax, parts, w = self.ax, outline(self.table), self.window
+        (low_x, high_x), (low_y, high_y) = extent(self.table)
+        scale = 72 * WIDTH / w.width  # of lines that are so many metres wide, about
+
+        def add(patch, level, clip=None):
+            patch.set(zorder=level, gid=TABLE)
+            ax.add_patch(patch)
+            if clip is not None:
+                patch.set_clip_path(clip)
+
+        def box(extra, kind=Rectangle, **more):
+            return kind((low_y - extra, low_x - extra), high_y - low_y + 2 * extra, high_x - low_x + 2 * extra, **more)
+
+        def rail(extra, radius, colour, level):
+            add(box(extra, FancyBboxPatch, boxstyle=f"round,pad=0,rounding_size={radius}", fc=rgb(colour), ec="none"), level)
+
+        if is_closed(self.table):
+            rail(RAIL, 0.09, "wood_edge", 0.0)
+            rail(RAIL - 0.010, 0.08, "wood", 0.05)
+            rail(RAIL - 0.022, 0.07, [min(255, round(1.13 * part)) for part in PALETTE["wood"]], 0.06)
+            add(box(CUSHION + 0.008, fc=rgb("wood_edge"), ec="none"), 0.1)
+            for rim, colour, level in ((0.014, "leather_edge", 0.15), (0.011, "leather", 0.16), (0.0, "hole", 0.2)):
+                for x0, y0, x1, y1, half in parts.throats:
+                    along = np.array([x1 - x0, y1 - y0]) / np.hypot(x1 - x0, y1 - y0)
+                    across = (half + rim) * np.array([-along[1], along[0]])
+                    a, b = np.array([x0, y0]), np.array([x1, y1])
+                    add(Polygon(flipped([a + across, b + across, b - across, a - across]), fc=rgb(colour), ec="none"), level)
+                    add(Circle((y1, x1), half + rim, fc=rgb(colour), ec="none"), level)
+            left, top = max(low_y - CUSHION, w.low_y), max(low_x - CUSHION, w.low_x)
+            right, bottom = min(high_y + CUSHION, w.high_y), min(high_x + CUSHION, w.high_x)
+        else:  # cloth as far as one sees
+            left, top, right, bottom = w.low_y, w.low_x, w.high_y, w.high_x
+        add(Rectangle((left, top), right - left, bottom - top, fc=rgb("cloth"), ec="none"), 0.3)
+        cloth = Rectangle((left, top), right - left, bottom - top, transform=ax.transData)  # what is drawn on it ends with it
+        for x, y, radius in parts.falls:
+            add(Circle((y, x), radius + 0.006, fc=rgb("cloth_edge"), ec="none"), 0.4, cloth)
+            add(Circle((y, x), radius, fc=rgb("hole"), ec="none"), 0.45, cloth)
+        if is_marked(self.table):
+            for line in (BAULK_LINE, D_ARC):
+                ax.plot(*flipped(line).T, color=rgb("line"), lw=0.0045 * scale, zorder=0.5, gid=TABLE)
+            for x, y in SPOT_MARKS:
+                add(Circle((y, x), 0.007, fc=rgb("line"), ec="none"), 0.5)
+        for nose in parts.noses:
+            (shade,) = ax.plot(*flipped(nose).T, color=rgb("shadow", 0.28), lw=0.03 * scale, zorder=0.55, gid=TABLE)
+            shade.set_clip_path(cloth)
+        for polygon, nose in zip(parts.cushions, parts.noses, strict=True):
+            add(Polygon(flipped(polygon), fc=rgb("cushion"), ec="none"), 0.6, cloth)
+            ax.plot(*flipped(nose).T, color=rgb("nose"), lw=0.005 * scale, zorder=0.65, gid=TABLE, solid_capstyle="butt")
+        if self.depth:
+            add(Rectangle((w.low_y, w.high_x), w.width, self.depth, fc=rgb("bar"), ec="none"), 9.0)
+            ax.plot([w.low_y, w.high_y], [w.high_x] * 2, color=rgb("bar_edge"), lw=1.0, zorder=9.1, gid=TABLE)
+
+    # what lies on it ---------------------------------------------------------------------------------------------------------
+
+    def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
+        """A ball as it lies, with a little light on it; ``label``: and its letter."""
+        from matplotlib.patches import Circle
+
+        (y, x), R, colour = flipped(place), self.R, COLOURS[ball % N_BALLS]
+        add = self.ax.add_patch
+        add(Circle((y + 0.25 * R, x + 0.3 * R), 1.08 * R, fc=rgb("shadow", 0.4), ec="none", zorder=6.9))
+        add(Circle((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), lw=0.4, zorder=7.0, gid=f"ball-{ball}"))
+        for k in range(1, 6):
+            away = 0.07 * k * R
+            add(Circle((y - away, x - away), R * (1 - 0.15 * k), fc=(1, 1, 1, 0.055), ec="none", zorder=7.0 + 0.01 * k))
+        add(Circle((y - 0.36 * R, x - 0.40 * R), 0.17 * R, fc=rgb("lamp", 0.85), ec="none", zorder=7.1))
+        self.keep_clear(np.asarray(place)[None], 2 * R)
+        if label:
+            dark = colour @ [0.30, 0.59, 0.11] < 130
+            ink = (1, 1, 1) if dark else (0, 0, 0)
+            size = max(5.0, 1.15 * R * self.points_per_metre)
+            self.ax.text(y, x, LETTERS[ball % N_BALLS], color=ink, size=size, weight="bold", ha="center", va="center_baseline", zorder=7.2)
+
+    def ghost(self, ball: int, place: Vector, alpha: float = 0.4, *, radius: float | None = None, level: float = 6.0) -> None:
+        """A ball that is there only for a moment, or in the end: faded, with a rim. ``radius``: not as large as it is."""
+        from matplotlib.patches import Circle
+
+        (y, x), colour = flipped(place), COLOURS[ball % N_BALLS]
+        rim = rgb(PALE[ball % N_BALLS], min(1.0, alpha + 0.45))
+        size, gid = (self.R, f"ghost-{ball}") if radius is None else (radius, "sign")
+        self.ax.add_patch(Circle((y, x), size, fc=rgb(colour, alpha), ec=rim, lw=0.9, zorder=level, gid=gid))
+        self.keep_clear(np.asarray(place)[None], 2 * size)
+
+    def line(
+        self, points: Floats, colour: Any, *, level: float = 5.0, width: float = PATH_WIDTH, outlined: bool = True, **style: Any
+    ) -> None:
+        """A line (m, 2) [m] with a dark outline."""
+        under = {"color": rgb("path_edge", 0.85), "lw": width + OUTLINE, "zorder": level - 0.5, "solid_capstyle": "round"}
+        self.ax.plot(*flipped(points).T, **under, gid="outline")
+        self.ax.plot(
+            *flipped(points).T, **{"color": rgb(colour), "lw": width, "zorder": level, "solid_capstyle": "round", "gid": "path"} | style
+        )
+        self.keep_clear(points, 0.0)
+
+    def arrow(self, place: Floats, direction: Floats, colour: Any, size: float = 10.0, level: float = 5.6) -> None:
+        """An arrowhead at a place, pointing along a unit vector."""
+        from matplotlib.markers import MarkerStyle
+        from matplotlib.path import Path
+        from matplotlib.transforms import Affine2D
+
+        head = Path([(1.2, 0.0), (-0.8, 0.75), (-0.4, 0.0), (-0.8, -0.75), (1.2, 0.0)])
+        across, along = -direction[0], direction[1]  # as seen: up and to the right
+        turn = Affine2D().rotate(np.arctan2(across, along))
+        y, x = flipped(place)
+        marker = MarkerStyle(head, transform=turn)
+        style = {"mfc": rgb(colour), "mec": rgb("path_edge"), "mew": 0.8, "ls": "none", "zorder": level}
+        self.ax.plot(y, x, marker=marker, ms=size, **style, gid="arrow")
+
+    def mark(self, place: Vector, marker: Any, colour: Any, size: float = 6.0, level: float = 8.0, **more: Any) -> None:
+        """A small sign at a place."""
+        y, x = flipped(place)
+        style = {"mfc": rgb(colour), "mec": rgb("path_edge"), "mew": 0.9, "ls": "none", "zorder": level} | more
+        self.ax.plot(y, x, marker=marker, ms=size, **style)
+
+    # words -------------------------------------------------------------------------------------------------------------------
+
+    def keep_clear(self, points: Floats, size: float) -> None:
+        """Labels are not to lie on these points (m, 2), each ``size`` [m] wide; of a line also not between them."""
+        if len(points) > 1:
+            steps = np.maximum(1, np.ceil(np.hypot(*np.diff(points, axis=0).T) / 0.02).astype(int))
+            points = np.concatenate([np.linspace(a, b, n) for a, b, n in zip(points[:-1], points[1:], steps, strict=True)])
+        self._busy.append(np.column_stack([points, np.full(len(points), size)]))
+
+    def text(self, y: float, x: float, words: str, colour: Any = "text", size: float = 1.0, **more: Any) -> None:
+        """Words at a place of the picture, in sizes of the usual font."""
+        self.ax.text(y, x, words, **{"color": rgb(colour), "size": self.font * size, "zorder": 9.5, "va": "center"} | more)
+
+    def rows(self, n: int) -> list[float]:
+        """The heights (as x) of n lines of words in the strip under the picture."""
+        return [self.window.high_x + self.depth * (k + 0.62) / (n + 0.24) for k in range(n)]
+
+    def title(self, words: str) -> None:
+        """A line at the top left."""
+        from matplotlib.patheffects import withStroke
+
+        if words:
+            w, line = self.window, 1.5 * self.font / self.points_per_metre
+            within = w.low_x < extent(self.table)[0, 0] - CUSHION  # on the rail, else on the cloth
+            y, x = (w.low_y + 0.055 * w.width, w.low_x + 0.072) if within else (w.low_y + 0.5 * line, w.low_x + 0.7 * line)
+            stroke = [withStroke(linewidth=2.2, foreground=rgb("path_edge", 0.85))]
+            self.text(y, x, words, weight="bold", size=1.1, gid="title", path_effects=stroke)
+            self._taken.append((w.low_y, w.low_y + 0.66 * line * len(words), w.low_x, w.low_x + 1.3 * line))
+
+    def label(self, place: Vector, words: str, colour: Any = "text") -> bool:
+        """Words near a place, where they cover least, with a line to it; False if there is no room for them."""
+        from matplotlib.patheffects import withStroke
+
+        high = 1.25 * self.font / self.points_per_metre
+        wide = (0.66 * len(words) + 0.6) * self.font / self.points_per_metre
+        y, x = flipped(place)
+        busy = np.concatenate(self._busy) if self._busy else np.empty((0, 3))
+        best, least = None, np.inf
+        for far in (1.6, 2.3, 3.2, 4.4):
+            for angle in np.arange(0, 2 * np.pi, np.pi / 8):
+                cy, cx = y + np.cos(angle) * (wide / 2 + 0.45 * far * high), x + np.sin(angle) * 0.8 * far * high
+                box = cy - wide / 2, cy + wide / 2, cx - high / 2, cx + high / 2
+                cost = self._cost(box, busy) + 0.4 * far
+                if cost < least:
+                    best, least = (cy, cx, box), cost
+        if best is None or least > 60:
+            return False
+        cy, cx, box = best
+        self._taken.append(box)
+        near = np.clip(y, box[0], box[1]), np.clip(x, box[2], box[3])
+        if np.hypot(near[0] - y, near[1] - x) > 0.7 * high:
+            self.ax.plot([y, near[0]], [x, near[1]], color=rgb("text", 0.7), lw=0.7, zorder=8.4, gid="leader")
+        stroke = [withStroke(linewidth=2.4, foreground=rgb("path_edge", 0.9))]
+        style = {"color": rgb(colour), "size": self.font, "ha": "center", "va": "center", "zorder": 8.6, "weight": "bold"}
+        self.ax.text(cy, cx, words, **style, path_effects=stroke, gid="label")
+        return True
+
+    def _cost(self, box, busy):
+        """How much a label in that box would cover."""
+        left, right, top, bottom = box
+        w = self.window
+        out = max(w.low_y - left, right - w.high_y, w.low_x - top, bottom - w.high_x, 0.0)
+        half = busy[:, 2] / 2
+        inside = (busy[:, 1] > left - half) & (busy[:, 1] < right + half) & (busy[:, 0] > top - half) & (busy[:, 0] < bottom + half)
+        weight = float((inside * np.where(busy[:, 2] > 0, 6.0, 1.0)).sum())
+        over = sum(100.0 for l, r, t, b in self._taken if l < right and left < r and t < bottom and top < b)  # noqa: E741
+        return weight + over + (1000.0 if out else 0.0)
