@@ -1,11 +1,14 @@
 """How does a simulated shot become the data of a replay? By hand from its log, so that the browser is tested against the format itself."""
 
 import base64
+import json
 
 import numpy as np
 
+import snooker_env as sn
 from snooker_env.physics import cloth
 from snooker_env.render.scene import scene_data
+from tests.web.chromium import WEB
 
 _F8 = [cloth.T0, cloth.X, cloth.Y, cloth.VX, cloth.VY, cloth.AX, cloth.AY]
 _F4 = [cloth.WX, cloth.WY, cloth.WZ]
@@ -15,6 +18,14 @@ _U1 = [cloth.SEGMENT_BALL, cloth.SEGMENT_STATE]
 def packed(values, kind):
     """Base64 of numbers, little-endian."""
     return base64.b64encode(np.ascontiguousarray(values, kind).tobytes()).decode()
+
+
+def hit(r, here, speed, aim, side, top, elevation, table, physics):
+    """The shot of a cue that strikes ball 0."""
+    v, w = sn.strike(speed, aim, side, top, elevation, physics)
+    velocities, spins = np.zeros((len(r), 2)), np.zeros((len(r), 3))
+    velocities[0], spins[0] = v[:2], w
+    return sn.simulate(r, velocities, spins, table, physics, on_table=here)
 
 
 def stroke_of(shot, start, on_table=None, **words):
@@ -43,3 +54,12 @@ def replay_of(strokes, table="match", physics=None, players=(), title="test"):
         "format": "snooker-replay", "version": 1, "title": title, "players": list(players), "scene": scene_data(table),
         "R": physics.R, "spin_decel": physics.spin_decel, "strokes": strokes,
     }  # fmt: skip
+
+
+def html_of(replay):
+    """The replay as one HTML page."""
+    parts = {"title": replay["title"], "data": json.dumps(replay).replace("</", "<\\/"), "module": (WEB / "table.js").read_text(encoding="utf-8")}
+    page = (WEB / "replay.html").read_text(encoding="utf-8")
+    for name, text in parts.items():
+        page = page.replace("{{" + name + "}}", text)
+    return page
