@@ -6,10 +6,9 @@
  *
  * Frame: origin at the table's centre, +x to the yellow side, +y to the black end, SI units. On screen +y goes right and +x down.
  *
- * Beyond the contract: `Stroke.end`, `turn`, `trace`; in a frame `depth` (0 on the cloth to 1 gone into a pocket) and lines with a `path` (Path2D in
- * metres); a player's `time`, `stroke`, `playing`, `speed`, `positions()`, `skip(strokes)`, `seekTotal(s)`, `flip(name)`; its options `autoplay`, `speed`,
- * `paths`, `ghosts`, `spin` ("cue", "all", "off"), `labels`, `fill` (as high as its parent), `keys` (what listens for keys), `onstroke(stroke)`,
- * `ontime(t, stroke)`, `onend()`.
+ * For hosts and tests: a frame may have `depth` (0 on the cloth to 1 gone into a pocket), a line a `path` (Path2D in metres); a player has `time`,
+ * `stroke`, `playing`, `speed`, `positions()`, `skip(strokes)`, `seekTotal(s)`, `flip(name)`; its options are `autoplay`, `speed`, `paths`, `ghosts`,
+ * `spin` ("cue", "all", "off"), `labels`, `fill` (as high as its parent), `keys` (what listens), `onstroke(stroke)`, `ontime(t, stroke)`, `onend()`.
  */
 
 const GONE = 0, ROLL = 2, SLIDE = 3, FALLING = 4, BEND = 5, BALL_BALL = 0;
@@ -43,7 +42,7 @@ function turned(q, x, y, z) {
 	return [w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c, w * c + y * a + z * b - x * d, w * d + z * a + x * c - y * b];
 }
 
-/** Step [s] in which the orientation of a ball is followed where its axis of rotation turns. */
+/** Step [s] in which the orientation of a ball is followed where its axis turns. */
 const STEP = 1 / 120;
 
 /** One stroke of a replay: its data, and where the balls are at any time. */
@@ -64,16 +63,8 @@ class Stroke {
 		this.later = { x: places.filter((_, k) => k % 2 === 0), y: places.filter((_, k) => k % 2), on: flags(after.on_table) };
 	}
 
-	/** Which segment of a ball's log holds at time t; -1 before the first. */
-	find(ball, t) {
-		const log = this.logs[ball];
-		let low = -1, high = log.length - 1;
-		while (low < high) {
-			const middle = (low + high + 1) >> 1;
-			if (log[middle].t0 <= t) low = middle; else high = middle - 1;
-		}
-		return low;
-	}
+	/** Which segment of a ball's log holds at time t; -1 before the first. There are tens of them: a search by halves would gain nothing. */
+	find(ball, t) { return this.logs[ball].findLastIndex(segment => segment.t0 <= t); }
 
 	/** [x, y, vx, vy, wx, wy, wz] at time t of a segment; the order of the arithmetic is that of the simulation. */
 	moving({ t0, x, y, vx, vy, ax, ay, wx, wy, wz, state }, t) {
@@ -749,7 +740,7 @@ export class Player {
 		};
 		say(`break ${run} `, pots);
 		if (stroke.n === 22) say(`reds ${reds}`, []);
-		const on = balls.findIndex(one => one.name === stroke.ball_on);
+		const on = balls.findIndex(one => one.name.startsWith(stroke.ball_on));
 		if (stroke.ball_on) say("on ", on < 0 ? [] : [on], ` ${stroke.ball_on}`);
 	}
 

@@ -1,8 +1,5 @@
 """Does the browser show what was simulated? ``table.js`` in a real headless Chromium: its places, its orientations, what it draws."""
 
-import base64
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -10,11 +7,10 @@ import snooker_env as sn
 from snooker_env.game import layout
 from snooker_env.physics import cloth
 from snooker_env.render.scene import scene_data
-from tests.web.chromium import chromium, module_page  # noqa: F401
-from tests.web.replay_data import hit, packed, replay_of, stroke_of
+from snooker_env.replays.encode import packed
+from tests.web.chromium import WEB, chromium, module_page  # noqa: F401
+from tests.web.replay_data import MATCH, doubles, hit
 
-TABLE_JS = Path(sn.__file__).parent / "web" / "table.js"
-MATCH = sn.Physics.preset("match")
 WORLDS = {  # table, physics, balls
     "snooker": ("match", MATCH, 22),
     "paper, few balls": ("match", sn.Physics(), 5),
@@ -23,7 +19,6 @@ WORLDS = {  # table, physics, balls
     "carom": ("carom", sn.Physics.preset("match", R=sn.Table.preset("carom").ball_radius), 3),
     "open cloth": (None, sn.Physics.preset("match", spin_decel=0.0), 4),
 }
-HARDEST = {"break": 9.0, "slow": 1.0}
 
 
 def start_of(world, rng):
@@ -55,10 +50,6 @@ def shots(count, rng):
     return made
 
 
-def doubles(text):
-    return np.frombuffer(base64.b64decode(text), "<f8")
-
-
 AT = """({replay, times, names}) => {
   const doubles = text => new Float64Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
   const text = numbers => { let s = ""; for (const b of new Uint8Array(numbers.buffer)) s += String.fromCharCode(b); return btoa(s); };
@@ -73,9 +64,9 @@ AT = """({replay, times, names}) => {
 
 def in_browser(page, made, times, names):
     """[(times, names, balls)] of shots of one world as the browser evaluates them."""
-    table, physics, _ = WORLDS[made[0][0]]
-    replay = replay_of([stroke_of(shot, r, here) for _, shot, r, here in made], table, physics)
-    found = page.evaluate(AT, {"replay": replay, "times": [packed(t, "<f8") for t in times], "names": names})
+    table = WORLDS[made[0][0]][0]
+    replay = sn.replay([shot for _, shot, _, _ in made], table=table).to_dict()
+    found = page.evaluate(AT, {"replay": replay, "times": [packed(t, "f8") for t in times], "names": names})
     return [doubles(text).reshape(len(t), len(names), -1) for text, t in zip(found, times, strict=True)]
 
 
@@ -85,7 +76,7 @@ def page(chromium):  # noqa: F811
 
 
 def test_the_file_is_small_and_loads_nothing():
-    source = TABLE_JS.read_text(encoding="utf-8")
+    source = (WEB / "table.js").read_text(encoding="utf-8")
     assert len(source.encode()) < 40_000
     assert "import " not in source and "http" not in source.replace("http-equiv", "") and "</script" not in source
 
@@ -122,7 +113,7 @@ def test_velocities_spins_and_who_is_there(page):
         for (_, shot, _, here), t, found in zip(ours, times, in_browser(page, ours, times, names), strict=True):
             _, v, w = shot.at(t)
             assert np.array_equal(found[:, :2], v.transpose(0, 2, 1))
-            assert np.allclose(found[:, 2:5], w.transpose(0, 2, 1), rtol=1e-6, atol=1e-9)
+            assert np.allclose(found[:, 2:5], w.transpose(0, 2, 1), rtol=1e-6, atol=5e-5)  # 32 bits
             gone = np.where(here, np.inf, -1.0)
             pots = shot.events[shot.events["kind"] == sn.EventKind.POT]
             gone[pots["i"]] = pots["time"]
@@ -133,7 +124,7 @@ def test_a_ball_turns_as_it_spins(page):
     """Against tiny steps of the simulation's own spins; and the same whichever way a time is come to."""
     r = np.array([(0.1, -1.0), (0.0, 0.3)])
     shot = hit(r, None, 2.5, np.arctan2(1.3, -0.1), 0.3, -0.3, 0.05, "match", MATCH)
-    replay = replay_of([stroke_of(shot, r)], "match", MATCH)
+    replay = sn.replay(shot).to_dict()
     times = [0.3, 0.9, 2.5, shot.duration]
     found = page.evaluate(
         """([replay, times]) => {
@@ -174,7 +165,7 @@ def test_a_ball_sinks_into_its_pocket(page):
     (pot,) = shot.events["time"][shot.events["kind"] == sn.EventKind.POT]
     depth = page.evaluate(
         "([replay, times]) => { const [stroke] = table.decode(replay).strokes; return times.map(t => Array.from(stroke.at(t).depth)); }",
-        [replay_of([stroke_of(shot, r)], "match", MATCH), [0.0, pot - 0.5 * pot, pot + 0.1, pot + 1]],
+        [sn.replay(shot).to_dict(), [0.0, pot - 0.5 * pot, pot + 0.1, pot + 1]],
     )
     assert [d[1] for d in depth] == [0, 0, 0, 0]
     assert depth[0][0] == depth[1][0] == 0 and 0 < depth[2][0] < 1 and depth[3][0] == 1
@@ -183,7 +174,7 @@ def test_a_ball_sinks_into_its_pocket(page):
 def test_what_is_no_replay_is_refused(page):
     said = page.evaluate("() => { try { table.decode({format: 'chess', version: 1}); } catch (error) { return error.message; } }")
     assert "chess" in said
-    empty = replay_of([], "match", MATCH)
+    empty = sn.replay(hit(np.zeros((1, 2)), None, 1.0, 0.0)).to_dict() | {"strokes": []}
     said = page.evaluate("replay => { try { table.mount(document.body, replay); } catch (error) { return error.message; } }", empty)
     assert "stroke" in said
 
@@ -219,7 +210,7 @@ def test_one_orientation_and_places_there_and_back(page):
 def test_every_table_is_drawn_as_it_is(page, table):
     scene = scene_data(table)
     (_, high_x), (_, high_y) = scene["extent"]
-    places = [[0.3, 0.2], [high_x / 2, high_y + 0.1], [0.1, -0.4]] + [[x, y] for x, y, _ in scene["falls"]]
+    places = [[0.3, 0.2], [high_x / 2, high_y + (0.1 if table else 0.03)], [0.1, -0.4]] + [[x, y] for x, y, _ in scene["falls"]]
     frame = {"x": [0.1], "y": [-0.4], "on": [1]}
     cloth_, rail, ball, *pockets = drawn(page, scene, frame, places)["pixels"]
     palette = scene["palette"]
@@ -260,7 +251,7 @@ def test_paths_are_three_pixels_wide_at_any_size(page):
         pixels = drawn(page, scene, {"x": [], "y": [], "on": [], "lines": [line]}, across, size=size)["pixels"]
         white = sum(min(p) > 150 for p in pixels)
         assert 2 <= white <= 6, (size, pixels)
-        assert any(max(p) < 90 for p in pixels)  # its dark edge
+        assert min(max(p) for p in pixels) < min(max(pixels[0]), max(pixels[-1])) - 20, pixels  # its dark edge
 
 
 def test_balls_stand_out_from_the_cloth_and_carry_letters(page):
@@ -270,7 +261,7 @@ def test_balls_stand_out_from_the_cloth_and_carry_letters(page):
     frame = {"x": x, "y": y, "on": [int(i in ids) for i in range(22)]}
     at = [[x[i] + 0.01, y[i]] for i in ids]
     plain = drawn(page, scene, frame, at, size=[1900, 1000])
-    assert all(np.abs(np.subtract(p, scene["palette"]["cloth"])).max() > 60 for p in plain["pixels"])
+    assert all(np.abs(np.subtract(p, scene["palette"]["cloth"])).max() > 45 for p in plain["pixels"])
     grid = [[x[i] + dx, y[i] + dy] for i in ids for dx in np.linspace(-0.015, 0.015, 7) for dy in np.linspace(-0.01, 0.01, 5)]
     without, labelled = (np.array(drawn(page, scene, {**frame, "labels": on}, grid, size=[1900, 1000])["pixels"]) for on in (False, True))
     changed = np.abs(labelled - without).max(axis=1).reshape(len(ids), -1) > 40
