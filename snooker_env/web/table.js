@@ -636,7 +636,7 @@ export class Player {
 	step(way) {
 		this.pause();
 		const { events, duration } = this.strokes[this.k], stops = [0, ...events.filter(event => EVENTS[event[1]]).map(event => event[0]), duration];
-		const next = way > 0 ? stops.find(t => t > this.t) : stops.findLast(t => t < this.t);
+		const next = way > 0 ? stops.find(t => t > this.t + 1e-8) : stops.findLast(t => t < this.t - 1e-8);
 		if (next !== undefined) this.seek(this.k, next);
 		else if (this.strokes[this.k + way]) this.seek(this.k + way, way > 0 ? 0 : Infinity);
 	}
@@ -705,7 +705,7 @@ export class Player {
 		const about = [`${k + 1} of ${this.strokes.length}`, cue && `${cue.speed.toFixed(2)} m/s`, cue?.elevation > 0.1 && `raised ${round(cue.elevation * 360 / TURN)}°`];
 		this.part("about").lastChild.textContent = about.filter(Boolean).join(" · ");
 		const told = event && `${t.toFixed(3)} s: ${balls[event[2]].name} ${EVENTS[event[1]]} ${event[1] === BALL_BALL ? balls[event[3]].name : ""}`;
-		this.part("words").textContent = told || (over && stroke.words) || title || "";
+		this.part("words").textContent = (over && stroke.words) || told || title || "";
 		this.drawTip(cue);
 		if (this.who.length) this.score(stroke, over, reds);
 	}
