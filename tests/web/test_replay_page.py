@@ -48,7 +48,9 @@ class Watched:
 
     def close(self):
         assert not self.errors
-        assert {url.split(":")[0] for url in self.asked} <= {"file", "data"} and len([url for url in self.asked if url.startswith("file")]) == 1
+        assert {url.split(":")[0] for url in self.asked} <= {"file", "data"} and len(
+            [url for url in self.asked if url.startswith("file")]
+        ) == 1
         self.page.close()
 
 
@@ -256,10 +258,19 @@ def test_nothing_overlaps_or_overflows_at_any_size(open_page):
         p.until("p.canvas.width === argument", width)
         for moment in ("p.seek(1, 0.5)", "p.seek(1, p.strokes[1].duration)", "(p.seek(0, 0), p.step(1))"):
             p(moment)
-            assert p("document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight"), (width, height)
+            assert p("document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight"), (
+                width,
+                height,
+            )
             assert p.page.evaluate(OVERLAPS) == [], (width, height, moment)
-        wide, high = p("[p.view.toScreen(0, p.replay.scene.extent[1][1])[0] - p.view.toScreen(0, p.replay.scene.extent[1][0])[0], innerHeight]")
-        assert wide > 0.85 * width or wide > 1.3 * high, (width, height, wide)  # the table fills the width, or what the bars leave of the height
+        wide, high = p(
+            "[p.view.toScreen(0, p.replay.scene.extent[1][1])[0] - p.view.toScreen(0, p.replay.scene.extent[1][0])[0], innerHeight]"
+        )
+        assert wide > 0.85 * width or wide > 1.3 * high, (
+            width,
+            height,
+            wide,
+        )  # the table fills the width, or what the bars leave of the height
 
 
 def test_a_player_in_another_page_leaves_it_as_it_was(chromium):  # noqa: F811

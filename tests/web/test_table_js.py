@@ -93,7 +93,10 @@ def test_places_are_those_of_the_simulation_at_1000_times_of_100_shots(page):
     for world in WORLDS:
         ours = [one for one in made if one[0] == world]
         times = [np.append(rng.uniform(0, 1.05 * shot.duration, 998), (0.0, shot.duration)) for _, shot, _, _ in ours]
-        times = [np.append(t[:-100], rng.choice(np.append(shot.events["time"], 0.0), 100)) for t, (_, shot, _, _) in zip(times, ours, strict=True)]
+        times = [
+            np.append(t[:-100], rng.choice(np.append(shot.events["time"], 0.0), 100))
+            for t, (_, shot, _, _) in zip(times, ours, strict=True)
+        ]
         for (_, shot, _, _), t, found in zip(ours, times, in_browser(page, ours, times, ["x", "y"]), strict=True):
             expected = shot.at(t)[0].transpose(0, 2, 1)
             worst = max(worst, np.abs(found - expected).max())
@@ -155,7 +158,9 @@ def _after(q, turn):
         return q
     w, (x, y, z) = np.cos(angle / 2), np.sin(angle / 2) * turn / angle
     a, b, c, d = q
-    return np.array([w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c, w * c + y * a + z * b - x * d, w * d + z * a + x * c - y * b])
+    return np.array(
+        [w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c, w * c + y * a + z * b - x * d, w * d + z * a + x * c - y * b]
+    )
 
 
 def test_a_ball_sinks_into_its_pocket(page):
@@ -239,7 +244,9 @@ def test_everything_that_a_frame_may_hold_is_drawn(page):
     assert near(ring, [40, 40, 40], 80)
     assert empty != before[3] and near(before[3], scene["palette"]["cloth"])  # the full cell, with the larger x
     assert not near(cue, scene["palette"]["cloth"], 40)
-    assert drawn(page, scene, {**bare, **extra}, [[0.12, -0.52]])["pixels"] == drawn(page, scene, bare, [[0.12, -0.52]])["pixels"]  # an empty cell
+    assert (
+        drawn(page, scene, {**bare, **extra}, [[0.12, -0.52]])["pixels"] == drawn(page, scene, bare, [[0.12, -0.52]])["pixels"]
+    )  # an empty cell
 
 
 def test_paths_are_three_pixels_wide_at_any_size(page):
