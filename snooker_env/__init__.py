@@ -33,19 +33,20 @@ if _typing.TYPE_CHECKING:
     from .envs.snooker import SnookerEnv
     from .envs.vector import SnookerVectorEnv
     from .planning import Planner, Position, Positions
+    from .replays import RecordReplay, Replay, replay
     from .tasks.options import Options
 
 __version__ = "0.3.0.dev0"
 
 __all__ = [
-    "POCKETS", "EventKind", "Options", "Physics", "Planner", "Pocket", "Position", "Positions", "Shot", "ShotBatch", "SimulationError",
-    "SnookerEnv", "SnookerVectorEnv", "Table", "collide_balls", "collide_cushion", "match_env", "planning", "simulate", "simulate_batch",
-    "strike", "warmup",
+    "POCKETS", "EventKind", "Options", "Physics", "Planner", "Pocket", "Position", "Positions", "RecordReplay", "Replay", "Shot",
+    "ShotBatch", "SimulationError", "SnookerEnv", "SnookerVectorEnv", "Table", "collide_balls", "collide_cushion", "match_env", "planning",
+    "replay", "simulate", "simulate_batch", "strike", "warmup",
 ]  # fmt: skip
 
 _LATER = {
     "Options": "tasks.options", "SnookerEnv": "envs.snooker", "SnookerVectorEnv": "envs.vector", "Planner": "planning",
-    "Position": "planning", "Positions": "planning",
+    "Position": "planning", "Positions": "planning", "RecordReplay": "replays", "Replay": "replays", "replay": "replays",
 }  # fmt: skip
 """Where the names are that are imported only when they are asked for: shots alone need no environment."""
 

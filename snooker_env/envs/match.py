@@ -19,15 +19,15 @@ from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.options import Options, options_of
 from ..tasks.rewards import frame_reward
-from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import I_FOULS, I_PENALTY, I_POINTS, Crew
 from .pictures import FPS, MODES, Picture, Pictures
+from .record import Record, Recorded
 from .reset_options import Start, start_of
 
 PLAYERS = ("player_0", "player_1")
 
 
-class MatchEnv(AECEnv[str, Any, Any]):
+class MatchEnv(Recorded, AECEnv[str, Any, Any]):
     """A frame of snooker between two players, one stroke a step.
 
     ## Turns
@@ -87,8 +87,6 @@ class MatchEnv(AECEnv[str, Any, Any]):
     truncations: dict[str, bool]
     infos: dict[str, dict[str, Any]]
     np_random: np.random.Generator
-    last_shot: Shot | None
-    """The ``Shot`` of the last turn, with its path when a render mode is set; None where none was played."""
 
     def __init__(self, options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any):
         super().__init__()
@@ -109,8 +107,7 @@ class MatchEnv(AECEnv[str, Any, Any]):
         self.action_spaces = {name: copy.deepcopy(self.options.rules.actions.space) for name in PLAYERS}  # each with its own generator
         self.np_random, _ = seeding.np_random()
         self._seeded = False
-        self._buffers, self._last = ShotBuffers(1, path=render_mode is not None), None
-        self.last_shot = None
+        self._record, self._last = Record(full=render_mode is not None), None
         self._pictures = Pictures(self.options.rules.table, render_mode)
 
     @property
@@ -127,6 +124,11 @@ class MatchEnv(AECEnv[str, Any, Any]):
     def frame(self) -> Frame:
         """The ``snooker_env.game.frame.Frame`` that is played."""
         return self.tables.frame(0)
+
+    @property
+    def last_shot(self) -> Shot | None:
+        """The ``Shot`` of the last turn, with its path where a history is kept; None where none was played."""
+        return self._record.last_shot if self._last is not None else None
 
     @property
     def strokes(self) -> int:
@@ -232,11 +234,12 @@ class MatchEnv(AECEnv[str, Any, Any]):
             self.tables.deal(np.zeros(1, np.int64), drawn=True)
         self._begin()
         if self.render_mode == "human":
-            self._show(film=False)
+            self._show()
 
     def _begin(self):
         """PettingZoo's book-keeping for a table as it is."""
-        self._last = self.last_shot = None
+        self._last = None
+        self._record.begin_episode()
         self.agents = list(PLAYERS)
         self.rewards = dict.fromkeys(PLAYERS, 0.0)
         self._cumulative_rewards = dict.fromkeys(PLAYERS, 0.0)
@@ -278,21 +281,20 @@ class MatchEnv(AECEnv[str, Any, Any]):
         a = self.options.rules.actions.check(action)
         before = self.tables.lead()[0]
         out = self.tables.output()
-        crew = Crew(self._buffers, (), self._watch)
+        crew = Crew(self._record.buffers, (), self._watch)
+        self._record.begin_step()
         played = self.tables.turn(lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers), out, crew)[0]
         self._last = out if played else None
-        if not played:
-            self.last_shot = None
         self._cumulative_rewards[name] = 0.0
         gained, winner = int(self.tables.lead()[0] - before), self.frame.winner
         self.rewards = {player: frame_reward(self.options.reward, gained, winner, k) for k, player in enumerate(PLAYERS)}
         self._account()
         self._accumulate_rewards()
         if self.render_mode == "human":
-            self._show(film=bool(played))
+            self._show(self._record.strokes[-1] if played else None)
 
     def _watch(self, k, buffers, j, own):
-        self.last_shot = buffers.shot(j, self.options.rules)
+        self._record.saw(self.tables, k, buffers, j, own)
 
     def _info(self, frame, player):
         last, row = self._last, self.tables.game[0]
@@ -352,10 +354,10 @@ class MatchEnv(AECEnv[str, Any, Any]):
         uint8 (H, W, 3), str or None
             By the render mode: "rgb_array", "ansi", another.
         """
-        return self._pictures.render(self.tables.positions[0], self.tables.on_table[0], self.last_shot, self.tables.text(0))
+        return self._pictures.render(self.tables, 0, self.last_shot, self._record.recent)
 
-    def _show(self, *, film):
-        self._pictures.show(self.tables.positions[0], self.tables.on_table[0], self.last_shot, self.tables.text(0), film=film)
+    def _show(self, played=None):
+        self._pictures.show(self.tables, self.last_shot, played)
 
     def close(self) -> None:
         """Close the window, if there is one."""

@@ -12,7 +12,6 @@ from ..game.frame import Frame
 from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
 from ..physics.parameters import Physics
 from ..physics.table import Table
-from ..simulation import Shot
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
@@ -22,13 +21,14 @@ from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, Tables
 from ..tasks.visit import Visits
 from .pictures import FPS, MODES, Picture, Pictures
+from .record import Record, Recorded
 from .reset_options import ONE, Start, given_of, start_of
 
 TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames}
 """Who plays each task."""
 
 
-class SnookerEnv(gymnasium.Env[Any, Any]):
+class SnookerEnv(Recorded, gymnasium.Env[Any, Any]):
     """Snooker shot selection: one step is one whole shot.
 
     ## Description
@@ -144,9 +144,7 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
         self._pictures = Pictures(self.options.rules.table, render_mode)
-        self._buffers, self._seeded = ShotBuffers(1, path=render_mode is not None), False
-        self.last_shot: Shot | None = None
-        """The ``Shot`` that the agent played last; with a render mode that of either player, with its path. None before the first."""
+        self._record, self._seeded = Record(full=render_mode is not None), False
 
     # the state of the table ------------------------------------------------------------------------------------------------
 
@@ -293,7 +291,7 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         if seed is not None or not self._seeded:
             self.tables.seed(0, self.np_random)
             self._seeded = True
-        self.last_shot = None
+        self._record.begin_episode()
         out = self.tables.output()
         self.tables.reset(np.array([start is None]), out, self._crew())
         if self.render_mode == "human":
@@ -342,6 +340,7 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         if tables.ended()[0]:
             raise gymnasium.error.ResetNeeded(f"the {self.options.task} is over: call reset() before step()")
         out = tables.output()
+        self._record.begin_step()
         try:
             tables.step(np.array([a]), np.zeros(1, np.bool_), out, self._crew())
         except BaseException:
@@ -367,28 +366,27 @@ class SnookerEnv(gymnasium.Env[Any, Any]):
         return self.tables.action_masks()[0]
 
     def _crew(self) -> Crew:
-        return Crew(self._buffers, (self.np_random,), self._watch)
+        return Crew(self._record.buffers, (self.np_random,), self._watch)
 
     def _watch(self, k: int, buffers: ShotBuffers, j: int, own: bool) -> None:
-        """Called after each stroke of either player: all are shown, else the agent's own is kept."""
-        if own or self.render_mode is not None:
-            self.last_shot = buffers.shot(j, self.options.rules)
+        """Called after each stroke of either player."""
+        self._record.saw(self.tables, k, buffers, j, own)
         if self.render_mode == "human":
-            self._show(film=True)
+            self._show(self._record.strokes[-1])
 
     def render(self) -> Picture:
-        """The table with the cue ball's last path.
+        """The table with the paths of the last shot; to a recorder the motion of the strokes, see Pictures and films.
 
         Returns
         -------
         uint8 (H, W, 3), str or None
             By the render mode: "rgb_array", "ansi", another.
         """
-        return self._pictures.render(self.positions, self.on_table, self.last_shot, self.tables.text(0))
+        return self._pictures.render(self.tables, 0, self.last_shot, self._record.recent)
 
     def close(self) -> None:
         """Close the window, if there is one."""
         self._pictures.close()
 
-    def _show(self, *, film: bool = False) -> None:
-        self._pictures.show(self.positions, self.on_table, self.last_shot, self.tables.text(0), film=film)
+    def _show(self, played: Any = None) -> None:
+        self._pictures.show(self.tables, self.last_shot, played)

@@ -22,22 +22,18 @@ from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
 from .given_arrays import OUTPUTS, arrays_given
 from .pictures import Picture, Pictures
+from .record import Recent
 from .reset_options import MANY, Start, given_of, mask_of, seeds_of, starts_of
 from .snooker import TABLES, SnookerEnv
+from .table_calls import check_name
 
 PICTURES = ("rgb_array", "ansi")
-NOT_OF_A_TABLE = {
-    "reset": 'reset(options={"reset_mask": ...})', "step": "step", "set_state": 'reset(options={"states": ...})', "render": "render",
-    "close": "close", "last_shot": "simulate_batch, or SnookerEnv for one table", "spec": "the attribute spec",
-    "unwrapped": "this environment", "get_wrapper_attr": "call", "set_wrapper_attr": "another environment",
-}  # fmt: skip
-"""What ``call`` does not do for single tables, and what there is instead: the tables play, end and begin together."""
 
 
 class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
-    Pictures show the balls as they lie, without paths; a window ("human") shows one environment only.
+    Pictures show the paths of the last shots; a window ("human") shows one environment only.
 
     In a frame the opponents "random" and "ghost_ball" play as kernels. A callable is asked in Python, table by table; one that has a method
     ``many(observations, generators, masks) -> actions`` is called once for all tables that wait for it, and so is a saved model (whose
@@ -116,7 +112,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self._keyed = np.zeros(self.num_envs, np.bool_)  # has the table's stream a key?
         self._begun = np.zeros(self.num_envs, np.bool_)
         self._done = np.zeros(self.num_envs, np.bool_)
-        self._crew = Threads(threads)
+        self._recent = Recent(self.tables)
+        self._crew = Threads(threads, watch=None if render_mode is None else self._recent.saw)
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
@@ -165,7 +162,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
                 self._keyed[k] = True
         fresh = wanted if starts is None else np.zeros(self.num_envs, np.bool_)
         written = self.tables.output(given=given)
-        self._crew.generators = self._generators
+        self._prepare_crew()
         try:
             self.tables.reset(fresh, written, self._crew)
         except BaseException:
@@ -214,7 +211,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         same_step = mode == AutoresetMode.SAME_STEP
         waiting = self._done if mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, np.bool_)
         written = self.tables.output(last=same_step, given=given)
-        self._crew.generators = self._generators
+        self._prepare_crew()
         try:
             self.tables.step(a, waiting, written, self._crew, same_step=same_step)
         except BaseException:
@@ -268,9 +265,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         AttributeError
             For what is not there.
         """
-        if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
-            instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
-            raise refuse("name", name, "must be something public that a table has for itself" + (f"; use {instead}" if instead else ""))
+        check_name(name)
         found = [getattr(self._table(k, generator), name) for k, generator in enumerate(self.np_random)]
         return tuple(each(*args, **kwargs) if callable(each) else each for each in found)
 
@@ -311,15 +306,19 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return env
 
     def render(self) -> tuple[Picture, ...]:
-        """A picture of each table.
+        """A picture of each table; to a recorder the motion of all of them at once, see Pictures and films of ``SnookerEnv``.
 
         Returns
         -------
         tuple of uint8 (H, W, 3) or str
             With "rgb_array", with "ansi".
         """
-        t = self.tables
-        return tuple(self._pictures.render(t.positions[k], t.on_table[k], None, t.text(k)) for k in range(self.num_envs))
+        return self._pictures.render_all(self.tables, self._recent.strokes)
+
+    def _prepare_crew(self) -> None:
+        self._crew.generators = self._generators
+        if self.render_mode is not None:
+            self._recent.begin()
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads."""

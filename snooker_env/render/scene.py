@@ -1,62 +1,85 @@
 """What is there to draw? A table, its lines, balls and overlays, in metres and without a drawing library.
 
 World frame: origin at the table's centre, +x to the yellow side, +y to the black end. ``scene`` says what lies on the table now,
-``outline`` gives the parts of a table that never move, ``shot_scenes`` cuts a shot into the pictures of a film, and ``scene_data`` is
-all that a drawing in another language needs, as JSON types. Colours are in ``palette``.
+``Film`` and ``shot_scenes`` cut a shot into the pictures of a film. The parts of a table that never move, and ``scene_data``, which is
+all that a drawing in another language needs, are in ``outline``; colours are in ``palette``.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import array, number, refuse
+from .._check import array, integer, number, refuse
 from .._types import Flags, Floats, Ints, Vector, Vectors
-from ..game.balls import CUE, N_BALLS, NAMES, VALUES
-from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..physics.columns import JAW_RADIUS
+from ..game.balls import CUE, N_BALLS
+from ..geometry import BALL_RADIUS
 from ..physics.engine import EventKind
 from ..physics.table import Table, TableLike
 from ..simulation import Shot
-from .palette import COLOURS, LETTERS, PALETTE
+from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, extent, is_marked, outline, scene_data
+from .palette import COLOURS, LETTERS, PALE, PALETTE
+from .turning import Turning
 
-RAIL = 0.155
-"""From the nose line to the outer edge of the table [m]: cushion and wood."""
-CUSHION = 0.050
-"""From the nose line to the wood [m]."""
-
-BAULK_LINE = np.array([(-HALF_WIDTH, BAULK_Y), (HALF_WIDTH, BAULK_Y)])
-_TURN = np.linspace(np.pi, 2 * np.pi, 65)
-D_ARC = np.stack([D_RADIUS * np.cos(_TURN), BAULK_Y + D_RADIUS * np.sin(_TURN)], axis=1)
-SPOT_MARKS = COLOUR_SPOTS
-
-for _constant in (BAULK_LINE, D_ARC):
-    _constant.setflags(write=False)
+__all__ = [
+    "BAULK_LINE", "COLOURS", "CUSHION", "D_ARC", "LETTERS", "PALE", "PALETTE", "RAIL", "SPOT_MARKS", "Film", "Outline", "Scene", "ScoreBar",
+    "ball_paths", "contacts", "extent", "is_marked", "outline", "scene", "scene_data", "shot_scenes",
+]  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
-class Outline:
-    """The parts of a table that never move. All empty for unbounded cloth.
+@dataclass(frozen=True)
+class ScoreBar:
+    """What a score bar under the table says, as on television. What is not known is left out: None, "" or ().
 
     Attributes
     ----------
-    cushions : tuple of float64
-        Closed polygons (m, 2): nose, the jaws at its two ends, and the cushion's back under the wood.
-    noses : tuple of float64
-        Polylines (m, 2): the part of each cushion that balls meet, jaw - nose - jaw.
-    falls : float64
-        (k, 3) centre x, y and radius of the slate circles over which balls drop.
-    throats : float64
-        (k, 5) the hole in the wood: from x, y (middle of the mouth) to x, y, half as wide as the fifth number says.
+    players : tuple of str
+        Their names: none, one or two.
+    scores : tuple of int
+        Their points in this frame, one for each player.
+    striker : int, or None
+        Whose turn it is, an index of ``players``.
+    break_points : int, or None
+        Points of the visit so far.
+    potted : tuple of int
+        Ids of the balls potted in this visit, in their order.
+    reds_left : int, or None
+        Reds on the table.
+    points_on : int, or None
+        Points that are still on the table.
+    ball_on : str
+        What must be struck: "red", "any colour", "blue", "free ball", ...
+    words : str
+        One line: what just happened, in the referee's words.
+
+    Examples
+    --------
+    >>> from snooker_env.render.scene import ScoreBar
+    >>> ScoreBar(("Ann", "Bob"), (41, 12), striker=0, break_points=16, potted=(1, 21, 2, 21), ball_on="red").scores
+    (41, 12)
     """
 
-    cushions: tuple[Floats, ...]
-    noses: tuple[Floats, ...]
-    falls: Floats
-    throats: Floats
+    players: tuple[str, ...] = ()
+    scores: tuple[int, ...] = ()
+    striker: int | None = None
+    break_points: int | None = None
+    potted: tuple[int, ...] = ()
+    reds_left: int | None = None
+    points_on: int | None = None
+    ball_on: str = ""
+    words: str = ""
+
+    def __post_init__(self):
+        if len(self.players) > 2 or not all(isinstance(name, str) for name in self.players):
+            raise refuse("players", self.players, "must be the names of at most two players")
+        if len(self.scores) != len(self.players):
+            raise refuse("scores", self.scores, f"must hold one number for each of the {len(self.players)} players")
+        if self.striker is not None and self.striker not in range(len(self.players)):
+            raise refuse("striker", self.striker, "must be None or an index of players")
+        for ball in self.potted:
+            integer("potted", ball, 1, N_BALLS - 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +101,16 @@ class Scene:
     aim : float64, or None
         (m, 2) [m]: line of aim.
     ghost : float64, or None
-        (2,) [m]: where the cue ball should meet its object ball.
+        (2,) [m]: where the cue ball should meet its object ball, drawn as an outline.
+    ghosts : dict of int to float64
+        Ball id -> (m, 2) [m]: where that ball was, drawn faded; e.g. of ``contacts``.
+    turns : dict of int to float64
+        Ball id -> (4,) the unit quaternion (w, x, y, z) that turns the ball from how it lay to how it lies. Such a ball has spots.
     text : str
-        One line of status.
+        One line of status, shown where there is no ``bar``.
+    bar : ScoreBar, or None
+    lettered : bool
+        Whether balls carry their letters, so that nobody depends on colours.
     """
 
     table: Table
@@ -90,7 +120,11 @@ class Scene:
     paths: dict[int, Floats]
     aim: Floats | None
     ghost: Floats | None
+    ghosts: dict[int, Floats]
+    turns: dict[int, Floats]
     text: str
+    bar: ScoreBar | None
+    lettered: bool
 
     @property
     def colours(self) -> NDArray[np.uint8]:
@@ -112,13 +146,49 @@ def scene(
     paths: Mapping[int, Vectors] | None = None,
     aim: Vectors | None = None,
     ghost: Vector | None = None,
+    ghosts: Mapping[int, Vectors] | None = None,
+    turns: Mapping[int, Vector] | None = None,
     text: str = "",
+    bar: ScoreBar | None = None,
+    lettered: bool = False,
 ) -> Scene:
-    """What to draw: n <= 22 balls with the ids 0 .. n-1 at ``positions`` (n, 2) [m], and what to lay over them.
+    """What to draw: n <= 22 balls with the ids 0 .. n-1, and what to lay over them. Arrays are copied.
 
-    table: as in ``snooker_env.simulate``; on_table (n,) bool, None for all; ball_radius [m]: None for that of the table, or snooker's;
-    paths: {ball id: (m, 2) points}, e.g. of ``ball_paths``; aim: (m, 2) points of a line; ghost: (2,) a ball's outline; text: one line
-    of status. Arrays are copied. Raises ValueError.
+    Parameters
+    ----------
+    table : str, Table or None
+        As in ``snooker_env.simulate``.
+    positions : array_like, float (n, 2)
+        [m]
+    on_table : array_like, bool (n,), optional
+        None: all are.
+    ball_radius : float, optional
+        [m]; None: that of the table, or snooker's.
+    paths : dict, optional
+        {ball id: (m, 2) points}, e.g. of ``ball_paths``.
+    aim : array_like, float (m, 2), optional
+        Points of a line.
+    ghost : array_like, float (2,), optional
+        A ball's outline.
+    ghosts : dict, optional
+        {ball id: (m, 2) places} where that ball is drawn faded, e.g. {0: contacts(shot)}.
+    turns : dict, optional
+        {ball id: (4,) quaternion}, as in ``Scene``.
+    text : str
+        One line of status.
+    bar : ScoreBar, optional
+        In place of the text.
+    lettered : bool
+        Letters on the balls.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    ValueError
+        On bad input; the message names the field, its value and what is allowed.
     """
     r = array("positions", positions, (-1, 2))
     if len(r) > N_BALLS:
@@ -126,16 +196,22 @@ def scene(
     here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
     if here.shape != (len(r),) or here.dtype != bool:
         raise refuse("on_table", f"{here.dtype} array of shape {here.shape}", f"must be bool of shape ({len(r)},)")
-    paths = {} if paths is None else paths
-    for ball in paths:
-        if ball not in range(N_BALLS):
-            raise refuse("paths", ball, f"must have ball ids 0 to {N_BALLS - 1} as keys")
+    if bar is not None and not isinstance(bar, ScoreBar):
+        raise refuse("bar", bar, "must be None or a ScoreBar")
     ids, table = np.flatnonzero(here), Table.of(table)
     radius = (table.ball_radius or BALL_RADIUS) if ball_radius is None else number("ball_radius", ball_radius, 1e-3, 1)
     return Scene(
-        table, ids, r[ids], radius, {int(ball): array(f"paths[{ball}]", points, (-1, 2)) for ball, points in paths.items()},
-        None if aim is None else array("aim", aim, (-1, 2)), None if ghost is None else array("ghost", ghost, (2,)), str(text),
+        table, ids, r[ids], radius, _by_ball("paths", paths, (-1, 2)), None if aim is None else array("aim", aim, (-1, 2)),
+        None if ghost is None else array("ghost", ghost, (2,)), _by_ball("ghosts", ghosts, (-1, 2)), _by_ball("turns", turns, (4,)),
+        str(text), bar, bool(lettered),
     )  # fmt: skip
+
+
+def _by_ball(field, given, shape):
+    for ball in given or {}:
+        if ball not in range(N_BALLS):
+            raise refuse(field, ball, f"must have ball ids 0 to {N_BALLS - 1} as keys")
+    return {int(ball): array(f"{field}[{ball}]", value, shape) for ball, value in (given or {}).items()}
 
 
 def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), until: float | None = None, step: float = 0.02) -> dict[int, Floats]:
@@ -144,6 +220,11 @@ def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), until: float | None = 
     Times of impacts are added, so that corners are sharp; a ball that did not move has no path.
     """
     until = shot.duration if until is None else min(number("until", until, 0.0), shot.duration)
+    return {ball: points for ball, (points, _) in _timed_paths(shot, balls, until, step).items()}
+
+
+def _timed_paths(shot, balls, until, step=0.02):
+    """{ball: its path's points (m, 2) [m] and their times (m,) [s]}."""
     times = np.append(np.arange(0.0, until, number("step", step, 0.0, open_low=True)), until)
     impacts = shot.events["time"][shot.events["kind"] <= EventKind.POT]
     times = np.union1d(times, impacts[impacts < until])
@@ -153,148 +234,118 @@ def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), until: float | None = 
         points = r[:, ball]
         moved = np.append(True, np.any(np.abs(np.diff(points, axis=0)) > 1e-5, axis=1))
         if moved.sum() > 1:
-            paths[int(ball)] = points[moved]
+            paths[int(ball)] = points[moved], times[moved]
     return paths
 
 
-def shot_scenes(
-    table: TableLike, shot: Shot, *, fps: float = 30.0, speed: float = 1.0, trail: Iterable[int] = (CUE,), **overlays: Any
-) -> Iterator[Scene]:
-    """The film of a ``Shot``: one ``Scene`` every speed / fps seconds of the shot's own time, and one of its end.
-
-    A potted ball leaves the picture when it drops. trail: balls whose path grows as they run; overlays: as in ``scene``.
-    """
-    step = number("speed", speed, 0.0, open_low=True) / number("fps", fps, 0.0, open_low=True)
-    drops = shot.events[shot.events["kind"] == EventKind.POT]
-    gone_at = np.where(shot.on_table, np.inf, -1.0)  # -1: not on the table when the shot began
-    gone_at[drops["i"]] = drops["time"]
-    for t in np.append(np.arange(0.0, shot.duration, step), shot.duration):
-        paths = ball_paths(shot, trail, until=t)
-        yield scene(table, shot.at(t)[0], gone_at > t, **{"ball_radius": shot.physics.R, "paths": paths, **overlays})
-
-
-def extent(table: Table) -> Floats:
-    """(2, 2) [m] what a picture of a ``Table`` shows between its rails: its bounds, and snooker's bed where it has none."""
-    snooker = np.array([(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)])
-    return np.where(np.isfinite(table.bounds), table.bounds, snooker)
-
-
-def is_marked(table: Table) -> bool:
-    """Are snooker's lines and spots drawn on a ``Table``? On its bed, and on unbounded cloth."""
-    ends = (HALF_WIDTH, HALF_LENGTH)
-    return all(np.allclose(bounds, (-end, end), rtol=0.0, atol=1e-9) for bounds, end in zip(extent(table), ends, strict=True))
-
-
-@lru_cache(maxsize=16)
-def outline(table: Table) -> Outline:
-    """The parts of a table that never move, put together from its noses, jaws and falls.
+def contacts(shot: Shot, ball: int = CUE) -> Floats:
+    """Where a ball was when it met other balls, for faded ghosts.
 
     Parameters
     ----------
-    table : Table
+    shot : Shot
+    ball : int
 
     Returns
     -------
-    Outline
+    float64 (m, 2)
+        [m], in the order of time; one that would lie half over the last is left out.
     """
-    cushions, noses = [], []
-    ends = [(_point(axis, side * level, end), _point(axis, side, 0.0)) for axis, side, level, *low_high in table.noses for end in low_high]
-    for axis, side, level, low, high in table.noses:
-        out = _point(axis, side, 0.0)  # from the nose into the wood
-        left, right = (_jaw(table.jaws, _point(axis, side * level, end)) for end in (low, high))
-        nose = np.concatenate([left[::-1], right])
-        depth = max(CUSHION + 0.017, *(nose @ out - level))  # some way under the wood
-        backs = [_onward(jaw, out, level + depth, ends) for jaw in (left, right)]
-        noses.append(nose)
-        cushions.append(np.concatenate([backs[:1], nose, backs[1:]]))
-    throats = [_throat(fall, noses, [place for place, _ in ends]) for fall in table.falls] if noses else []
-    return Outline(tuple(cushions), tuple(noses), table.falls, np.array(throats).reshape(-1, 5))
+    met = shot.events[(shot.events["kind"] == EventKind.BALL_BALL) & ((shot.events["i"] == ball) | (shot.events["j"] == ball))]
+    places = shot.at(met["time"])[0][:, ball].reshape(-1, 2)
+    kept: list[Floats] = []
+    for place in places:
+        if not kept or np.hypot(*(place - kept[-1])) > shot.physics.R:
+            kept.append(place)
+    return np.array(kept).reshape(-1, 2)
 
 
-def _point(axis, across, along):
-    return np.array([across, along] if axis == 0 else [along, across])
-
-
-def _jaw(jaws, start):
-    """(m, 2) the jaw that begins at ``start`` on a nose, arc after arc to its end in the pocket; only ``start`` if there is none."""
-    points, left = [start], list(jaws)
-    while (found := _arc_from(points[-1], left)) is not None:
-        k, arc = found
-        if left.pop(k)[JAW_RADIUS] > 0.0:  # else a point: the next arc begins there, too
-            points += list(arc[1:])
-    return np.array(points)
-
-
-def _arc_from(place, jaws):
-    """The index of an arc of which one end is at ``place``, and its points (25, 2) from there on; None if there is none."""
-    for k, (x, y, radius, ux, uy, cos_half) in enumerate(jaws):
-        angles = np.arctan2(uy, ux) + np.arccos(cos_half) * np.linspace(-1.0, 1.0, 25)
-        arc = np.array([x, y]) + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        for points in (arc, arc[::-1]):
-            if np.hypot(*(points[0] - place)) < 1e-6:
-                return k, points
-    return None
-
-
-def _onward(jaw, out, level, ends):
-    """Where a jaw, run on straight behind its last arc, meets the line ``level`` behind the nose; two noses that meet share a mitre."""
-    if len(jaw) > 1:
-        onward = jaw[-1] - jaw[-2]
-    else:
-        onward = out + sum((other for place, other in ends if abs(other @ out) < 0.5 and np.hypot(*(place - jaw[0])) < 1e-6), np.zeros(2))
-    return jaw[-1] + onward * ((level - jaw[-1] @ out) / (onward @ out))
-
-
-def _throat(fall, noses, mouths):
-    """The hole in the wood: from the middle of the pocket's mouth to the centre of its fall, as wide as its jaws' ends are apart."""
-    jaw_ends = [end for nose in noses for end in (nose[0], nose[-1])]
-    (a, b), (c, d) = (sorted(points, key=lambda point: np.hypot(*(point - fall[:2])))[:2] for points in (mouths, jaw_ends))
-    return [*(a + b) / 2, *fall[:2], np.hypot(*(c - d)) / 2]
-
-
-def scene_data(table: TableLike) -> dict[str, Any]:
-    """A table, its lines, the balls and all colours as JSON types: the one description that pygame, matplotlib and a browser draw.
+class Film:
+    """A ``Shot`` as it is seen: a ``Scene`` at any time of it, and all that change once are computed once.
 
     Parameters
     ----------
     table : str, Table or None
         As in ``snooker_env.simulate``.
+    shot : Shot
+        With its path.
+    trail : iterable of int
+        Balls whose path grows as they run.
+    spots : iterable of int
+        Balls with spots, which show how they turn.
+    overlays
+        As in ``scene``.
 
-    Returns
-    -------
-    dict
-        Lengths in metres, to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in ``Outline``, lists in place of arrays; ``extent``:
-        [[lowest x, highest x], [lowest y, highest y]] of the bed; ``rail``, ``cushion``: ``RAIL``, ``CUSHION``; ``lines``: {"baulk", "d",
-        "spots"}, or None on a table without snooker's marks; ``ball_radius``; ``palette``: {name: [red, green, blue]}; ``balls``: by id
-        {"name", "letter", "value", "rgb"}.
-
-    Examples
-    --------
-    >>> from snooker_env.render.scene import scene_data
-    >>> data = scene_data("pool9")
-    >>> data["lines"], len(data["cushions"]), data["balls"][21]["name"]
-    (None, 6, 'black')
+    Attributes
+    ----------
+    duration : float
+        Of the shot [s].
     """
-    table = Table.of(table)
-    parts = outline(table)
-    marks = {"baulk": _rounded(BAULK_LINE), "d": _rounded(D_ARC), "spots": _rounded(SPOT_MARKS)} if is_marked(table) else None
-    return {
-        "cushions": [_rounded(polygon) for polygon in parts.cushions],
-        "noses": [_rounded(nose) for nose in parts.noses],
-        "falls": _rounded(parts.falls),
-        "throats": _rounded(parts.throats),
-        "extent": _rounded(extent(table)),
-        "rail": RAIL,
-        "cushion": CUSHION,
-        "lines": marks,
-        "ball_radius": float(table.ball_radius or BALL_RADIUS),
-        "palette": {name: list(rgb) for name, rgb in PALETTE.items()},
-        "balls": [
-            {"name": NAMES[ball], "letter": LETTERS[ball], "value": int(VALUES[ball]), "rgb": COLOURS[ball].tolist()}
-            for ball in range(N_BALLS)
-        ],
-    }
+
+    def __init__(self, table: TableLike, shot: Shot, *, trail: Iterable[int] = (CUE,), spots: Iterable[int] = (), **overlays: Any):
+        self.duration = shot.duration
+        self._table, self._shot, self._overlays = Table.of(table), shot, {"ball_radius": shot.physics.R, **overlays}
+        self._paths = _timed_paths(shot, trail, shot.duration)
+        self._turning = {int(ball): Turning(shot, ball) for ball in spots}
+        drops = shot.events[shot.events["kind"] == EventKind.POT]
+        self._gone_at = np.where(shot.on_table, np.inf, -1.0)  # -1: not on the table when the shot began
+        self._gone_at[drops["i"]] = drops["time"]
+
+    def at(self, t: float) -> Scene:
+        """The picture at a time.
+
+        Parameters
+        ----------
+        t : float
+            From the start of the shot [s].
+
+        Returns
+        -------
+        Scene
+        """
+        r = self._shot.at(t)[0]
+        paths = {}
+        for ball, (points, times) in self._paths.items():
+            so_far = int(np.searchsorted(times, t, side="right"))
+            done = points[:so_far]
+            if np.any(np.abs(done[-1] - r[ball]) > 1e-5):
+                done = np.concatenate([done, r[ball : ball + 1]])
+            if len(done) > 1:
+                paths[ball] = done
+        turns = {ball: turning.at(t) for ball, turning in self._turning.items()}
+        return scene(self._table, r, self._gone_at > t, **{"paths": paths, "turns": turns, **self._overlays})
+
+    def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
+        """One picture every ``speed / fps`` seconds of the shot's own time, and one of its end.
+
+        Parameters
+        ----------
+        fps : float
+            Pictures a second of the film.
+        speed : float
+            2.0: twice as fast as in life.
+
+        Yields
+        ------
+        Scene
+        """
+        step = number("speed", speed, 0.0, open_low=True) / number("fps", fps, 0.0, open_low=True)
+        for t in np.append(np.arange(0.0, self.duration, step), self.duration):
+            yield self.at(float(t))
 
 
-def _rounded(points):
-    return (np.round(points, 6) + 0.0).tolist()  # + 0.0: no "-0.0"
+def shot_scenes(
+    table: TableLike,
+    shot: Shot,
+    *,
+    fps: float = 30.0,
+    speed: float = 1.0,
+    trail: Iterable[int] = (CUE,),
+    spots: Iterable[int] = (),
+    **overlays: Any,
+) -> Iterator[Scene]:
+    """The film of a ``Shot``: one ``Scene`` every speed / fps seconds of the shot's own time, and one of its end.
+
+    A potted ball leaves the picture when it drops. The other arguments are those of ``Film``, which gives a picture of any time.
+    """
+    return Film(table, shot, trail=trail, spots=spots, **overlays).scenes(fps, speed)

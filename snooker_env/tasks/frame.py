@@ -264,6 +264,14 @@ class Frames(Tables):
         write_frame(frame, 0, self.game[k], self.saved, k)
         self._replies[k], self.begun[k] = 0, True
 
+    def standing(self, k: int) -> dict[str, Any]:
+        """Of a ``Played`` on table k what the frame says."""
+        frame = self.frame(k)
+        return {
+            "next_player": frame.striker, "scores": frame.scores, "break_points": frame.break_points, "choice": frame.phase == "choice",
+            "winner": frame.winner,
+        }  # fmt: skip
+
     def text(self, k: int) -> str:
         """One line for the pictures."""
         frame = self.frame(k)

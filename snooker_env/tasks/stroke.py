@@ -5,7 +5,6 @@ its own referee. Kernels go over the tables named by ``which``; row j of the ``S
 draws from its own stream (``game.philox``), so that no table's result depends on another, on their number or on the threads.
 """
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,11 +12,10 @@ from numpy.typing import NDArray
 
 from .._jit import entry, kernel
 from .._types import Bools, Floats, Ints
-from ..game.balls import CUE, N_BALLS, TOUCH, BallOn, bits, ids_of
+from ..game.balls import CUE, N_BALLS, TOUCH, bits
 from ..game.frame_columns import IN_HAND, strikeable
 from ..game.in_hand import nearest_place
 from ..game.pots import POT_COLUMNS
-from ..game.ruling import Foul
 from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.engine import EventKind, Status
@@ -143,41 +141,6 @@ def write_ruling(j, player, ball_on, free_ball, result, seen):
     seen[j, SCORED], seen[j, COST], seen[j, FOULS] = result.points, result.penalty, result.fouls
 
 
-@dataclass(frozen=True, eq=False)
-class Played:
-    """One stroke as it was played and judged.
-
-    Attributes
-    ----------
-    shot : Shot
-        Of which the path is kept only if it was wanted.
-    cue : dict of str to float
-        The strike, errors of execution included: "speed" [m/s], "side", "top" (tip offset over R, right and up), "aim", "elevation" [rad].
-    player : int
-        Who played it: 0, or in a frame 0 or 1.
-    ball_on : BallOn
-        What was on.
-    free_ball : bool
-        Whether he had a free ball.
-    points, penalty : int
-        What it scored, what it gave to the other player.
-    fouls : Foul
-        The rules broken.
-    first : tuple of int
-        The balls that were struck first: one, more if at the same instant, none.
-    """
-
-    shot: Shot
-    cue: dict[str, float]
-    player: int
-    ball_on: BallOn
-    free_ball: bool
-    points: int
-    penalty: int
-    fouls: Foul
-    first: tuple[int, ...]
-
-
 class ShotBuffers:
     """Work space for up to m shots at once, each with a log of ``log`` events and, if wanted, its path."""
 
@@ -237,15 +200,6 @@ class ShotBuffers:
         segments = self.segments[j, : self.n_segments[j]].copy()
         ends = self.r[j].copy(), self.potted[j].copy(), self.here[j].copy(), float(self.duration[j])
         return Shot(*ends, events, segments, rules.physics, rules.table)
-
-    def played(self, j: int, rules: "Rules") -> Played:
-        """Shot j and what was said of it, as ``Played``."""
-        cue = dict(zip(("speed", "side", "top", "aim", "elevation"), self.shots[j, CUE_SPEED:].tolist(), strict=True))
-        seen = self.seen[j].tolist()
-        return Played(
-            self.shot(j, rules), cue, seen[PLAYER], BallOn(seen[WAS_ON]), bool(seen[FREE]), seen[SCORED], seen[COST], Foul(seen[FOULS]),
-            tuple(ids_of(seen[FIRST])),
-        )  # fmt: skip
 
 
 def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:

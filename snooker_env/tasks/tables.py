@@ -11,11 +11,12 @@ import numpy as np
 
 from .._jit import kernel
 from .._types import Bools, Floats, Ints, Singles, Words
-from ..game.balls import N_BALLS, balls_on, mask_of_present
-from ..game.frame_columns import BALL_ON, OVER
+from ..game.balls import N_BALLS, BallOn, balls_on, mask_of_present
+from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import stream_of
 from . import discrete_actions, stroke
 from .options import NEVER, Rules
+from .played import Played, judged, struck
 
 REALS = ("points", "break", "seconds")
 COUNTS = ("penalty", "pots", "fouls", "ball_on", "first_ball", "events")
@@ -67,6 +68,11 @@ Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
 """What is done for some tables, which it is given, in the buffers that it is given."""
 
 
+Watch: TypeAlias = Callable[[int, stroke.ShotBuffers, int, bool], None]
+"""Called as ``watch(k, buffers, j, own)`` after each stroke on table k: it is shot j of the buffers, ``own``: the agent's, in a match
+anybody's."""
+
+
 class StepOutput:
     """What a step or a reset of n tables returns, in fresh arrays; ``last`` only if one step both ends episodes and starts new ones."""
 
@@ -102,21 +108,16 @@ class StepOutput:
 class Crew:
     """Who plays: hands the tables out to threads, or not; ``crew(which, task)`` calls ``task(part, buffers)`` for parts of ``which``.
 
-    This one plays all in one go. ``generators``: of each table, for an opponent that is asked in Python. ``watch(k, buffers, j, own)``, if
-    there is one, is called after each stroke on table k: it is shot j of the buffers, ``own``: the agent's, or in a match anybody's.
+    This one plays all in one go. ``generators``: of each table, for an opponent that is asked in Python.
+    ``watch``: who is told of the strokes, if anybody.
     """
 
     buffers: Any
     """``ShotBuffers``, or None of a crew that hands out its own."""
     generators: Sequence[Any]
-    watch: Callable[[int, stroke.ShotBuffers, int, bool], None] | None
+    watch: Watch | None
 
-    def __init__(
-        self,
-        buffers: stroke.ShotBuffers | None = None,
-        generators: Sequence[Any] = (),
-        watch: Callable[[int, stroke.ShotBuffers, int, bool], None] | None = None,
-    ):
+    def __init__(self, buffers: stroke.ShotBuffers | None = None, generators: Sequence[Any] = (), watch: Watch | None = None):
         self.buffers, self.generators, self.watch = buffers, generators, watch
 
     def __call__(self, which: Ints, task: Task) -> None:
@@ -199,6 +200,15 @@ class Tables(ABC):
         infos["foul"] = infos["fouls"] != 0
         return infos | {f"_{name}": there.copy() for name in infos}
 
+    def played(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
+        """The stroke that table k has just seen, shot j of the buffers, and the table as it left it."""
+        game = self.game[k]
+        return Played(
+            shot=buffers.shot(j, self.rules), cue=struck(buffers, j), positions=self.positions[k].copy(), on_table=self.on_table[k].copy(),
+            next_on=BallOn(game[BALL_ON]), in_hand=bool(game[IN_HAND]), over=bool(game[OVER]), **judged(buffers.seen[j].tolist()),
+            **self.standing(k),
+        )  # fmt: skip
+
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k."""
         return balls_on(int(self.game[k, BALL_ON]), mask_of_present(self.on_table[k]))
@@ -280,6 +290,10 @@ class Tables(ABC):
     @abstractmethod
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """Begin an episode on table k with a sound position, ``game`` being the row of a visit; its random numbers go on."""
+
+    @abstractmethod
+    def standing(self, k: int) -> dict[str, Any]:
+        """Of a ``Played`` on table k what only the task knows: next_player, scores, break_points, choice, winner."""
 
     @abstractmethod
     def text(self, k: int) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 from .._types import Ints
 from .stroke import ShotBuffers
-from .tables import Crew, Task
+from .tables import Crew, Task, Watch
 
 CHUNK = 128
 """Most tables played in one go: few enough for a work space that stays in the cache, enough to make the calls from Python cheap."""
@@ -26,11 +26,12 @@ def processors() -> int:
 
 
 class Threads(Crew):
-    """The crew of many tables: chunks of them, shared out among threads. It may be asked from several threads at once."""
+    """The crew of many tables: chunks of them, shared out among threads; strokes that somebody watches keep their paths. It may
+    be asked from several threads at once."""
 
-    def __init__(self, threads: int):
-        super().__init__()
-        self.threads = threads
+    def __init__(self, threads: int, *, watch: Watch | None = None):
+        super().__init__(watch=watch)
+        self.threads, self._path = threads, watch is not None
         self._pool, self._pool_process, self._desks = None, 0, []
         self._lock = threading.Lock()
 
@@ -68,8 +69,8 @@ class Threads(Crew):
         try:
             desk = self._desks.pop()
         except IndexError:
-            return ShotBuffers(size)
-        return desk if len(desk) >= size else ShotBuffers(size)
+            return ShotBuffers(size, path=self._path)
+        return desk if len(desk) >= size else ShotBuffers(size, path=self._path)
 
     def shutdown(self) -> None:
         """End the threads."""

@@ -170,6 +170,11 @@ class Visits(Tables):
         self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
         self.begun[k] = True
 
+    def standing(self, k: int) -> dict[str, Any]:
+        """Of a ``Played`` on table k: there is one player, whose break is his score."""
+        points = int(self.game[k, POINTS])
+        return {"next_player": 0, "scores": (points,), "break_points": points, "choice": False, "winner": None}
+
     def text(self, k: int) -> str:
         """One line for the pictures."""
         on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")

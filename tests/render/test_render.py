@@ -13,8 +13,8 @@ import snooker_env as sn
 from snooker_env.game.balls import BLACK, BROWN, CUE, GREEN, N_BALLS, PINK, SPOTS, YELLOW
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.render.ascii_view import ansi
-from snooker_env.render.pygame_view import Window, rgb_array, to_pixels
 from snooker_env.render.palette import COLOURS
+from snooker_env.render.pygame_view import Window, rgb_array, to_pixels
 from snooker_env.render.scene import ball_paths, outline, scene, shot_scenes
 
 ALL = np.ones(N_BALLS, bool)

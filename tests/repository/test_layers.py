@@ -39,13 +39,27 @@ ALLOWED = {
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
+    "replays": BASE | {"physics", "simulation", "game", "tasks", "render"},
     "render": {"_check", "_types", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {"geometry", "physics", "impacts", "shot", "simulation", "tasks", "planning", "envs", "match", "_warmup", "_registration"},
+    "__init__": {
+        "geometry",
+        "physics",
+        "impacts",
+        "shot",
+        "simulation",
+        "tasks",
+        "planning",
+        "envs",
+        "match",
+        "replays",
+        "_warmup",
+        "_registration",
+    },
 }
-OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
+OUTSIDE = {"gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"}, "pygame": {"render"}, "pettingzoo": {"envs"}}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}

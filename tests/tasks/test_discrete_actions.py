@@ -41,8 +41,8 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         env.reset(seed=0)
         env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, :3] = positions, on_table, (1, 0, 0)
         env.step(choice_of(0, speed, side, top))
-        v, w = env._buffers.v[0, 0], env._buffers.w[0, 0]
-        start = env._buffers.shots[0]
+        v, w = env._record.buffers.v[0, 0], env._record.buffers.w[0, 0]
+        start = env._record.buffers.shots[0]
         shot = sn.simulate([cue, ball], [start[:2], (0, 0)], [start[2:5], (0, 0, 0)], table=None, physics=world)
         hit = shot.events[shot.events["kind"] == sn.EventKind.BALL_BALL]
         rolls = shot.events[(shot.events["kind"] == sn.EventKind.ROLL) & (shot.events["i"] == 1)]

@@ -1,0 +1,130 @@
+"""What does an agent's play look like? One visit, told stroke by stroke and written as a replay, or as a film.
+
+    python -m agents.watch --agent ppo_foresight --out break.html
+    python -m agents.watch --agent search --at-least 50 --out break.mp4
+
+The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the replay is written to a temporary
+file and opened in the browser. Visits are played on held-out tables, the seeds one after the other; --at-least takes the first of --tries
+visits with so many points. The same seed gives the same visit as ``agents.evaluate`` plays on that table.
+"""
+
+import argparse
+import tempfile
+import webbrowser
+from pathlib import Path
+
+from commands.lifecycle import command, needs
+
+with needs("agents.watch"):
+    import numpy as np
+
+    import snooker_env as sn
+    from commands.files import writable
+    from snooker_env.checks import choice, integer, number, refuse
+
+    from .entrants import Entrant
+    from .rollouts import HELD_OUT_SEED
+
+SUFFIXES = (".html", ".json", ".mp4", ".gif")
+SIZES = {".mp4": (1920, 1080), ".gif": (640, 360)}
+RATES = {".mp4": 30.0, ".gif": 15.0}
+"""Size [pixels] and pictures a second of films unless told."""
+
+
+def visit(player, seed, **options):
+    """A ``SnookerEnv`` after one whole visit of the player, with its history; the same visit as ``rollouts.play`` gives for that seed."""
+    options = {**player.options, **options}
+    env = sn.SnookerEnv(**options)
+    tables = sn.SnookerVectorEnv(1, threads=1, **options)
+    env.keep_history = True
+    env.reset(seed=seed)
+    ended = False
+    while not ended:
+        observations, _ = tables.reset(options={"state": env.get_state()})
+        action = player.act(tables, observations, np.ones(1, bool))[0]
+        _, _, terminated, truncated, _ = env.step(action)
+        ended = terminated or truncated
+    tables.close()
+    return env
+
+
+def told(replay):
+    """A line for each stroke."""
+    for k, stroke in enumerate(replay.to_dict()["strokes"], 1):
+        cue = stroke["cue"]
+        spin = f"side {cue['side']:+.2f}, top {cue['top']:+.2f}"
+        yield f"{k:3}  {stroke['ball_on']:<10}  {cue['speed']:.2f} m/s, {spin}   {stroke['words']}"
+
+
+def parser():
+    """The command line."""
+    p = argparse.ArgumentParser(prog="python -m agents.watch", description=__doc__.split("\n\n")[0])
+    p.add_argument("--agent", default="ppo_foresight", help="a player's name, a pre-trained model, a model's .zip or run folder")
+    p.add_argument("--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser")
+    p.add_argument("--layout", default="held_out", help="of the tables, as for Snooker-v0")
+    p.add_argument("--noise", default="professional", help="execution noise")
+    p.add_argument("--seed", type=int, default=HELD_OUT_SEED, help="of the first table")
+    p.add_argument("--at-least", type=int, default=0, metavar="POINTS", help="show the first visit with so many points")
+    p.add_argument("--tries", type=int, default=200, help="most visits played to find it")
+    p.add_argument("--budget", type=int, default=2000, help="shots that a search simulates for each of its own")
+    p.add_argument("--speed", type=float, default=1.0, help="of a film, over that of the play")
+    p.add_argument("--size", help="of a film, WIDTHxHEIGHT, both even")
+    p.add_argument("--fps", type=float, help="pictures a second of a film")
+    p.add_argument("--trust", action="store_true", help="let code in a model's file run")
+    return p
+
+
+def _film(args):
+    """The options of the film that is wanted, {} for a page."""
+    suffix = args.out.suffix.lower() if args.out else ".html"
+    choice("out", suffix, SUFFIXES)
+    if suffix not in SIZES:
+        if args.size or args.fps or args.speed != 1.0:
+            raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
+        return {}
+    width, x, height = (args.size or "x".join(map(str, SIZES[suffix]))).partition("x")
+    if not (x and width.isdigit() and height.isdigit()):
+        raise refuse("size", args.size, "must be WIDTHxHEIGHT, such as 1280x720")
+    rate = RATES[suffix] if args.fps is None else number("fps", args.fps, 0.0, 240.0, open_low=True)
+    speed = number("speed", args.speed, 0.0, 100.0, open_low=True)
+    return {"size": (int(width), int(height)), "fps": rate, "speed": speed}
+
+
+def found(args):
+    """The environment after the visit that is wanted, and its seed. SystemExit if there is none."""
+    entrant = Entrant.of(args.agent, trust=args.trust)
+    longest = -1
+    for seed in range(args.seed, args.seed + args.tries):
+        env = visit(entrant.player(0, args.budget), seed, layout=args.layout, noise=args.noise)
+        if env.points >= args.at_least:
+            return env, seed, entrant.label
+        longest = max(longest, env.points)
+    raise SystemExit(f"agents.watch: no visit of {args.at_least} points in {args.tries} tries; the longest had {longest}")
+
+
+@command("agents.watch")
+def main(argv=None):
+    """Play, tell, write."""
+    p = parser()
+    args = p.parse_args(argv)
+    try:
+        film = _film(args)
+        integer("seed", args.seed, 0, 2**63)
+        integer("tries", args.tries, 1, 10**9)
+        writable("out", args.out)
+        env, seed, label = found(args)
+    except ValueError as error:
+        p.error(str(error))
+    replay = sn.replay(env, title=f"{label}: {env.points} points, {args.noise}'s errors, table {seed}", players=[label])
+    for line in told(replay):
+        print(line)
+    print(f"{label}: {env.points} points in {len(replay)} strokes (table {seed}, layout {args.layout}, noise {args.noise})")
+    if args.out:
+        replay.save(args.out, **film)
+        print(f"written: {args.out}")
+    else:
+        file = Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
+        replay.save(file)
+        print(f"opened: {file}")
+        webbrowser.open(file.as_uri())
+    return 0

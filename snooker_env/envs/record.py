@@ -1,0 +1,89 @@
+"""What is kept of an episode? Its strokes one by one, where somebody wants to see them, and always the last shot."""
+
+from .._check import truth
+from ..simulation import Shot
+from ..tasks.played import Played
+from ..tasks.stroke import ShotBuffers
+from ..tasks.tables import Tables
+
+
+class Record:
+    """The strokes of one table. ``full``: all of them since the reset, with their paths; else only the agent's last ``Shot``."""
+
+    buffers: ShotBuffers
+    """Where the strokes are played."""
+    strokes: list[Played]
+    """Those since the reset, of both players; none unless ``full``."""
+    last_shot: Shot | None
+    """The agent's own last shot; with ``full`` that of either player."""
+
+    def __init__(self, *, full: bool):
+        self.full = full
+        self.buffers = ShotBuffers(1, path=full)
+        self.strokes, self.last_shot, self._before = [], None, 0
+
+    def begin_episode(self) -> None:
+        """A new episode: what was kept of the last one goes."""
+        self.strokes, self.last_shot, self._before = [], None, 0
+
+    def begin_step(self) -> None:
+        """A new step: the strokes to come are the recent ones."""
+        self._before = len(self.strokes)
+
+    @property
+    def recent(self) -> list[Played]:
+        """The strokes of the last step or reset."""
+        return self.strokes[self._before :]
+
+    def saw(self, tables: Tables, k: int, buffers: ShotBuffers, j: int, own: bool) -> None:
+        """Table k has just been played on: shot j of the buffers; ``own``: by the agent."""
+        if self.full:
+            played = tables.played(k, buffers, j)
+            self.strokes.append(played)
+            self.last_shot = played.shot
+        elif own:
+            self.last_shot = buffers.shot(j, tables.rules)
+
+
+class Recorded:
+    """What an environment of one table shows of its ``Record``."""
+
+    _record: Record
+    render_mode: str | None
+
+    @property
+    def last_shot(self) -> Shot | None:
+        """The ``Shot`` that the agent played last; where a history is kept that of either player, with its path. None before the first."""
+        return self._record.last_shot
+
+    @property
+    def history(self) -> list[Played]:
+        """The strokes since the last reset, of both players, as ``tasks.played.Played``; empty unless ``keep_history``."""
+        return list(self._record.strokes)
+
+    @property
+    def keep_history(self) -> bool:
+        """Whether the ``history`` is kept, with the path of every stroke: with a render mode always, else from when it is set to True."""
+        return self._record.full
+
+    @keep_history.setter
+    def keep_history(self, value: bool) -> None:
+        full = truth("keep_history", value) or self.render_mode is not None
+        if full != self._record.full:
+            self._record = Record(full=full)
+
+
+class Recent:
+    """The strokes of many tables in their last step or reset: a list for each table."""
+
+    def __init__(self, tables: Tables):
+        self.tables = tables
+        self.begin()
+
+    def begin(self) -> None:
+        """A step or a reset begins."""
+        self.strokes: list[list[Played]] = [[] for _ in range(self.tables.n)]
+
+    def saw(self, k: int, buffers: ShotBuffers, j: int, own: bool) -> None:
+        """Table k has just been played on: shot j of the buffers."""
+        self.strokes[k].append(self.tables.played(k, buffers, j))

@@ -1,0 +1,179 @@
+"""Which parts of a table never move, and where? Cushions, falls and holes from its noses, jaws and falls, and snooker's lines, in metres.
+
+World frame: origin at the table's centre, +x to the yellow side, +y to the black end.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from .._types import Floats
+from ..game.balls import N_BALLS, NAMES, VALUES
+from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ..physics.columns import JAW_RADIUS
+from ..physics.table import Table, TableLike
+from .palette import COLOURS, LETTERS, PALETTE
+
+RAIL = 0.155
+"""From the nose line to the outer edge of the table [m]: cushion and wood."""
+CUSHION = 0.050
+"""From the nose line to the wood [m]."""
+
+BAULK_LINE = np.array([(-HALF_WIDTH, BAULK_Y), (HALF_WIDTH, BAULK_Y)])
+_TURN = np.linspace(np.pi, 2 * np.pi, 65)
+D_ARC = np.stack([D_RADIUS * np.cos(_TURN), BAULK_Y + D_RADIUS * np.sin(_TURN)], axis=1)
+SPOT_MARKS = COLOUR_SPOTS
+
+for _constant in (BAULK_LINE, D_ARC):
+    _constant.setflags(write=False)
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """The parts of a table that never move. All empty for unbounded cloth.
+
+    Attributes
+    ----------
+    cushions : tuple of float64
+        Closed polygons (m, 2): nose, the jaws at its two ends, and the cushion's back under the wood.
+    noses : tuple of float64
+        Polylines (m, 2): the part of each cushion that balls meet, jaw - nose - jaw.
+    falls : float64
+        (k, 3) centre x, y and radius of the slate circles over which balls drop.
+    throats : float64
+        (k, 5) the hole in the wood: from x, y (middle of the mouth) to x, y, half as wide as the fifth number says.
+    """
+
+    cushions: tuple[Floats, ...]
+    noses: tuple[Floats, ...]
+    falls: Floats
+    throats: Floats
+
+
+def extent(table: Table) -> Floats:
+    """(2, 2) [m] what a picture of a ``Table`` shows between its rails: its bounds, and snooker's bed where it has none."""
+    snooker = np.array([(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)])
+    return np.where(np.isfinite(table.bounds), table.bounds, snooker)
+
+
+def is_marked(table: Table) -> bool:
+    """Are snooker's lines and spots drawn on a ``Table``? On its bed, and on unbounded cloth."""
+    ends = (HALF_WIDTH, HALF_LENGTH)
+    return all(np.allclose(bounds, (-end, end), rtol=0.0, atol=1e-9) for bounds, end in zip(extent(table), ends, strict=True))
+
+
+@lru_cache(maxsize=16)
+def outline(table: Table) -> Outline:
+    """The parts of a table that never move, put together from its noses, jaws and falls.
+
+    Parameters
+    ----------
+    table : Table
+
+    Returns
+    -------
+    Outline
+    """
+    cushions, noses = [], []
+    ends = [(_point(axis, side * level, end), _point(axis, side, 0.0)) for axis, side, level, *low_high in table.noses for end in low_high]
+    for axis, side, level, low, high in table.noses:
+        out = _point(axis, side, 0.0)  # from the nose into the wood
+        left, right = (_jaw(table.jaws, _point(axis, side * level, end)) for end in (low, high))
+        nose = np.concatenate([left[::-1], right])
+        depth = max(CUSHION + 0.017, *(nose @ out - level))  # some way under the wood
+        backs = [_onward(jaw, out, level + depth, ends) for jaw in (left, right)]
+        noses.append(nose)
+        cushions.append(np.concatenate([backs[:1], nose, backs[1:]]))
+    throats = [_throat(fall, noses, [place for place, _ in ends]) for fall in table.falls] if noses else []
+    return Outline(tuple(cushions), tuple(noses), table.falls, np.array(throats).reshape(-1, 5))
+
+
+def _point(axis, across, along):
+    return np.array([across, along] if axis == 0 else [along, across])
+
+
+def _jaw(jaws, start):
+    """(m, 2) the jaw that begins at ``start`` on a nose, arc after arc to its end in the pocket; only ``start`` if there is none."""
+    points, left = [start], list(jaws)
+    while (found := _arc_from(points[-1], left)) is not None:
+        k, arc = found
+        if left.pop(k)[JAW_RADIUS] > 0.0:  # else a point: the next arc begins there, too
+            points += list(arc[1:])
+    return np.array(points)
+
+
+def _arc_from(place, jaws):
+    """The index of an arc of which one end is at ``place``, and its points (25, 2) from there on; None if there is none."""
+    for k, (x, y, radius, ux, uy, cos_half) in enumerate(jaws):
+        angles = np.arctan2(uy, ux) + np.arccos(cos_half) * np.linspace(-1.0, 1.0, 25)
+        arc = np.array([x, y]) + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        for points in (arc, arc[::-1]):
+            if np.hypot(*(points[0] - place)) < 1e-6:
+                return k, points
+    return None
+
+
+def _onward(jaw, out, level, ends):
+    """Where a jaw, run on straight behind its last arc, meets the line ``level`` behind the nose; two noses that meet share a mitre."""
+    if len(jaw) > 1:
+        onward = jaw[-1] - jaw[-2]
+    else:
+        onward = out + sum((other for place, other in ends if abs(other @ out) < 0.5 and np.hypot(*(place - jaw[0])) < 1e-6), np.zeros(2))
+    return jaw[-1] + onward * ((level - jaw[-1] @ out) / (onward @ out))
+
+
+def _throat(fall, noses, mouths):
+    """The hole in the wood: from the middle of the pocket's mouth to the centre of its fall, as wide as its jaws' ends are apart."""
+    jaw_ends = [end for nose in noses for end in (nose[0], nose[-1])]
+    (a, b), (c, d) = (sorted(points, key=lambda point: np.hypot(*(point - fall[:2])))[:2] for points in (mouths, jaw_ends))
+    return [*(a + b) / 2, *fall[:2], np.hypot(*(c - d)) / 2]
+
+
+def scene_data(table: TableLike) -> dict[str, Any]:
+    """A table, its lines, the balls and all colours as JSON types: the one description that pygame, matplotlib and a browser draw.
+
+    Parameters
+    ----------
+    table : str, Table or None
+        As in ``snooker_env.simulate``.
+
+    Returns
+    -------
+    dict
+        Lengths in metres, to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in ``Outline``, lists for arrays; ``extent``:
+        [[lowest x, highest x], [lowest y, highest y]] of the bed; ``rail``, ``cushion``: ``RAIL``, ``CUSHION``; ``lines``: {"baulk", "d",
+        "spots"}, or None on a table without snooker's marks; ``ball_radius``; ``palette``: {name: [red, green, blue]}; ``balls``: by id
+        {"name", "letter", "value", "rgb"}.
+
+    Examples
+    --------
+    >>> from snooker_env.render.scene import scene_data
+    >>> data = scene_data("pool9")
+    >>> data["lines"], len(data["cushions"]), data["balls"][21]["name"]
+    (None, 6, 'black')
+    """
+    table = Table.of(table)
+    parts = outline(table)
+    marks = {"baulk": _rounded(BAULK_LINE), "d": _rounded(D_ARC), "spots": _rounded(SPOT_MARKS)} if is_marked(table) else None
+    return {
+        "cushions": [_rounded(polygon) for polygon in parts.cushions],
+        "noses": [_rounded(nose) for nose in parts.noses],
+        "falls": _rounded(parts.falls),
+        "throats": _rounded(parts.throats),
+        "extent": _rounded(extent(table)),
+        "rail": RAIL,
+        "cushion": CUSHION,
+        "lines": marks,
+        "ball_radius": float(table.ball_radius or BALL_RADIUS),
+        "palette": {name: list(rgb) for name, rgb in PALETTE.items()},
+        "balls": [
+            {"name": NAMES[ball], "letter": LETTERS[ball], "value": int(VALUES[ball]), "rgb": COLOURS[ball].tolist()}
+            for ball in range(N_BALLS)
+        ],
+    }
+
+
+def _rounded(points):
+    return (np.round(points, 6) + 0.0).tolist()  # + 0.0: no "-0.0"

@@ -1,0 +1,41 @@
+"""How does pygame-ce get here? When a picture is wanted, and with the line that installs it where it is missing; with it the typeface."""
+
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+FONTS = Path(__file__).parent / "fonts"
+BOLD, MEDIUM = "Inter-Bold.otf", "Inter-Medium.otf"
+
+
+def pygame_() -> Any:
+    """The module, or ImportError."""
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+    try:
+        import pygame
+    except ImportError as error:
+        raise ImportError('pictures need pygame-ce; install it, in a clone of snooker_env, with: pip install -e ".[render]"') from error
+    return pygame
+
+
+def typeset(text: str, colour: Any, size: float, file: str = MEDIUM) -> Any:
+    """A line of text as a surface, ``size`` pixels from the top of a capital to the bottom of its descenders."""
+    pygame = pygame_()
+    if not pygame.font.get_init():
+        pygame.font.init()
+        _font.cache_clear()
+    return _font(file, max(6, round(size))).render(text.replace("\0", " "), True, colour)
+
+
+@lru_cache(maxsize=64)
+def _font(file, size):
+    return pygame_().font.Font(str(FONTS / file), size)
+
+
+def surface_of(rgba: Any) -> Any:
+    """An array (h, w, 4) of floats from 0 to 255 as a surface with transparency."""
+    image = np.ascontiguousarray(np.clip(np.rint(rgba), 0, 255).astype(np.uint8))
+    return pygame_().image.frombuffer(image, image.shape[1::-1], "RGBA")

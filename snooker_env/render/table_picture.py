@@ -1,0 +1,254 @@
+"""How does a table look from above? Everything that does not move, as an array: floor, wood, leather, cloth, cushions, pockets, light.
+
+Each part is a signed distance [m] (negative inside) on the pixels around it; an edge covers a pixel by as much as it reaches into it, so
+that edges are smooth at every size. Needs numpy alone.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import BAULK_Y, D_RADIUS
+from ..physics.table import Table
+from .outline import BAULK_LINE, CUSHION, RAIL, SPOT_MARKS, Outline, extent, is_marked, outline
+from .palette import PALETTE
+from .view import View
+
+LAMPS = 4
+"""Over a table hang this many lamps, in a row along its length ..."""
+LAMP_HEIGHT = 0.95
+"""... so high above the cloth [m]."""
+
+_RIM = 0.020  # width of a pocket's leather [m]
+_ROUND = 0.085  # radius of the table's corners [m]
+_INK = {name: np.array(rgb, dtype=np.float32) for name, rgb in PALETTE.items()}
+
+
+def lamps(table: Table) -> NDArray[np.float64]:
+    """(``LAMPS``, 2) places over the table [m]."""
+    (low_x, high_x), (low_y, high_y) = extent(table)
+    parts = (np.arange(LAMPS) + 0.5) / LAMPS
+    return np.stack([np.full(LAMPS, (low_x + high_x) / 2), low_y + (high_y - low_y) * parts], axis=1)
+
+
+@lru_cache(maxsize=8)
+def table_picture(table: Table, view: View) -> NDArray[np.uint8]:
+    """A table as uint8 (height, width, 3), read-only; the rows of the score bar hold only floor.
+
+    Parameters
+    ----------
+    table : Table
+    view : View
+        Of that table.
+
+    Returns
+    -------
+    uint8 (height, width, 3)
+    """
+    canvas, parts = _Canvas(view, table), outline(table)
+    canvas.image[:] = _INK["floor"]
+    _bed(canvas, table)
+    if is_marked(table):
+        _marks(canvas)
+    _pockets(canvas, parts)
+    for polygon, nose in zip(parts.cushions, parts.noses, strict=True):
+        _cushion(canvas, polygon, nose)
+    if parts.cushions:
+        _wood(canvas, table, parts)
+    image = np.rint(np.clip(canvas.image, 0, 255)).astype(np.uint8)
+    image.setflags(write=False)
+    return image
+
+
+class _Canvas:
+    """A picture in the making: float32 (height, width, 3), and where its pixels lie on the table [m]."""
+
+    def __init__(self, view, table):
+        self.view, self.extent = view, extent(table)
+        self.image = np.empty((view.height, view.width, 3), np.float32)
+        self.x = ((np.arange(view.height, dtype=np.float32) + 0.5 - view.y) / view.scale)[:, None]
+        self.y = ((np.arange(view.width, dtype=np.float32) + 0.5 - view.x) / view.scale)[None, :]
+        self.middle, self.half = self.extent.mean(axis=1).tolist(), (np.diff(self.extent, axis=1)[:, 0] / 2).tolist()
+        self.random = np.random.default_rng(1)
+
+    def around(self, points, margin):
+        """The rows and columns within ``margin`` [m] of some points: the picture there, x, y."""
+        (x0, y0), (x1, y1) = np.min(points, axis=0) - margin, np.max(points, axis=0) + margin
+        rows, columns = (slice(*np.searchsorted(axis.ravel(), ends)) for axis, ends in ((self.x, (x0, x1)), (self.y, (y0, y1))))
+        return self.image[rows, columns], self.x[rows], self.y[:, columns]
+
+    def cover(self, distance):
+        """How much of each pixel lies inside."""
+        return np.clip(0.5 - distance * self.view.scale, 0.0, 1.0)
+
+    def box(self, x, y, extra, radius=0.0):
+        """Distance to the bed, enlarged by ``extra``, with round corners."""
+        across, along = (np.abs(axis - m) - (h + extra - radius) for axis, m, h in zip((x, y), self.middle, self.half, strict=True))
+        outside = np.hypot(np.maximum(across, 0), np.maximum(along, 0))
+        return outside + np.minimum(np.maximum(across, along), 0) - radius
+
+    def grain(self, rows, columns, fine, run):
+        """Unrest of mean 0 and size 1, ``fine`` pixels across and ``run`` pixels along the columns."""
+        across, along = int(rows / fine) + 2, int(columns / run) + 3
+        noise = self.random.standard_normal((across, along)).astype(np.float32)
+        at, part = np.divmod(np.arange(columns) / run, 1.0)
+        at, part = at.astype(int), (part * part * (3 - 2 * part)).astype(np.float32)
+        return (noise[:, at] * (1 - part) + noise[:, at + 1] * part)[(np.arange(rows) / fine).astype(int)]
+
+
+def _paint(image, colour, alpha):
+    """Lay a colour (3,) or picture over a picture."""
+    alpha = alpha[..., None]
+    image += alpha * (colour - image)
+
+
+def _smooth(t):
+    """From 0 at t = 0 to 1 at t = 1."""
+    t = np.clip(t, 0.0, 1.0)
+    return t * t * (3 - 2 * t)
+
+
+def _bed(canvas, table):
+    """The cloth: its nap runs along the table, and the lamps' light fades a little towards the ends."""
+    image, x, y = canvas.image[: canvas.view.height - canvas.view.bar], canvas.x[: canvas.view.height - canvas.view.bar], canvas.y
+    rows, columns = image.shape[:2]
+    pixels = canvas.view.scale / 480  # of a picture of 1080 rows
+    nap = 0.011 * canvas.grain(rows, columns, 1.0, max(1.5, 3.0 * pixels)) + 0.0055 * canvas.grain(rows, columns, max(1, 5 * pixels), 60 * pixels + 2)
+    light = 1.035 - 0.075 * ((y - canvas.middle[1]) / canvas.half[1]) ** 2 - 0.055 * ((x - canvas.middle[0]) / canvas.half[0]) ** 2
+    cloth = (np.clip(light, 0.8, 1.1) * (1 + nap))[..., None] * _INK["cloth"]
+    if len(table.noses):
+        _paint(image, cloth, canvas.cover(canvas.box(x, y, CUSHION + 0.02)))
+    else:
+        image[:] = cloth
+
+
+def _marks(canvas):
+    """The baulk line, the D and the spots."""
+    half = max(0.0017, 0.75 / canvas.view.scale)
+    image, _, y = canvas.around(BAULK_LINE, 2 * half)
+    _paint(image, _INK["line"], 0.88 * canvas.cover(np.abs(y - np.float32(BAULK_Y)) - half) * np.ones(image.shape[:1] + (1,)))
+    image, x, y = canvas.around([(-D_RADIUS, BAULK_Y - D_RADIUS), (D_RADIUS, BAULK_Y)], 2 * half)
+    arc = np.abs(np.hypot(x, y - BAULK_Y) - D_RADIUS) - half
+    _paint(image, _INK["line"], 0.88 * canvas.cover(np.maximum(arc, y - BAULK_Y)))
+    for spot in SPOT_MARKS:
+        image, x, y = canvas.around([spot], 0.02)
+        _paint(image, _INK["line"], 0.9 * canvas.cover(np.hypot(x - spot[0], y - spot[1]) - max(0.0048, 1.2 / canvas.view.scale)))
+
+
+def _pockets(canvas, parts: Outline):
+    """The holes: the cloth bends over the slate's edge and down; behind, the leather's inside goes down into the dark."""
+    for (cx, cy, radius), throat in zip(parts.falls.tolist(), parts.throats.tolist(), strict=True):
+        image, x, y = canvas.around([(cx, cy), throat[:2]], max(radius, throat[4]) + 0.03)
+        fall = np.hypot(x - cx, y - cy) - radius
+        _paint(image, 0.55 * _INK["cloth_edge"], 0.85 * _smooth(1 - fall / 0.011))
+        front = 0.30 * _INK["cloth_edge"] * (1 - _smooth(-fall / 0.014))[..., None] + _INK["hole"] * _smooth(-fall / 0.014)[..., None]
+        _paint(image, front, canvas.cover(fall))
+        back = _capsule(x, y, throat)
+        depth = _smooth(-back / 0.022)[..., None]
+        inside = 0.55 * _INK["leather"] * (1 - depth) + _INK["hole"] * depth
+        behind = _smooth((canvas.box(x, y, CUSHION) + 0.014) / 0.022)
+        _paint(image, inside, canvas.cover(back) * behind)
+
+
+def _capsule(x, y, throat):
+    """Distance to a throat: a line from its mouth to its fall, thick, with a round end."""
+    x0, y0, x1, y1, half = throat
+    dx, dy = x1 - x0, y1 - y0
+    part = np.clip(((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy), 0, 1)
+    return np.hypot(x - x0 - part * dx, y - y0 - part * dy) - half
+
+
+def _cushion(canvas, polygon, nose):
+    """One cushion with the shadow that it throws on the bed: bright along the nose, darker towards the wood."""
+    reach = 0.055
+    image, x, y = canvas.around(nose, reach + 0.05)
+    to_nose = _to_line(x, y, nose, reach + 0.03)
+    inside = _inside(x, y, polygon)
+    outer = np.where(inside, -to_nose, to_nose)  # the nose is the only edge of a cushion that is seen
+    image *= (1 - 0.50 * np.exp(-np.maximum(outer, 0) / 0.013) * (outer > 0) * (outer < reach))[..., None]
+    t = np.clip(to_nose / (CUSHION + 0.004), 0, 1)
+    top = _INK["cushion"] * (1.16 - 0.42 * t)[..., None]
+    edge = np.exp(-(((to_nose - 0.0035) / 0.0035) ** 2))[..., None]
+    top += edge * (_INK["nose"] - top) * 0.85
+    grain = canvas.grain(*image.shape[:2], 1.0, 2.0)
+    _paint(image, top * (1 + 0.012 * grain)[..., None], canvas.cover(outer))
+
+
+def _near(x, y, a, b, reach):
+    """The rows and columns within ``reach`` of the line from a to b."""
+    ends = ((axis, sorted((p, q))) for axis, p, q in ((x.ravel(), a[0], b[0]), (y.ravel(), a[1], b[1])))
+    return tuple(slice(*np.searchsorted(axis, (low - reach, high + reach))) for axis, (low, high) in ends)
+
+
+def _to_line(x, y, points, reach):
+    """Distance to a polyline, where it is less than ``reach``."""
+    squared = np.full((len(x), y.shape[1]), reach**2, np.float32)
+    for a, b in zip(points[:-1].tolist(), points[1:].tolist(), strict=True):
+        rows, columns = _near(x, y, a, b, reach)
+        px, py, dx, dy = x[rows] - a[0], y[:, columns] - a[1], b[0] - a[0], b[1] - a[1]
+        part = np.clip((px * dx + py * dy) / max(dx * dx + dy * dy, 1e-12), 0, 1)
+        here = squared[rows, columns]
+        np.minimum(here, (px - part * dx) ** 2 + (py - part * dy) ** 2, out=here)
+    return np.sqrt(squared)
+
+
+def _inside(x, y, polygon):
+    """Which pixels' centres lie in a polygon: those that a ray in -x leaves through an odd number of edges."""
+    odd = np.zeros((len(x), y.shape[1]), bool)
+    for a, b in zip(polygon.tolist(), np.roll(polygon, -1, axis=0).tolist(), strict=True):
+        (ax, ay), (bx, by) = (a, b) if a[1] < b[1] else (b, a)
+        columns = slice(*np.searchsorted(y.ravel(), (ay, by)))
+        if columns.stop > columns.start:
+            odd[:, columns] ^= x > ax + (bx - ax) * (y[:, columns] - ay) / (by - ay)
+    return odd
+
+
+def _wood(canvas, table, parts):
+    """The frame: polished wood with its grain along each rail, and the pockets' leather let into it."""
+    image, x, y = canvas.around(canvas.extent.T, RAIL + 0.1)
+    edge = canvas.box(x, y, RAIL, _ROUND)
+    inner = canvas.box(x, y, CUSHION)
+    image *= (1 - 0.55 * np.exp(-edge / 0.02) * (edge > 0))[..., None]  # its shadow on the floor
+    rows, columns = image.shape[:2]
+    pixels = max(canvas.view.scale / 480, 0.4)
+    along = canvas.grain(rows, columns, 1.3 * pixels, 150 * pixels) + 0.8 * canvas.grain(rows, columns, 4 * pixels, 320 * pixels)
+    across = (canvas.grain(columns, rows, 1.3 * pixels, 150 * pixels) + 0.8 * canvas.grain(columns, rows, 4 * pixels, 320 * pixels)).T
+    ends = np.abs(y - canvas.middle[1]) - canvas.half[1] > np.abs(x - canvas.middle[0]) - canvas.half[0]
+    deep = -edge  # from the outer edge [m]
+    shade = 0.40 + 0.64 * _smooth(deep / 0.012) + 0.34 * np.exp(-(((deep - 0.020) / 0.009) ** 2)) - 0.06 * _smooth((deep - 0.03) / 0.05)
+    shade += 0.24 * np.exp(-(((inner - 0.012) / 0.003) ** 2)) - 0.45 * _smooth(1 - inner / 0.007)
+    lamps_y = lamps(table)[:, 1].tolist()
+    gloss = sum(np.exp(-(((y - lamp) / 0.34) ** 2)) for lamp in lamps_y)
+    shade *= 1 + 0.055 * np.where(ends, across, along) + 0.07 * (gloss - 0.5)
+    wood = np.ones(image.shape[:2], np.float32) * canvas.cover(edge) * (1 - canvas.cover(inner))
+    leather = np.full(image.shape[:2], 1.0, np.float32)  # distance to the nearest pocket's hole
+    for throat in parts.throats.tolist():
+        around = _near(x, y, throat[:2], throat[2:4], throat[4] + 0.06)
+        leather[around] = np.minimum(leather[around], _capsule(x[around[0]], y[:, around[1]], throat))
+    wood *= 1 - canvas.cover(leather)
+    shade *= 1 - 0.55 * np.exp(-np.maximum(leather - _RIM, 0) / 0.006)  # the leather's shadow on the wood
+    _paint(image, _INK["wood"] * shade[..., None], wood)
+    for throat in parts.throats.tolist():
+        _leather(canvas, image, x, y, throat)
+
+
+def _leather(canvas, image, x, y, throat):
+    """A pocket's leather: round, bright along its ridge, cut off square where its ends lap over the cushions."""
+    x0, y0, x1, y1, half = throat
+    around = _near(x, y, (x0, y0), (x1, y1), half + 0.06)
+    image, x, y = image[around], x[around[0]], y[:, around[1]]
+    length = np.hypot(x0 - x1, y0 - y1)
+    ux, uy = (x0 - x1) / length, (y0 - y1) / length  # towards the table
+    out = np.linspace(-0.05, length, 200)
+    outer = [canvas.box(x1 + ux * out + side * uy * (half + _RIM), y1 + uy * out - side * ux * (half + _RIM), CUSHION) for side in (-1, 1)]
+    over = np.flatnonzero(np.maximum(*outer) < -0.007)
+    end = float(out[over[0]]) if len(over) else length
+    hole = _capsule(x, y, throat)
+    cut = (x - x1) * ux + (y - y1) * uy - end
+    t = hole / _RIM
+    shade = 0.45 + 0.85 * np.sqrt(np.clip(1 - (2 * t - 1) ** 2, 0, 1)) - 0.35 * _smooth(1 + cut / 0.004)
+    ridge = 0.6 * np.exp(-(((t - 0.42) / 0.16) ** 2))[..., None]
+    skin = _INK["leather"] * shade[..., None] + (_INK["leather_edge"] - _INK["leather"]) * ridge
+    frame = canvas.cover(canvas.box(x, y, RAIL, _ROUND) + 0.004)
+    _paint(image, skin, canvas.cover(hole - _RIM) * (1 - canvas.cover(hole + 0.0015)) * canvas.cover(cut) * frame)

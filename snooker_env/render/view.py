@@ -1,0 +1,65 @@
+"""Where do metres lie on a picture? The table in the middle, +y to the right and +x down, the score bar below it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._check import integer, refuse
+from .._types import Floats
+from ..physics.table import Table
+from .outline import RAIL, extent
+
+SIZE = (1920, 1080)
+"""Width and height of a picture [pixels] unless told."""
+
+_MARGIN = 0.012  # floor to be seen around the rails [m]
+_BAR = 1 / 15  # part of the height for the score bar
+_LONGEST = 8.0  # a picture whose width follows is at most this many times as wide as high
+_LEAST, _MOST = 100, 8192
+
+
+class View(NamedTuple):
+    """A picture of a table."""
+
+    width: int
+    height: int
+    bar: int
+    """Rows of the score bar, at the bottom."""
+    scale: float
+    """Pixels a metre."""
+    x: float
+    y: float
+    """Pixel of the origin."""
+
+    @classmethod
+    def of(cls, table: Table, height: int | None = None, size: tuple[int, int] | None = None) -> "View":
+        """``size`` (width, height): the table as large as fits into it; ``height`` alone: as wide as that table asks; neither: ``SIZE``."""
+        low, high = extent(table).T
+        (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + _MARGIN), (low + high) / 2
+        if height is not None and size is not None:
+            raise refuse("size", size, "must be None where height is given")
+        if height is not None:
+            height = integer("height", height, _LEAST, 4320)
+            bar = round(_BAR * height)
+            scale = min((height - bar) / tall, _LONGEST * height / wide)
+            width = 2 * round(scale * wide / 2)  # even, as video encoders want it
+        else:
+            width, height = _checked(SIZE if size is None else size)
+            bar = round(_BAR * min(height, width * SIZE[1] / SIZE[0]))
+            scale = min((height - bar) / tall, width / wide)
+        return cls(width, height, bar, float(scale), float(width / 2 - scale * middle_y), float((height - bar) / 2 - scale * middle_x))
+
+    def __call__(self, points: Floats) -> Floats:
+        """Column and row of points (..., 2) [m]."""
+        points = np.asarray(points, dtype=np.float64)
+        return np.stack([self.x + self.scale * points[..., 1], self.y + self.scale * points[..., 0]], axis=-1)
+
+    def metres(self, pixel: tuple[float, float]) -> Floats:
+        """The point (2,) [m] at a column and row."""
+        return np.array([(pixel[1] - self.y) / self.scale, (pixel[0] - self.x) / self.scale])
+
+
+def _checked(size):
+    if isinstance(size, str) or not hasattr(size, "__len__") or len(size) != 2:
+        raise refuse("size", size, "must be (width, height)")
+    return integer("size", size[0], _LEAST, _MOST), integer("size", size[1], _LEAST, _MOST)

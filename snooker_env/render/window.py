@@ -1,0 +1,266 @@
+"""How is a table shown on the screen? In a window that says what it waits for, and that listens to the keyboard.
+
+| key | what it does |
+|---|---|
+| space | pause, and go on |
+| right arrow | one picture further, while paused |
+| enter | to the end of the shot |
+| up, down arrow | faster, slower: 0.25 to 8 times |
+| L | letters on the balls |
+| P | paths |
+| escape, close button | shut the window |
+"""
+
+import dataclasses
+import os
+import sys
+from collections.abc import Iterable
+from typing import Any
+
+from .._check import number
+from .palette import PALETTE
+from .pygame_library import BOLD, MEDIUM, pygame_, typeset
+from .pygame_view import draw
+from .scene import Film, Scene
+from .view import SIZE, View
+
+SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
+"""How fast a shot can be shown, in multiples of what the caller asks for."""
+KEYS = "space: pause    right: step    enter: skip    up/down: speed    L: letters    P: paths    esc: close"
+WAITING = "waiting for the next stroke"
+_HINT = 0.026  # part of the window's height for the line that says what it waits for
+_WANTED = ("dummy", "offscreen")
+
+
+def require_display() -> None:
+    """Refuse where a window could be shown to nobody.
+
+    A program that wants a window without a screen, as tests do, says so by the environment variable ``SDL_VIDEODRIVER=dummy``.
+
+    Raises
+    ------
+    RuntimeError
+        If there is no display; the message says what to do.
+    """
+    if os.environ.get("SDL_VIDEODRIVER"):
+        return
+    linux = not (sys.platform.startswith("win") or sys.platform == "darwin")
+    if linux and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise _no_display("neither DISPLAY nor WAYLAND_DISPLAY is set")
+
+
+def _no_display(why):
+    return RuntimeError(
+        f'render_mode="human" opens a window, but there is no display ({why}): use render_mode="rgb_array" for pictures or "ansi" for text, '
+        "or set SDL_VIDEODRIVER=dummy to play to nobody"
+    )
+
+
+class Window:
+    """A window with a table. It opens at the first ``draw``; its close button shuts it until ``close``.
+
+    Parameters
+    ----------
+    height : int, optional
+        [pixels]: as high as this, and as wide as the first table asks.
+    title : str
+    size : (int, int), optional
+        (width, height) [pixels]. Without both: ``SIZE``, or less where the screen is smaller. It may be resized by its edges.
+    """
+
+    def __init__(self, height: int | None = None, title: str = "snooker", *, size: tuple[int, int] | None = None):
+        View.of(_any_table(), height, size)  # refused now, not when it opens
+        self._height, self._size, self._title = height, size, title
+        self._screen: Any = None
+        self._shut = False
+        self._speed, self._paused, self._letters, self._paths = SPEEDS.index(1.0), False, False, True
+        self._steps, self._skip = 0, False
+
+    @property
+    def is_open(self) -> bool:
+        """False before the first ``draw`` and after the window was closed."""
+        return self._screen is not None
+
+    @property
+    def speed(self) -> float:
+        """How fast the user wants shots to be shown, in multiples of what ``play`` is asked for."""
+        return SPEEDS[self._speed]
+
+    @property
+    def paused(self) -> bool:
+        """Whether the user has stopped the film."""
+        return self._paused
+
+    def draw(self, scene: Scene, status: str = WAITING) -> bool:
+        """Show one scene.
+
+        Parameters
+        ----------
+        scene : Scene
+        status : str
+            What the window waits for, said in its last line.
+
+        Returns
+        -------
+        bool
+            False, with nothing shown, once the user has shut the window.
+
+        Raises
+        ------
+        RuntimeError
+            If there is no display.
+        """
+        if self._screen is not None:
+            self._listen()
+        if self._shut:
+            return False
+        if self._screen is None:
+            self._open(scene)
+        self._show(scene, status)
+        return True
+
+    def play(self, scenes: Film | Iterable[Scene], fps: float = 30.0, *, speed: float = 1.0) -> bool:
+        """Show a shot as it moves, by the clock, at the speed that the user wants.
+
+        Parameters
+        ----------
+        scenes : Film or iterable of Scene
+            A film is drawn at the very time of each picture; of scenes, those of ``shot_scenes``, one is shown every 1 / fps seconds.
+        fps : float
+            Pictures a second.
+        speed : float
+            Of a film: how fast it runs at the user's speed 1.
+
+        Returns
+        -------
+        bool
+            False if the window was shut.
+        """
+        fps, clock = number("fps", fps, 0.0, open_low=True), pygame_().time.Clock()
+        take = _Reel(scenes, number("speed", speed, 0.0, open_low=True) / fps)
+        self._skip, scene = False, take.first()
+        while scene is not None:
+            if not self.draw(scene, self._status()):
+                return False
+            if self._skip:
+                scene = take.skip()
+            elif not self._paused:
+                scene = take.on(self.speed)
+            elif self._steps:
+                self._steps -= 1
+                scene = take.on(min(self.speed, 1.0))
+            clock.tick(fps)
+        return True
+
+    def close(self) -> None:
+        """Close the window, if there is one. A later ``draw`` opens it again."""
+        self._shut = self._paused = False
+        if self._screen is not None:
+            self._screen = None
+            pygame_().display.quit()
+
+    def _status(self):
+        return "paused" if self._paused else f"playing {self.speed:g}x"
+
+    def _open(self, scene):
+        pygame = pygame_()
+        require_display()
+        try:
+            pygame.display.init()
+        except pygame.error as error:
+            raise _no_display(str(error)) from None
+        if not os.environ.get("SDL_VIDEODRIVER") and pygame.display.get_driver() in _WANTED:
+            pygame.display.quit()
+            raise _no_display(f"SDL found only its driver {pygame.display.get_driver() if pygame.display.get_init() else 'dummy'!r}")
+        pygame.display.set_caption(self._title)
+        view = View.of(scene.table, self._height, self._size)
+        width, height = view.width, view.height
+        if self._height is None and self._size is None:
+            desk_width, desk_height = pygame.display.get_desktop_sizes()[0]
+            part = min(1.0, 0.92 * desk_width / SIZE[0], 0.88 * desk_height / SIZE[1])
+            width, height = round(part * width), round(part * height)
+        try:
+            self._screen = pygame.display.set_mode((width, height + round(_HINT * height)), pygame.RESIZABLE)
+        except pygame.error as error:
+            pygame.display.quit()
+            raise _no_display(str(error)) from None
+
+    def _listen(self):
+        pygame = pygame_()
+        for event in pygame.event.get():
+            if event.type == pygame.QUIT or (event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE):
+                self.close()
+                self._shut = True
+                return
+            if event.type == pygame.KEYDOWN:
+                self._press(pygame, event.key)
+
+    def _press(self, pygame, key):
+        if key == pygame.K_SPACE:
+            self._paused, self._steps = not self._paused, 0
+        elif key == pygame.K_RIGHT and self._paused:
+            self._steps += 1
+        elif key in (pygame.K_RETURN, pygame.K_KP_ENTER):
+            self._skip = True
+        elif key in (pygame.K_UP, pygame.K_DOWN):
+            self._speed = min(max(self._speed + (1 if key == pygame.K_UP else -1), 0), len(SPEEDS) - 1)
+        elif key == pygame.K_l:
+            self._letters = not self._letters
+        elif key == pygame.K_p:
+            self._paths = not self._paths
+
+    def _show(self, scene, status):
+        pygame = pygame_()
+        self._screen = pygame.display.get_surface()  # another one once the window was resized
+        width, height = self._screen.get_size()
+        hint = max(12, round(_HINT / (1 + _HINT) * height))
+        scene = dataclasses.replace(scene, lettered=scene.lettered or self._letters, paths=scene.paths if self._paths else {})
+        pixels = draw(scene, View.of(scene.table, size=(max(width, 100), max(height - hint, 100))))
+        self._screen.fill(PALETTE["floor"])
+        self._screen.blit(pygame.image.frombuffer(pixels, pixels.shape[1::-1], "RGB"), (0, 0))
+        words = typeset(status, PALETTE["text"], 0.62 * hint, BOLD)
+        self._screen.blit(words, words.get_rect(midleft=(hint, height - hint / 2)))
+        keys = typeset(KEYS, PALETTE["text_quiet"], 0.58 * hint, MEDIUM)
+        if words.get_width() + keys.get_width() < width - 4 * hint:
+            self._screen.blit(keys, keys.get_rect(midright=(width - hint, height - hint / 2)))
+        pygame.display.flip()
+
+
+def _any_table():
+    from ..physics.table import Table
+
+    return Table.of(None)
+
+
+class _Reel:
+    """A film, or scenes one after the other, from which the next picture is taken."""
+
+    def __init__(self, scenes, step):
+        self._film = scenes if isinstance(scenes, Film) else None
+        self._scenes = iter(()) if self._film else iter(scenes)
+        self._step, self._time, self._due = step, 0.0, 0.0
+        self._last: Scene | None = None
+
+    def first(self):
+        self._last = self._film.at(0.0) if self._film else next(self._scenes, None)
+        return self._last
+
+    def on(self, speed):
+        """The picture after this one; None after the last."""
+        if self._film:
+            if self._time >= self._film.duration:
+                return None
+            self._time = min(self._time + speed * self._step, self._film.duration)
+            return self._film.at(self._time)
+        self._due += speed
+        while self._due >= 1:
+            self._due -= 1
+            shown, self._last = self._last, next(self._scenes, None)
+            if self._last is None:
+                self._due = 0.0
+                return shown if speed > 1 and shown is not self._shown() else None
+        return self._last
+
+    def skip(self):
+        """The last picture, or None if that was shown."""
+        return None

@@ -1,0 +1,46 @@
+"""What does the score bar say at each stroke? Two bars a stroke: while it is played, and once it has been judged."""
+
+from collections.abc import Iterable, Sequence
+
+from ..game.balls import N_REDS, mask_of_present
+from ..game.frame import points_available
+from ..render.scene import ScoreBar
+from ..tasks.played import Played
+from .words import on_words, pots_of, sentence
+
+
+def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreBar, ScoreBar]]:
+    """For each stroke of one episode, in their order: the bar during it and the bar after it. ``players``: their names."""
+    made, potted, striker, names = [], [], None, tuple(players)
+    for played in strokes:
+        gains = {played.player: played.points, 1 - played.player: played.penalty}
+        scores = tuple(score - gains.get(k, 0) for k, score in enumerate(played.scores))
+        goes_on = striker == played.player
+        potted = potted if goes_on else []
+        so_far = played.break_points - played.points if played.points else made[-1][1].break_points if goes_on and made else 0
+        before = {
+            "players": names, "scores": scores, "striker": played.player, "break_points": so_far, "potted": tuple(potted),
+            "reds_left": int(_start(played)[1 : N_REDS + 1].sum()), "points_on": _left(_start(played), played.ball_on),
+            "ball_on": "free ball" if played.free_ball else on_words(played.ball_on),
+        }  # fmt: skip
+        if played.points:
+            potted = potted + pots_of(played.shot)
+        after = before | {
+            "scores": played.scores, "break_points": so_far + played.points, "potted": tuple(potted),
+            "reds_left": int(played.on_table[1 : N_REDS + 1].sum()), "points_on": _left(played.on_table, played.next_on),
+            "ball_on": on_words(played.next_on), "words": sentence(played, names),
+        }  # fmt: skip
+        made.append((ScoreBar(**before), ScoreBar(**after)))
+        striker = played.player if played.points else None
+    return made
+
+
+def _start(played):
+    """Which balls were on the table when the stroke was played: (22,) bool."""
+    here = played.shot.on_table.copy()
+    here[pots_of(played.shot)] = True
+    return here
+
+
+def _left(on_table, ball_on):
+    return points_available(mask_of_present(on_table) & ~1, ball_on) if ball_on >= 0 else 0

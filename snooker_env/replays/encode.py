@@ -1,0 +1,76 @@
+"""How is a stroke written down for a browser? As the closed forms of its phases: small, and exact at every time.
+
+The numbers of a path are binary in base64: 64 bits for places, velocities and accelerations, so that the browser computes the same places
+as ``Shot.at``; 32 bits for spins, which are only looked at. ``docs/replay.md`` is the format.
+"""
+
+import base64
+from typing import Any
+
+import numpy as np
+
+from .._check import refuse_what
+from .._types import Floats
+from ..game.balls import N_BALLS
+from ..physics import cloth
+from ..simulation import Shot
+from ..tasks.played import Played
+from .words import foul_words, on_words, pots_of, sentence
+
+_PLACES = [cloth.T0, cloth.X, cloth.Y, cloth.VX, cloth.VY, cloth.AX, cloth.AY]
+_SPINS = [cloth.WX, cloth.WY, cloth.WZ]
+_WHICH = [cloth.SEGMENT_BALL, cloth.SEGMENT_STATE]
+
+
+def packed(values: Any, kind: str) -> str:
+    """Numbers as base64 of little-endian ``kind``: "f8", "f4" or "u1", row after row."""
+    return base64.b64encode(np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<")).tobytes()).decode("ascii")
+
+
+def encoded_shot(shot: Shot) -> dict[str, Any]:
+    """The motion of a shot, up to "pots". ValueError if it has no path, or more balls than snooker."""
+    n = len(shot.positions)
+    if n > N_BALLS:
+        raise refuse_what("shot", f"{n} balls", f"must have at most {N_BALLS}: their colours are snooker's")
+    if not len(shot.segments):
+        raise refuse_what("shot", "a Shot without its path", "must be of sn.simulate, or of an environment with keep_history = True")
+    first, states = shot.segments[:n], shot.segments[:, cloth.SEGMENT_STATE]
+    idle = (states == cloth.REST) | (states == cloth.GONE)
+    waits = (np.arange(len(states)) < n) & idle & (shot.segments[:, cloth.WZ] == 0.0)  # lies still from the start: ``start`` says where
+    moves = shot.segments[~waits]
+    return {
+        "n": n, "start": packed(first[:, [cloth.X, cloth.Y]], "f8"),
+        "on_table": np.flatnonzero(first[:, cloth.SEGMENT_STATE] != cloth.GONE).tolist(),
+        "paths": {
+            "count": len(moves), "f8": packed(moves[:, _PLACES], "f8"), "f4": packed(moves[:, _SPINS], "f4"),
+            "u1": packed(moves[:, _WHICH], "u1"),
+        },
+        "events": [[round(float(t), 9), int(kind), int(i), int(j)] for t, kind, i, j in shot.events.tolist()],
+        "duration": shot.duration, "pots": pots_of(shot),
+    }  # fmt: skip
+
+
+def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, Any]:
+    """One stroke of a replay; of a bare ``Shot`` the parts that only a referee knows are empty."""
+    if isinstance(item, Shot):
+        return encoded_shot(item) | {
+            "cue": None, "player": None, "ball_on": None, "points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0,
+            "after": None,
+        }  # fmt: skip
+    shot = item.shot
+    return encoded_shot(shot) | {
+        "cue": item.cue, "player": item.player, "ball_on": "free ball" if item.free_ball else on_words(item.ball_on), "points": item.points,
+        "penalty": item.penalty, "fouls": foul_words(item.fouls), "words": sentence(item, players), "score": list(item.scores),
+        "break": item.break_points, "after": _after(item),
+    }  # fmt: skip
+
+
+def _after(item: Played) -> dict[str, Any] | None:
+    """The table before the next stroke, where it is not as the balls came to rest."""
+    there = item.on_table
+    same = np.array_equal(there, item.shot.on_table) and np.array_equal(item.positions[there], item.shot.positions[there])
+    return None if same else {"places": packed(_places(item.positions), "f8"), "on_table": np.flatnonzero(there).tolist()}
+
+
+def _places(positions: Floats) -> Floats:
+    return np.asarray(positions, np.float64)

@@ -1,0 +1,121 @@
+"""How are an environment's episodes written to files? ``RecordReplay``: a Gymnasium wrapper, a replay for each episode that is wanted."""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+
+from .._check import choice, refuse_what
+from .replay import SUFFIXES, Replay
+
+
+class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
+    """Keeps the strokes of ``Snooker-v0`` and writes each wanted episode as a replay: ``FOLDER/PREFIX-episode-0.html``, ...
+
+    An episode is written when it ends, and when the next one or ``close()`` cuts it short. One without a stroke gives no file. No render
+    mode is needed; an existing file of that name is overwritten.
+
+    Parameters
+    ----------
+    env : gymnasium.Env
+        ``Snooker-v0``, wrapped or not.
+    folder : str or Path
+        Where the files go; made if it is not there.
+    episode_trigger : callable, optional
+        ``episode_trigger(number) -> bool``: is this episode wanted? Numbers from 0. None: all are.
+    name_prefix : str
+        How the files' names begin.
+    suffix : {".html", ".json", ".mp4", ".gif"}
+        See ``Replay.save``.
+    players : sequence of str
+        Names, see ``snooker_env.replay``.
+
+    Attributes
+    ----------
+    paths : list of Path
+        The files written so far.
+
+    Raises
+    ------
+    ValueError
+        If the environment is not one of one table of this package, or an argument is none of these.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import gymnasium
+    >>> import snooker_env as sn
+    >>> env = sn.RecordReplay(gymnasium.make("Snooker-v0", action="discrete"), tempfile.mkdtemp(), suffix=".json")
+    >>> _ = env.reset(seed=1)
+    >>> _ = env.step(67)
+    >>> env.close()
+    >>> [path.name for path in env.paths]
+    ['snooker-episode-0.json']
+    """
+
+    def __init__(
+        self, env: gymnasium.Env[Any, Any], folder: str | Path, episode_trigger: Callable[[int], bool] | None = None, *,
+        name_prefix: str = "snooker", suffix: str = ".html", players: Iterable[str] = (),
+    ):  # fmt: skip
+        gymnasium.utils.RecordConstructorArgs.__init__(
+            self, folder=str(folder), episode_trigger=episode_trigger, name_prefix=name_prefix, suffix=suffix, players=tuple(players)
+        )
+        super().__init__(env)
+        inner = env.unwrapped
+        if not hasattr(inner, "keep_history"):
+            raise refuse_what("env", f"a {type(inner).__name__}", "must be a Snooker-v0 of one table")
+        inner.keep_history = True  # type: ignore[attr-defined]
+        self.paths: list[Path] = []
+        self._folder, self._prefix, self._suffix = Path(folder), name_prefix, choice("suffix", suffix, SUFFIXES)
+        self._wanted, self._players = episode_trigger, tuple(players)
+        self._number, self._written = -1, True
+        self._folder.mkdir(parents=True, exist_ok=True)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """A new episode; what there is of the last one is written first.
+
+        Parameters
+        ----------
+        seed : int, optional
+        options : dict, optional
+            As for ``Snooker-v0``.
+
+        Returns
+        -------
+        observation, info
+        """
+        self._write()
+        result = super().reset(seed=seed, options=options)
+        self._number, self._written = self._number + 1, False
+        return result
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        """One step; the replay of an episode that ends with it is written.
+
+        Parameters
+        ----------
+        action
+            As for ``Snooker-v0``.
+
+        Returns
+        -------
+        observation, reward, terminated, truncated, info
+        """
+        result = super().step(action)
+        if result[2] or result[3]:
+            self._write()
+        return result
+
+    def close(self) -> None:
+        """Write what there is of the episode, and close the environment."""
+        self._write()
+        super().close()
+
+    def _write(self) -> None:
+        strokes = [] if self._written else self.unwrapped.history  # type: ignore[attr-defined]
+        self._written = True
+        if strokes and (self._wanted is None or self._wanted(self._number)):
+            title = f"episode {self._number}"
+            path = self._folder / f"{self._prefix}-episode-{self._number}{self._suffix}"
+            self.paths.append(Replay(strokes, title=title, players=self._players).save(path))

@@ -1,0 +1,121 @@
+"""Do recorders get the motion of the strokes? The recorders of Gymnasium and Stable-Baselines3 as they are, on one table and on many."""
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.wrappers import RecordVideo
+from gymnasium.wrappers.vector import RecordVideo as VectorRecordVideo
+
+import snooker_env as sn
+from snooker_env.envs.films import PictureSource, recorder_asking
+
+pytest.importorskip("pygame")
+pytest.importorskip("moviepy")
+FPS = 30
+SMALL = {"render_size": (320, 180)}
+
+
+def pictures_of(seconds):
+    """How many pictures a shot has: one every 1/30 s, and its end."""
+    return len(np.arange(0.0, seconds, 1 / FPS)) + 1
+
+
+def made(**options):
+    return gymnasium.make("Snooker-v0", render_mode="rgb_array", action="discrete", **SMALL, **options)
+
+
+def test_record_video_of_gymnasium_films_each_stroke(tmp_path):
+    env = RecordVideo(made(), str(tmp_path), episode_trigger=lambda k: True, disable_logger=True)
+    env.reset(seed=1)
+    assert len(env.recorded_frames) == 1
+    expected = 1
+    for _ in range(2):
+        info = env.step(67)[4]
+        expected += pictures_of(info["seconds"]) + 1  # and the table after it, colours respotted
+        assert len(env.recorded_frames) == expected
+    moving = env.recorded_frames[1:30]
+    assert all(not np.array_equal(a, b) for a, b in zip(moving, moving[1:], strict=False))  # the cue ball runs
+    assert all(frame.shape == (180, 320, 3) for frame in env.recorded_frames)
+    env.close()
+    film = next(tmp_path.glob("*.mp4"))
+    from moviepy import VideoFileClip
+
+    with VideoFileClip(str(film)) as clip:
+        assert clip.duration == pytest.approx(expected / FPS, abs=0.1)
+
+
+def test_the_opponents_strokes_are_filmed_too(tmp_path):
+    env = RecordVideo(made(task="frame", opponent="ghost_ball"), str(tmp_path), episode_trigger=lambda k: True, disable_logger=True)
+    env.reset(seed=2)
+    before = len(env.recorded_frames)
+    env.step(67)
+    history = env.unwrapped.history
+    played = [p.shot.duration for p in history]
+    assert {p.player for p in history} == {0, 1}
+    assert len(env.recorded_frames) == sum(map(pictures_of, played)) + 2 and before >= 1
+    env.close()
+
+
+def test_vector_record_video_films_all_tables_at_once(tmp_path):
+    envs = gymnasium.make_vec(
+        "Snooker-v0", num_envs=2, vectorization_mode="vector_entry_point", render_mode="rgb_array", action="discrete", **SMALL
+    )
+    envs = VectorRecordVideo(envs, str(tmp_path), episode_trigger=lambda k: True, video_length=10**6, disable_logger=True)
+    envs.reset(seed=1)
+    info = envs.step(np.array([67, 67]))[4]
+    assert len(envs.recorded_frames) == 1 + pictures_of(max(info["seconds"])) + 1
+    assert envs.recorded_frames[0].shape[0] * envs.recorded_frames[0].shape[1] == 2 * 180 * 320
+    envs.close()
+
+
+@pytest.mark.parametrize("native", [False, True])
+def test_the_recorder_of_stable_baselines_films_each_stroke(tmp_path, native):
+    sb3 = pytest.importorskip("stable_baselines3.common.vec_env")
+    from snooker_env.sb3 import SnookerVecEnv
+
+    tables = SnookerVecEnv(1, render_mode="rgb_array", action="discrete", **SMALL) if native else sb3.DummyVecEnv([made])
+    env = sb3.VecVideoRecorder(tables, str(tmp_path), lambda step: step == 0, video_length=10**6)
+    env.seed(1)
+    env.reset()
+    single = sn.SnookerEnv(action="discrete")
+    single.reset(seed=1)
+    seconds = single.step(67)[4]["seconds"]
+    env.step(np.array([67]))
+    assert len(env.recorded_frames) == 1 + pictures_of(seconds) + 1
+    env.close()
+
+
+def test_whoever_else_asks_gets_one_picture():
+    env = made()
+    env.reset(seed=1)
+    env.step(67)
+    assert env.render().shape == (180, 320, 3)
+    assert recorder_asking() is None
+
+
+def test_a_recorder_that_is_being_handed_a_film_is_not_asked_again():
+    source, kept = PictureSource(), []
+
+    class Recorder:
+        def _capture_frame(self):
+            kept.append(source.picture(lambda: iter("abc"), lambda: "still"))
+
+    Recorder()._capture_frame()
+    assert kept == ["a", "b", "c", "still"]
+
+
+def test_a_film_that_breaks_off_leaves_no_picture_behind():
+    source = PictureSource()
+
+    class Recorder:
+        asked = 0
+
+        def _capture_frame(self):
+            self.asked += 1
+            if self.asked == 3:
+                raise KeyboardInterrupt
+            return source.picture(lambda: iter("abcd"), lambda: "still")
+
+    with pytest.raises(KeyboardInterrupt):
+        Recorder()._capture_frame()
+    assert source.picture(lambda: iter(""), lambda: "still") == "still"

@@ -1,0 +1,254 @@
+"""Does a replay hold what was played? Its data decoded here by the format's own words, its words, its files, and what is refused."""
+
+import base64
+import json
+import re
+
+import gymnasium
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.game.balls import BallOn
+from snooker_env.game.ruling import Foul
+from snooker_env.replays.words import FOUL_WORDS, foul_words
+from tests.refusals import refused
+
+GONE, REST, ROLL, SLIDE, FALLING, BEND = range(6)
+
+
+def numbers(text, kind, columns):
+    return np.frombuffer(base64.b64decode(text), f"<{kind}").reshape(-1, columns)
+
+
+def places_at(stroke, t):
+    """Where the balls are at a time, by docs/replay.md alone."""
+    places = numbers(stroke["start"], "f8", 2).copy()
+    rows, which = numbers(stroke["paths"]["f8"], "f8", 7), numbers(stroke["paths"]["u1"], "u1", 2)
+    assert len(rows) == len(which) == stroke["paths"]["count"]
+    for (t0, x, y, vx, vy, ax, ay), (ball, _) in zip(rows, which, strict=True):
+        if t0 <= t:
+            dt = t - t0
+            places[ball] = x + (vx + 0.5 * ax * dt) * dt, y + (vy + 0.5 * ay * dt) * dt
+    return places
+
+
+def visit(seed, strokes=40, **options):
+    """The strokes of visits one after the other, the softest plain pots."""
+    env = sn.SnookerEnv(action="discrete", **options)
+    env.keep_history = True
+    env.reset(seed=seed)
+    kept = []
+    while len(kept) + len(env.history) < strokes:
+        if env.step(67)[2]:
+            kept += env.history
+            env.reset()
+    return kept + env.history
+
+
+@pytest.fixture(scope="module")
+def strokes():
+    return visit(3, 30)
+
+
+def test_a_decoded_stroke_is_where_the_shot_is(strokes):
+    rng = np.random.default_rng(0)
+    data = sn.replay(strokes).to_dict()
+    for played, stroke in zip(strokes, data["strokes"], strict=True):
+        shot = played.shot
+        assert stroke["duration"] == shot.duration
+        for t in rng.uniform(0, shot.duration, 20):
+            there = stroke["on_table"]
+            np.testing.assert_allclose(places_at(stroke, t)[there], shot.at(t)[0][there], rtol=0, atol=1e-12)
+        assert stroke["pots"] == np.flatnonzero(shot.potted >= 0).tolist() or len(stroke["pots"]) > 1
+
+
+def test_the_next_stroke_starts_where_the_last_one_left_the_table(strokes):
+    data = sn.replay(strokes).to_dict()["strokes"]
+    for played, this, following in zip(strokes, data, data[1:], strict=False):
+        if played.over:
+            continue
+        end, there = places_at(this, np.inf if this["duration"] == 0 else this["duration"]), set(this["on_table"]) - set(this["pots"])
+        if this["after"] is not None:
+            end, there = numbers(this["after"]["places"], "f8", 2), set(this["after"]["on_table"])
+        assert there == set(following["on_table"])
+        rows = sorted(there)
+        np.testing.assert_allclose(end[rows], numbers(following["start"], "f8", 2)[rows], rtol=0, atol=1e-9)
+    assert any(stroke["after"] is not None for stroke in data)  # a colour was respotted
+
+
+@pytest.fixture(scope="module")
+def fouls():
+    """Strokes without aim: most are fouls."""
+    env, kept = sn.SnookerEnv(), []
+    env.keep_history = True
+    env.action_space.seed(0)
+    for seed in range(12):
+        env.reset(seed=seed)
+        env.step(env.action_space.sample())
+        kept += env.history
+    return kept
+
+
+def test_what_the_referee_said_is_told(strokes, fouls):
+    strokes = strokes + fouls
+    data = sn.replay(strokes, players=["Ada"]).to_dict()
+    assert data["players"] == ["Ada"] and data["format"] == "snooker-replay"
+    for played, stroke in zip(strokes, data["strokes"], strict=True):
+        assert stroke["points"] == played.points and stroke["penalty"] == played.penalty
+        assert stroke["score"] == list(played.scores)
+        if played.fouls:
+            assert stroke["words"].startswith(f"Foul, {played.penalty}: ") and stroke["fouls"] == foul_words(played.fouls) != []
+        elif played.points:
+            assert f"potted, {played.points}" in stroke["words"]
+        else:
+            assert stroke["words"] == "Nothing potted."
+    assert {bool(s["fouls"]) for s in data["strokes"]} == {True, False}
+    assert set(FOUL_WORDS) == set(Foul)
+
+
+def test_the_cue_as_struck_sets_the_cue_ball_off(strokes):
+    """Velocity and spin of the cue ball at time 0 are those of the strike that is told."""
+    noisy = visit(5, 10, noise="club")
+    for played in strokes[:5] + noisy:
+        v, w = sn.strike(**played.cue)
+        _, velocities, spins = played.shot.at(0.0)
+        np.testing.assert_allclose(velocities[0], v[:2], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(spins[0], w, rtol=0, atol=1e-9)
+
+
+def test_thirty_strokes_are_small(strokes):
+    page = sn.replay(strokes).html()
+    assert len(strokes) == 30 and len(page.encode()) < 200_000
+
+
+def test_the_page_holds_everything_and_asks_for_nothing(strokes):
+    page = sn.replay(strokes[:2], title="</script><b>&", players=["</script>"]).html()
+    assert "{{" not in page.replace("{{", "", 0) or not re.search(r"\{\{(title|module|data)\}\}", page)
+    assert not re.search(r"""(src|href)\s*=\s*["']?(https?:)?//""", page) and "@import" not in page
+    assert page.count("</script>") == page.count("<script") and "&lt;/script&gt;&lt;b&gt;&amp;" in page
+    data = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', page, re.DOTALL)
+    assert data is not None
+    assert json.loads(data[1])["players"] == ["</script>"]
+
+
+def test_a_bare_shot_and_other_tables():
+    shot = sn.simulate([(0.0, -0.5), (0.1, 0.3)], [(0.4, 3.0), (0, 0)], [(0, 0, 0)] * 2, table="pool9", physics={"R": 0.028575})
+    replay = sn.replay(shot, title="pool")
+    data = replay.to_dict()
+    assert data["players"] == [] and data["scene"]["lines"] is None and data["R"] == 0.028575
+    assert replay.table is shot.table and data["strokes"][0]["cue"] is None
+    assert replay._repr_html_().startswith("<iframe srcdoc=") and "sandbox" in replay._repr_html_()
+    assert sn.replay([shot, shot]).to_dict()["strokes"][0] == data["strokes"][0]
+
+
+def test_spins_at_rest_are_kept():
+    """A ball that spins on the spot has a path; one that lies still has none."""
+    shot = sn.simulate([(0.0, 0.0), (0.4, 0.0)], [(0, 0), (0, 0)], [(0, 0, 50.0), (0, 0, 0)])
+    stroke = sn.replay(shot).to_dict()["strokes"][0]
+    which = numbers(stroke["paths"]["u1"], "u1", 2)
+    assert set(which[:, 0].tolist()) == {0} and numbers(stroke["paths"]["f4"], "f4", 3)[0, 2] == 50.0
+
+
+def test_a_frame_and_a_match_tell_both_players():
+    env = sn.SnookerEnv(task="frame", opponent="ghost_ball", action="discrete", layout="pots:easy")
+    env.keep_history = True
+    env.reset(seed=1)
+    for _ in range(6):
+        if env.step(int(np.flatnonzero(env.action_masks())[0]))[2]:
+            break
+    replay = sn.replay(env)
+    assert replay.players == ("Player 1", "Player 2") and {p.player for p in replay.strokes} == {0, 1}
+    for played in env.history:
+        assert played.next_on == BallOn.NOTHING or played.next_player in (0, 1)
+    pytest.importorskip("pettingzoo")
+    match = sn.match_env()
+    match.keep_history = True
+    match.reset(seed=1)
+    for _ in range(5):
+        match.step(match.action_space(match.agent_selection).sample())
+    assert len(sn.replay(match)) == len(match.history) > 0
+
+
+def test_history_is_kept_when_asked_and_starts_anew():
+    env = sn.SnookerEnv(action="discrete")
+    env.reset(seed=1)
+    env.step(67)
+    assert env.history == [] and env.last_shot is not None and not len(env.last_shot.segments)
+    refused(lambda: sn.replay(env), "source", "keeps no history", "keep_history = True")
+    env.keep_history = True
+    env.reset(seed=1)
+    refused(lambda: sn.replay(env), "source", "without a stroke", "at least one")
+    env.step(67)
+    assert len(env.history) == 1 and len(env.last_shot.segments) and env.history[0].shot is env.last_shot
+    env.reset()
+    assert env.history == [] and env.last_shot is None
+    with pytest.raises(ValueError, match="keep_history"):
+        env.keep_history = 1
+    env.keep_history = False
+    assert sn.SnookerEnv(render_mode="ansi").keep_history
+
+
+def test_keeping_history_changes_no_result():
+    def run(keep):
+        env = sn.SnookerEnv(task="frame", opponent="ghost_ball", noise="club", action="discrete")
+        env.keep_history = keep
+        seen = [env.reset(seed=4)[0]]
+        seen += [env.step(int(np.flatnonzero(env.action_masks())[7]))[0] for _ in range(5)]
+        return np.stack(seen)
+
+    assert np.array_equal(run(True), run(False))
+
+
+@pytest.mark.parametrize(
+    ("source", "words"),
+    [
+        (3, ("source", "int", "must be a Shot")), ([], ("strokes", "[]", "at least one")), ([1], ("strokes[0]", "int", "must be a Shot")),
+    ],
+)  # fmt: skip
+def test_what_is_no_replay_is_refused(source, words):
+    refused(lambda: sn.replay(source), *words)
+
+
+def test_bad_arguments_are_refused(strokes, tmp_path):
+    other = sn.simulate([(0.0, 0.0)], [(1.0, 0)], [(0, 0, 0)], table="tight")
+    refused(lambda: sn.replay([strokes[0], other]), "strokes[1]", "another table", "must be on the table of the first")
+    refused(lambda: sn.replay(strokes, players=["a", "b", "c"]), "players", "'c'", "at most two")
+    refused(lambda: sn.replay(strokes, title=3), "title", "3", "must be a str")
+    refused(lambda: sn.replay(strokes, tmp_path / "break.exe"), "suffix", ".exe", ".html")
+    refused(lambda: sn.replay(strokes[0]).save(tmp_path / "a.html", fps=3), "path", "a.html", "must end in .mp4 or .gif")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_files_are_written_whole(strokes, tmp_path):
+    page = sn.replay(strokes[:3], tmp_path / "break.html")
+    assert (tmp_path / "break.html").read_text("utf-8") == page.html()
+    page.save(tmp_path / "break.json")
+    assert json.loads((tmp_path / "break.json").read_text()) == page.to_dict()
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["break.html", "break.json"]
+
+
+def test_the_wrapper_writes_each_wanted_episode(tmp_path):
+    env = sn.RecordReplay(gymnasium.make("Snooker-v0", action="discrete"), tmp_path / "new", lambda k: k != 1, suffix=".json")
+    lengths = []
+    for k in range(3):
+        env.reset(seed=k)
+        ended = False
+        while not ended:
+            ended = env.step(67)[2]
+        lengths.append(len(env.unwrapped.history))
+    env.reset(seed=9)  # an episode without a stroke gives no file
+    env.close()
+    assert [p.name for p in env.paths] == ["snooker-episode-0.json", "snooker-episode-2.json"]
+    assert [len(json.loads(p.read_text())["strokes"]) for p in env.paths] == [lengths[0], lengths[2]]
+
+
+def test_the_wrapper_writes_what_was_cut_short(tmp_path):
+    env = sn.RecordReplay(gymnasium.make("Snooker-v0", action="discrete"), tmp_path, suffix=".json", name_prefix="cut")
+    env.reset(seed=1)
+    env.step(67)
+    env.reset(seed=2)
+    env.step(67)
+    env.close()
+    assert [p.name for p in env.paths] == ["cut-episode-0.json", "cut-episode-1.json"]
+    refused(lambda: sn.RecordReplay(gymnasium.make("CartPole-v1"), tmp_path), "env", "CartPoleEnv", "Snooker-v0")
