@@ -1,6 +1,7 @@
 """How do two agents play a frame against each other? PettingZoo's AEC interface around one table of ``tasks.frame``."""
 
 import copy
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
@@ -20,7 +21,7 @@ from ..tasks.frame import Frames
 from ..tasks.options import Options, options_of
 from ..tasks.rewards import frame_reward
 from ..tasks.tables import I_FOULS, I_PENALTY, I_POINTS, Crew
-from .pictures import FPS, MODES, Picture, Pictures
+from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import Record, Recorded
 from .reset_options import Start, start_of
 
@@ -88,7 +89,9 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
     infos: dict[str, dict[str, Any]]
     np_random: np.random.Generator
 
-    def __init__(self, options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any):
+    def __init__(
+        self, options: Options | None = None, *, render_mode: RenderMode | None = None, render_size: Sequence[int] = SIZE, **given: Any
+    ):
         super().__init__()
         if options is None:
             box = given.get("action", "box") == "box"
@@ -108,7 +111,8 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
         self.np_random, _ = seeding.np_random()
         self._seeded = False
         self._record, self._last = Record(full=render_mode is not None), None
-        self._pictures = Pictures(self.options.rules.table, render_mode)
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size, ("Player 1", "Player 2"))
+        self._pictures.require_display()
 
     @property
     def positions(self) -> Floats:
@@ -291,7 +295,7 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
         self._account()
         self._accumulate_rewards()
         if self.render_mode == "human":
-            self._show(self._record.strokes[-1] if played else None)
+            self._show(played=bool(played))
 
     def _watch(self, k, buffers, j, own):
         self._record.saw(self.tables, k, buffers, j, own)
@@ -354,10 +358,10 @@ class MatchEnv(Recorded, AECEnv[str, Any, Any]):
         uint8 (H, W, 3), str or None
             By the render mode: "rgb_array", "ansi", another.
         """
-        return self._pictures.render(self.tables, 0, self.last_shot, self._record.recent)
+        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent)
 
-    def _show(self, played=None):
-        self._pictures.show(self.tables, self.last_shot, played)
+    def _show(self, *, played=False):
+        self._pictures.show(self.tables, self._record.strokes, played=played)
 
     def close(self) -> None:
         """Close the window, if there is one."""

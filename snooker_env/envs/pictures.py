@@ -1,6 +1,6 @@
 """How does an environment show itself? One picture for "rgb_array", text for "ansi", a window with the moving shot for "human"."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import zip_longest
 from typing import Any, TypeAlias
 
@@ -8,14 +8,18 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from .._check import integer, refuse
 from ..physics.table import Table
-from ..simulation import Shot
 from ..tasks.played import Played
 from ..tasks.tables import Tables
 from .films import PictureSource
 
 MODES = ("human", "rgb_array", "ansi")
 FPS = 30
+SIZE = (1920, 1080)
+"""Width and height of pictures [pixels] unless told: those of render.view."""
+WINDOW_SPEED = 2.0
+"""How fast a window shows strokes, unless its user wants otherwise."""
 
 
 Picture: TypeAlias = NDArray[np.uint8] | str | None
@@ -23,60 +27,70 @@ Picture: TypeAlias = NDArray[np.uint8] | str | None
 
 
 class Pictures:
-    """The pictures of one environment on a ``Table``; a window belongs to one process and is left behind in a copy."""
+    """The pictures of one environment on a ``Table``; a window belongs to one process and is left behind in a copy.
+
+    ``size``: width and height [pixels]; ``players``: their names on the score bar.
+    """
 
     table: Table
     mode: str | None
 
-    def __init__(self, table: Table, mode: str | None):
-        self.table, self.mode = table, mode
-        self._window, self._film = None, PictureSource()
+    def __init__(self, table: Table, mode: str | None, size: Sequence[int] = SIZE, players: tuple[str, ...] = ()):
+        self.table, self.mode, self.players = table, mode, players
+        self.size = checked_size(size)
+        self._window, self._source = None, PictureSource()
 
     def __getstate__(self) -> dict[str, Any]:
-        return self.__dict__ | {"_window": None, "_film": PictureSource()}
+        return self.__dict__ | {"_window": None, "_source": PictureSource()}
 
-    def render(self, tables: Tables, k: int, shot: Shot | None, recent: list[Played]) -> Picture:
-        """Table k with the paths of its last ``shot``: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise.
+    def render(self, tables: Tables, k: int, history: list[Played], recent: int) -> Picture:
+        """Table k with the paths of the last stroke of its ``history``: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise.
 
-        A recorder gets the motion of the ``recent`` strokes first, see ``films``.
+        A recorder gets the motion of the last ``recent`` strokes first, see ``films``.
         """
         if self.mode is None:
             gymnasium.logger.warn('render() without render_mode; make the environment with render_mode="rgb_array", "ansi" or "human"')
         if self.mode == "rgb_array":
-            return self._film.picture(lambda: self._motion(recent), lambda: self._still(tables, k, shot))
+            return self._source.picture(lambda: self._motion(history, recent), lambda: self._still(tables, k, history))
         if self.mode == "ansi":
             from ..render.ascii_view import ansi
 
-            return ansi(self._scene(tables, k, shot))
+            return ansi(self._scene(tables, k, history))
         return None
 
     def render_all(self, tables: Tables, recent: list[list[Played]]) -> tuple[Picture, ...]:
         """``render`` of many tables at once; they move at the same time, and wait for the one that moves longest."""
-        shots = [strokes[-1].shot if strokes else None for strokes in recent]
         if self.mode != "rgb_array":
-            return tuple(self.render(tables, k, shots[k], []) for k in range(tables.n))
+            return tuple(self.render(tables, k, strokes, 0) for k, strokes in enumerate(recent))
 
         def still():
-            return tuple(self._still(tables, k, shots[k]) for k in range(tables.n))
+            return tuple(self._still(tables, k, strokes) for k, strokes in enumerate(recent))
 
         def motion():
             last = list(still())
-            for pictures in zip_longest(*map(self._motion, recent)):
+            for pictures in zip_longest(*(self._motion(strokes, len(strokes)) for strokes in recent)):
                 last = [new if new is not None else old for new, old in zip(pictures, last, strict=True)]
                 yield tuple(last)
 
-        return self._film.picture(motion, still)
+        return self._source.picture(motion, still)
 
-    def show(self, tables: Tables, shot: Shot | None, played: Played | None = None) -> None:
-        """Show the table in the window; first, at twice its speed, the stroke that was just ``played``."""
-        from ..render.pygame_view import Window
-        from ..render.scene import shot_scenes
+    def show(self, tables: Tables, history: list[Played], *, played: bool = False) -> None:
+        """Show the table in the window; first, with ``played``, the last stroke as it moves."""
+        from ..render.window import Window
 
         if self._window is None:
-            self._window = Window()
-        if played is not None:
-            self._window.play(shot_scenes(self.table, played.shot, fps=FPS, speed=2.0, text=tables.text(0)), FPS)
-        self._window.draw(self._scene(tables, 0, shot))
+            self._window = Window(size=None if self.size == SIZE else self.size)
+        if played:
+            film = next(self._films(history, 1))
+            self._window.play(film, FPS, speed=WINDOW_SPEED)
+        self._window.draw(self._scene(tables, 0, history))
+
+    def require_display(self) -> None:
+        """Raise RuntimeError if a window is wanted and there is no display to show it on."""
+        if self.mode == "human":
+            from ..render.window import require_display
+
+            require_display()
 
     def close(self) -> None:
         """Close the window, if there is one."""
@@ -84,22 +98,51 @@ class Pictures:
             self._window.close()
             self._window = None
 
-    def _motion(self, strokes: list[Played]) -> Iterator[NDArray[np.uint8]]:
+    def _films(self, history: list[Played], recent: int) -> Iterator[Any]:
+        """The last strokes as films."""
+        from ..render.scene import Film, contacts
+        from ..replays.bars import bars
+
+        told = bars(history, self.players)
+        for k in range(len(history) - recent, len(history)):
+            shot = history[k].shot
+            yield Film(self.table, shot, trail=trail_of(shot), spots=(0,), bar=told[k][0], ghosts={0: contacts(shot)})
+
+    def _motion(self, history: list[Played], recent: int) -> Iterator[NDArray[np.uint8]]:
         from ..render.pygame_view import rgb_array
-        from ..render.scene import shot_scenes
 
-        for played in strokes:
-            for scene in shot_scenes(self.table, played.shot, fps=FPS):
-                yield rgb_array(scene)
+        for film in self._films(history, recent):
+            for scene in film.scenes(FPS):
+                yield rgb_array(scene, size=self.size)
 
-    def _still(self, tables, k, shot):
+    def _still(self, tables, k, history):
         from ..render.pygame_view import rgb_array
 
-        return rgb_array(self._scene(tables, k, shot))
+        return rgb_array(self._scene(tables, k, history), size=self.size)
 
-    def _scene(self, tables, k, shot):
-        from ..render.scene import ball_paths, scene
+    def _scene(self, tables, k, history):
+        from ..render.scene import ball_paths, contacts, scene
+        from ..replays.bars import bars, standing_bar
 
-        # the paths of the cue ball and of what it potted
-        paths = None if shot is None else ball_paths(shot, (0, *(np.flatnonzero(shot.potted[1:] >= 0) + 1).tolist()))
-        return scene(self.table, tables.positions[k], tables.on_table[k], paths=paths, text=tables.text(k))
+        paths = ghosts = last = None
+        if history:
+            shot = history[-1].shot
+            paths, ghosts = ball_paths(shot, trail_of(shot)), {0: contacts(shot)}
+            last = bars(history, self.players)[-1][1]
+        bar = standing_bar(tables, k, self.players, last)
+        return scene(
+            self.table, tables.positions[k], tables.on_table[k], paths=paths, ghosts=ghosts, text=tables.text(k), bar=bar
+        )  # fmt: skip
+
+
+def trail_of(shot: Any) -> tuple[int, ...]:
+    """The balls whose paths are drawn: the cue ball and what was potted."""
+    return (0, *(np.flatnonzero(shot.potted[1:] >= 0) + 1).tolist())
+
+
+def checked_size(size: Any) -> tuple[int, int]:
+    """(width, height) of pictures; ValueError unless they are two integers that a picture can have."""
+    if isinstance(size, str) or not hasattr(size, "__len__") or len(size) != 2:
+        raise refuse("render_size", size, "must be (width, height)")
+    width, height = (integer(f"render_size[{i}]", size[i], 100, 8192) for i in range(2))
+    return width, height

@@ -31,9 +31,9 @@ class Record:
         self._before = len(self.strokes)
 
     @property
-    def recent(self) -> list[Played]:
-        """The strokes of the last step or reset."""
-        return self.strokes[self._before :]
+    def recent(self) -> int:
+        """How many of the strokes are of the last step or reset."""
+        return len(self.strokes) - self._before
 
     def saw(self, tables: Tables, k: int, buffers: ShotBuffers, j: int, own: bool) -> None:
         """Table k has just been played on: shot j of the buffers; ``own``: by the agent."""

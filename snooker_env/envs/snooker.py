@@ -1,5 +1,6 @@
 """What is ``Snooker-v0``? The Gymnasium environment: composes action, noise, strike, engine, referee, observation and reward."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
@@ -20,7 +21,7 @@ from ..tasks.options import Options, options_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, Tables
 from ..tasks.visit import Visits
-from .pictures import FPS, MODES, Picture, Pictures
+from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import Record, Recorded
 from .reset_options import ONE, Start, given_of, start_of
 
@@ -103,7 +104,8 @@ class SnookerEnv(Recorded, gymnasium.Env[Any, Any]):
     | table | "match" | or "tight", or a ``Table`` of your own whose noses are where theirs are |
     | fidelity | "standard" | "fast", "reference", "euler:N" |
     | options | None | an ``Options`` that holds all of the above, in place of them |
-    | render_mode | None | "human", "rgb_array", "ansi" |
+    | render_mode | None | "human", "rgb_array", "ansi": see Pictures and films |
+    | render_size | (1920, 1080) | width and height of pictures [pixels] |
 
     ## Info
     Always the same keys: ``points``, ``break``, ``seconds`` (float; the shot's duration), ``foul`` (bool), ``penalty``, ``pots``,
@@ -134,7 +136,9 @@ class SnookerEnv(Recorded, gymnasium.Env[Any, Any]):
 
     metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012 - Gymnasium's own convention
 
-    def __init__(self, options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any):
+    def __init__(
+        self, options: Options | None = None, *, render_mode: RenderMode | None = None, render_size: Sequence[int] = SIZE, **given: Any
+    ):
         self.options: Options = options_of(options, given)
         self.tables: Tables = TABLES[self.options.task](self.options.rules, 1)
         """The one table: ``tasks.tables.Tables``."""
@@ -143,7 +147,9 @@ class SnookerEnv(Recorded, gymnasium.Env[Any, Any]):
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
-        self._pictures = Pictures(self.options.rules.table, render_mode)
+        names = (("Agent",), ("Agent", "Opponent"))[self.options.task == "frame"]
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
+        self._pictures.require_display()
         self._record, self._seeded = Record(full=render_mode is not None), False
 
     # the state of the table ------------------------------------------------------------------------------------------------
@@ -372,7 +378,7 @@ class SnookerEnv(Recorded, gymnasium.Env[Any, Any]):
         """Called after each stroke of either player."""
         self._record.saw(self.tables, k, buffers, j, own)
         if self.render_mode == "human":
-            self._show(self._record.strokes[-1])
+            self._show(played=True)
 
     def render(self) -> Picture:
         """The table with the paths of the last shot; to a recorder the motion of the strokes, see Pictures and films.
@@ -382,11 +388,11 @@ class SnookerEnv(Recorded, gymnasium.Env[Any, Any]):
         uint8 (H, W, 3), str or None
             By the render mode: "rgb_array", "ansi", another.
         """
-        return self._pictures.render(self.tables, 0, self.last_shot, self._record.recent)
+        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent)
 
     def close(self) -> None:
         """Close the window, if there is one."""
         self._pictures.close()
 
-    def _show(self, played: Any = None) -> None:
-        self._pictures.show(self.tables, self.last_shot, played)
+    def _show(self, *, played: bool = False) -> None:
+        self._pictures.show(self.tables, self._record.strokes, played=played)

@@ -4,7 +4,7 @@ gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry
 """
 
 import copy
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import Any, Literal
 
 import gymnasium
@@ -21,7 +21,7 @@ from ..tasks.options import NEVER, Options, options_of
 from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
 from .given_arrays import OUTPUTS, arrays_given
-from .pictures import Picture, Pictures
+from .pictures import SIZE, Picture, Pictures
 from .record import Recent
 from .reset_options import MANY, Start, given_of, mask_of, seeds_of, starts_of
 from .snooker import TABLES, SnookerEnv
@@ -34,7 +34,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
     Pictures show the paths of the last shots; a window ("human") shows one environment only.
-
     In a frame the opponents "random" and "ghost_ball" play as kernels. A callable is asked in Python, table by table; one that has a method
     ``many(observations, generators, masks) -> actions`` is called once for all tables that wait for it, and so is a saved model (whose
     arithmetic on many rows may differ in the last bits from that on one).
@@ -60,6 +59,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         NEXT_STEP, SAME_STEP or DISABLED.
     threads : int, optional
         How many to use; None: one for each core. Results do not depend on it.
+    render_size : (int, int)
+        Width and height of a table's picture [pixels].
     **given
         The keywords of ``Options``, in place of ``options``.
 
@@ -89,7 +90,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     def __init__(
         self, num_envs: int = 1, options: Options | None = None, *, max_episode_steps: int | None = None,
         render_mode: Literal["rgb_array", "ansi"] | None = None, autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
-        threads: int | None = None, **given: Any,
+        threads: int | None = None, render_size: Sequence[int] = SIZE, **given: Any,
     ):  # fmt: skip
         self.num_envs = integer("num_envs", num_envs, 1, 2**24)
         threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
@@ -100,13 +101,13 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         self.options = options_of(options, given)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode = render_mode
-        self._one = SnookerEnv(self.options, render_mode=render_mode)
+        self._one = SnookerEnv(self.options, render_mode=render_mode, render_size=render_size)
         self.single_action_space: Any = self._one.action_space
         self.single_observation_space: Any = self._one.observation_space
         self.action_space: Any = batch_space(self.single_action_space, self.num_envs)
         self.observation_space: Any = batch_space(self.single_observation_space, self.num_envs)
         self.tables = TABLES[self.options.task](self.options.rules, self.num_envs, limit=limit)
-        self._pictures = Pictures(self.options.rules.table, render_mode)
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size)
         self._generators: list[Any] = [None] * self.num_envs
         self._generator_seeds = [-1] * self.num_envs
         self._keyed = np.zeros(self.num_envs, np.bool_)  # has the table's stream a key?

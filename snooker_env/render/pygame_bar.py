@@ -37,7 +37,9 @@ def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> Any:
     page.surface.fill(PALETTE["bar"])
     page.box(0, 0, width / page.unit, 2, "bar_edge")
     if bar is None or height < _SMALLEST:
-        page.text(in_words(bar) if bar is not None else text, 33 if height >= _SMALLEST else 44, _EDGE, 36, room=width / page.unit - 2 * _EDGE)
+        page.text(
+            in_words(bar) if bar is not None else text, 33 if height >= _SMALLEST else 44, _EDGE, 36, room=width / page.unit - 2 * _EDGE
+        )
         return page.surface
     right = _right(page, bar, width / page.unit)
     middle = _players(page, bar, width / page.unit) if bar.players else right

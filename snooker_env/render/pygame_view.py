@@ -23,7 +23,9 @@ from .view import SIZE, View
 __all__ = ["SIZE", "View", "draw", "rgb_array", "to_pixels"]
 
 
-def to_pixels(points: Vector | Vectors, height: int | None = None, table: TableLike = "match", *, size: tuple[int, int] | None = None) -> Floats:
+def to_pixels(
+    points: Vector | Vectors, height: int | None = None, table: TableLike = "match", *, size: tuple[int, int] | None = None
+) -> Floats:
     """Where points are on a picture: column and row from its top left corner, whole numbers being the pixels' corners.
 
     Parameters

@@ -114,7 +114,9 @@ def _bed(canvas, table):
     image, x, y = canvas.image[: canvas.view.height - canvas.view.bar], canvas.x[: canvas.view.height - canvas.view.bar], canvas.y
     rows, columns = image.shape[:2]
     pixels = canvas.view.scale / 480  # of a picture of 1080 rows
-    nap = 0.011 * canvas.grain(rows, columns, 1.0, max(1.5, 3.0 * pixels)) + 0.0055 * canvas.grain(rows, columns, max(1, 5 * pixels), 60 * pixels + 2)
+    nap = 0.011 * canvas.grain(rows, columns, 1.0, max(1.5, 3.0 * pixels)) + 0.0055 * canvas.grain(
+        rows, columns, max(1, 5 * pixels), 60 * pixels + 2
+    )
     light = 1.035 - 0.075 * ((y - canvas.middle[1]) / canvas.half[1]) ** 2 - 0.055 * ((x - canvas.middle[0]) / canvas.half[0]) ** 2
     cloth = (np.clip(light, 0.8, 1.1) * (1 + nap))[..., None] * _INK["cloth"]
     if len(table.noses):

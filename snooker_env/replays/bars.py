@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable, Sequence
 
-from ..game.balls import N_REDS, mask_of_present
+from ..game.balls import N_REDS, BallOn, mask_of_present
 from ..game.frame import points_available
+from ..game.frame_columns import BALL_ON
 from ..render.scene import ScoreBar
 from ..tasks.played import Played
+from ..tasks.tables import Tables
 from .words import on_words, pots_of, sentence
 
 
@@ -19,20 +21,34 @@ def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreB
         potted = potted if goes_on else []
         so_far = played.break_points - played.points if played.points else made[-1][1].break_points if goes_on and made else 0
         before = {
-            "players": names, "scores": scores, "striker": played.player, "break_points": so_far, "potted": tuple(potted),
+            "players": names, "scores": scores if names else (), "striker": played.player if names else None,
+            "break_points": so_far, "potted": tuple(potted),
             "reds_left": int(_start(played)[1 : N_REDS + 1].sum()), "points_on": _left(_start(played), played.ball_on),
             "ball_on": "free ball" if played.free_ball else on_words(played.ball_on),
         }  # fmt: skip
         if played.points:
             potted = potted + pots_of(played.shot)
         after = before | {
-            "scores": played.scores, "break_points": so_far + played.points, "potted": tuple(potted),
+            "scores": played.scores if names else (), "break_points": so_far + played.points, "potted": tuple(potted),
             "reds_left": int(played.on_table[1 : N_REDS + 1].sum()), "points_on": _left(played.on_table, played.next_on),
             "ball_on": on_words(played.next_on), "words": sentence(played, names),
         }  # fmt: skip
         made.append((ScoreBar(**before), ScoreBar(**after)))
         striker = played.player if played.points else None
     return made
+
+
+def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar | None = None) -> ScoreBar:
+    """What the bar says of table k as it stands; ``last``: the bar after the stroke that led there, if one was seen."""
+    standing, on_table = tables.standing(k), tables.on_table[k]
+    ball_on = BallOn(tables.game[k, BALL_ON])
+    goes_on = last is not None and bool(standing["break_points"])
+    return ScoreBar(
+        players=tuple(players), scores=standing["scores"] if players else (), striker=standing["next_player"] if players else None,
+        break_points=standing["break_points"], potted=last.potted if last is not None and goes_on else (),
+        reds_left=int(on_table[1 : N_REDS + 1].sum()), points_on=_left(on_table, ball_on), ball_on=on_words(ball_on),
+        words=last.words if last is not None else "",
+    )  # fmt: skip
 
 
 def _start(played):

@@ -25,7 +25,7 @@ def made(**options):
 
 
 def test_record_video_of_gymnasium_films_each_stroke(tmp_path):
-    env = RecordVideo(made(), str(tmp_path), episode_trigger=lambda k: True, disable_logger=True)
+    env = RecordVideo(made(), str(tmp_path / "films"), episode_trigger=lambda k: True, disable_logger=True)
     env.reset(seed=1)
     assert len(env.recorded_frames) == 1
     expected = 1
@@ -37,7 +37,7 @@ def test_record_video_of_gymnasium_films_each_stroke(tmp_path):
     assert all(not np.array_equal(a, b) for a, b in zip(moving, moving[1:], strict=False))  # the cue ball runs
     assert all(frame.shape == (180, 320, 3) for frame in env.recorded_frames)
     env.close()
-    film = next(tmp_path.glob("*.mp4"))
+    film = next((tmp_path / "films").glob("*.mp4"))
     from moviepy import VideoFileClip
 
     with VideoFileClip(str(film)) as clip:
@@ -45,7 +45,9 @@ def test_record_video_of_gymnasium_films_each_stroke(tmp_path):
 
 
 def test_the_opponents_strokes_are_filmed_too(tmp_path):
-    env = RecordVideo(made(task="frame", opponent="ghost_ball"), str(tmp_path), episode_trigger=lambda k: True, disable_logger=True)
+    env = RecordVideo(
+        made(task="frame", opponent="ghost_ball"), str(tmp_path / "films"), episode_trigger=lambda k: True, disable_logger=True
+    )
     env.reset(seed=2)
     before = len(env.recorded_frames)
     env.step(67)
@@ -60,7 +62,7 @@ def test_vector_record_video_films_all_tables_at_once(tmp_path):
     envs = gymnasium.make_vec(
         "Snooker-v0", num_envs=2, vectorization_mode="vector_entry_point", render_mode="rgb_array", action="discrete", **SMALL
     )
-    envs = VectorRecordVideo(envs, str(tmp_path), episode_trigger=lambda k: True, video_length=10**6, disable_logger=True)
+    envs = VectorRecordVideo(envs, str(tmp_path / "films"), episode_trigger=lambda k: True, video_length=10**6, disable_logger=True)
     envs.reset(seed=1)
     info = envs.step(np.array([67, 67]))[4]
     assert len(envs.recorded_frames) == 1 + pictures_of(max(info["seconds"])) + 1
@@ -74,7 +76,7 @@ def test_the_recorder_of_stable_baselines_films_each_stroke(tmp_path, native):
     from snooker_env.sb3 import SnookerVecEnv
 
     tables = SnookerVecEnv(1, render_mode="rgb_array", action="discrete", **SMALL) if native else sb3.DummyVecEnv([made])
-    env = sb3.VecVideoRecorder(tables, str(tmp_path), lambda step: step == 0, video_length=10**6)
+    env = sb3.VecVideoRecorder(tables, str(tmp_path / "films"), lambda step: step == 0, video_length=10**6)
     env.seed(1)
     env.reset()
     single = sn.SnookerEnv(action="discrete")

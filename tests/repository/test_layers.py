@@ -38,7 +38,7 @@ ALLOWED = {
     "game": BASE,
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
-    "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
+    "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render", "replays"},
     "replays": BASE | {"physics", "simulation", "game", "tasks", "render"},
     "render": {"_check", "_types", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
@@ -134,7 +134,7 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
             assert not top, f"{name} imports {library} when it is imported, not when it is wanted"
 
 
-LATE = {"envs": (".render", ".planning"), "_warmup": (".planning", ".envs")}
+LATE = {"envs": (".render", ".planning", ".replays"), "_warmup": (".planning", ".envs")}
 """What these parts import only when it is asked for."""
 
 
