@@ -11,7 +11,7 @@ from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
 from .outline import extent
-from .shot_diagram import View, window_of
+from .shot_diagram import View, region_of
 from .sketch import Sketch, rgb
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def density(
         raise refuse("shares", list(shares), "must each be below 1")
     wide = bandwidth_of(sound) if bandwidth is None else number("bandwidth", bandwidth, 1e-4, 1.0)
     table = Table.of(table)
-    sketch = Sketch(table, table.ball_radius or BALL_RADIUS, window_of(view, sound, table), ax)
+    sketch = Sketch(table, table.ball_radius or BALL_RADIUS, region_of(view, sound, table), ax)
     sketch.title(title)
     _draw_balls(sketch, position)
     _draw_cloud(sketch, sound, wide, lines, colour)
