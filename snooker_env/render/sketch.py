@@ -276,7 +276,8 @@ class Sketch:
         if words:
             w, line = self.region, 1.5 * self.font / self.points_per_metre
             within = w.low_x < extent(self.table)[0, 0] - CUSHION  # on the rail, else on the cloth
-            y, x = (w.low_y + 0.055 * w.width, w.low_x + 0.072) if within else (w.low_y + 0.5 * line, w.low_x + 0.7 * line)
+            y = w.low_y + (0.055 * w.width if w.low_y < extent(self.table)[1, 0] - CUSHION else 0.5 * line)  # right of the pocket
+            x = w.low_x + (0.072 if within else 0.7 * line)
             stroke = [withStroke(linewidth=2.2, foreground=rgb("path_edge", 0.85))]
             self.text(y, x, words, weight="bold", size=1.1, gid="title", path_effects=stroke)
             self._taken.append((w.low_y, w.low_y + 0.66 * line * len(words), w.low_x, w.low_x + 1.3 * line))
