@@ -23,8 +23,8 @@ def match_env(options: Options | None = None, *, render_mode: RenderMode | None 
     render_mode : {"human", "rgb_array", "ansi"}, optional
         How ``render`` shows the table.
     **given
-        ``render_size``, and the keywords of ``Options`` in place of ``options``. Placement in the D and the decision after a foul are part of the action
-        unless they are switched off; with ``action="discrete"`` they never are.
+        ``render_size``, and the keywords of ``Options`` in place of ``options``. Placement in the D and the decision after a foul are part
+        of the action unless they are switched off; with ``action="discrete"`` they never are.
 
     Returns
     -------

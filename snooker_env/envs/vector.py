@@ -17,6 +17,7 @@ from .._check import choice, integer, refuse
 from .._types import Bools, Floats, Observation
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
+from ..tasks.kinds import TABLES
 from ..tasks.options import NEVER, Options, options_of
 from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
@@ -24,7 +25,7 @@ from .given_arrays import OUTPUTS, arrays_given
 from .pictures import SIZE, Picture, Pictures
 from .record import Recent
 from .reset_options import MANY, Start, given_of, mask_of, seeds_of, starts_of
-from .snooker import TABLES, SnookerEnv
+from .snooker import SnookerEnv
 from .table_calls import check_name
 
 PICTURES = ("rgb_array", "ansi")

@@ -252,6 +252,14 @@ class Frames(Tables):
         self.streams[k] = np.array(state.stream, np.uint64)
         self._replies[k], self.begun[k] = 0, True
 
+    def standing(self, k: int) -> dict[str, Any]:
+        """Of a ``Played`` on table k what the frame says."""
+        frame = self.frame(k)
+        return {
+            "next_player": frame.striker, "scores": frame.scores, "break_points": frame.break_points, "choice": frame.phase == "choice",
+            "winner": frame.winner,
+        }  # fmt: skip
+
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """Begin a frame on table k with a sound position, ``game`` being the row of a visit: player 0 is at the table, scores are 0, the
         points of the visit are his break so far; its random numbers go on."""
@@ -263,14 +271,6 @@ class Frames(Tables):
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)
         self._replies[k], self.begun[k] = 0, True
-
-    def standing(self, k: int) -> dict[str, Any]:
-        """Of a ``Played`` on table k what the frame says."""
-        frame = self.frame(k)
-        return {
-            "next_player": frame.striker, "scores": frame.scores, "break_points": frame.break_points, "choice": frame.phase == "choice",
-            "winner": frame.winner,
-        }  # fmt: skip
 
     def text(self, k: int) -> str:
         """One line for the pictures."""

@@ -288,12 +288,12 @@ class Tables(ABC):
         """Take over a sound state on table k."""
 
     @abstractmethod
-    def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin an episode on table k with a sound position, ``game`` being the row of a visit; its random numbers go on."""
-
-    @abstractmethod
     def standing(self, k: int) -> dict[str, Any]:
         """Of a ``Played`` on table k what only the task knows: next_player, scores, break_points, choice, winner."""
+
+    @abstractmethod
+    def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
+        """Begin an episode on table k with a sound position, ``game`` being the row of a visit; its random numbers go on."""
 
     @abstractmethod
     def text(self, k: int) -> str:

@@ -165,15 +165,15 @@ class Visits(Tables):
         self.streams[k] = np.array(state.stream, np.uint64)
         self.begun[k] = True
 
-    def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin a visit on table k with a sound position, ``game`` being its row; its random numbers go on."""
-        self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
-        self.begun[k] = True
-
     def standing(self, k: int) -> dict[str, Any]:
         """Of a ``Played`` on table k: there is one player, whose break is his score."""
         points = int(self.game[k, POINTS])
         return {"next_player": 0, "scores": (points,), "break_points": points, "choice": False, "winner": None}
+
+    def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
+        """Begin a visit on table k with a sound position, ``game`` being its row; its random numbers go on."""
+        self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
+        self.begun[k] = True
 
     def text(self, k: int) -> str:
         """One line for the pictures."""

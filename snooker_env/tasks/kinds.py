@@ -1,0 +1,7 @@
+"""Which tables play which task? By the name of the option ``task``."""
+
+from .frame import Frames
+from .tables import Tables
+from .visit import Visits
+
+TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames}
