@@ -12,6 +12,7 @@ Public are the names in ``__all__`` of this package and of these modules of it; 
 * ``snooker_env.render.diagrams``: shots, options, fans and where a ball stops, drawn with matplotlib
 * ``snooker_env.tasks.saved_models``: what a model's file says of itself, read as plain data
 * ``snooker_env.replays``: what was played, as a page, as data and as a film
+* ``snooker_env.widget``: a replay in a notebook
 * ``snooker_env.sb3``: many tables for Stable-Baselines3
 """
 
