@@ -32,7 +32,7 @@ ALLOWED = {
     "kernels": {"_jit", "game", "tasks"},
     "geometry": {"_check", "_types"},
     "physics": BASE,
-    "shot": BASE | {"physics"},
+    "shot": BASE | {"physics", "render"},
     "impacts": BASE | {"physics", "shot"},
     "simulation": BASE | {"physics", "shot"},
     "game": BASE,
@@ -41,9 +41,10 @@ ALLOWED = {
     "advice": BASE | {"physics", "simulation", "game", "tasks", "planning", "envs"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render", "replays"},
     "replays": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
-    "render": {"_check", "_types", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
+    "render": BASE - {"_jit"} | {"physics", "game.balls", "impacts", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
+    "widget": {"_check", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
     "__init__": {
         "geometry",
@@ -64,8 +65,11 @@ ALLOWED = {
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
     "pygame": {"render"},
+    "matplotlib": {"render", "shot"},
     "pettingzoo": {"envs"},
     "imageio_ffmpeg": {"replays"},
+    "anywidget": {"widget"},
+    "traitlets": {"widget"},
 }
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
@@ -137,11 +141,13 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
         if library in ALWAYS | STANDARD:
             continue
         assert part in OUTSIDE.get(library, ()), f"{name} imports {library}"
-        if library in ("pygame", "stable_baselines3", "sb3_contrib") and part != "sb3":  # sb3.py itself is only loaded when it is wanted
+        if (
+            library in ("pygame", "matplotlib", "stable_baselines3", "sb3_contrib") and part != "sb3"
+        ):  # sb3.py itself is only loaded when it is wanted
             assert not top, f"{name} imports {library} when it is imported, not when it is wanted"
 
 
-LATE = {"envs": (".render", ".planning", ".replays"), "_warmup": (".planning", ".envs")}
+LATE = {"shot": (".render",), "envs": (".render", ".planning", ".replays"), "_warmup": (".planning", ".envs")}
 """What these parts import only when it is asked for."""
 
 
