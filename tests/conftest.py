@@ -14,9 +14,9 @@ def screen(monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     shown = []
 
-    def play(self, scenes, fps=30.0):
-        shown.append((len(list(scenes)), fps))
+    def play(self, film, fps=30.0, *, speed=1.0):
+        shown.append((len(list(film.scenes(fps, speed))), fps))
         return True
 
-    monkeypatch.setattr("snooker_env.render.pygame_view.Window.play", play)
+    monkeypatch.setattr("snooker_env.render.window.Window.play", play)
     return shown

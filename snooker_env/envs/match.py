@@ -22,13 +22,13 @@ from ..tasks.options import Options, options_of
 from ..tasks.rewards import frame_reward
 from ..tasks.tables import I_FOULS, I_PENALTY, I_POINTS, Crew
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
-from .record import Record, Recorded
+from .record import HasHistory, Record
 from .reset_options import Start, start_of
 
 PLAYERS = ("player_0", "player_1")
 
 
-class MatchEnv(Recorded, AECEnv[str, Any, Any]):
+class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
     """A frame of snooker between two players, one stroke a step.
 
     ## Turns

@@ -45,7 +45,7 @@ class Record:
             self.last_shot = buffers.shot(j, tables.rules)
 
 
-class Recorded:
+class HasHistory:
     """What an environment of one table shows of its ``Record``."""
 
     _record: Record

@@ -22,11 +22,11 @@ from ..tasks.options import Options, options_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, Tables
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
-from .record import Record, Recorded
+from .record import HasHistory, Record
 from .reset_options import ONE, Start, given_of, start_of
 
 
-class SnookerEnv(Recorded, gymnasium.Env[Any, Any]):
+class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
     """Snooker shot selection: one step is one whole shot.
 
     ## Description
@@ -124,14 +124,12 @@ class SnookerEnv(Recorded, gymnasium.Env[Any, Any]):
     ## Pictures and films
     ``render()`` gives the table with the paths of the last stroke and a score bar. ``RecordVideo`` and ``vector.RecordVideo`` of Gymnasium
     and ``VecVideoRecorder`` of Stable-Baselines3, in the same process, get the motion of every stroke of a step at ``render_fps`` (30 a
-    second, in real time): ``render()`` knows when a recorder asks. They keep all pictures in memory, 6 MB each at the usual size: give
-    ``render_size=(960, 540)``, or use ``sn.RecordReplay``, which needs none. ``history``: the strokes since the reset, for ``sn.replay``.
-    "human" opens a window, and raises RuntimeError where there is no display.
+    second, in real time): ``render()`` knows when a recorder asks. They keep all pictures in memory, 6 MB each at the usual size:
+    ``render_size=(960, 540)`` takes a quarter, ``sn.RecordReplay`` none. "human" raises RuntimeError where there is no display.
 
     ## Version history
     v0: first version. Results of package versions 0.1 and 0.2 do not compare: the pockets, the cushions of "match" and the levels of noise
     moved (CHANGELOG.md).
-
     ## References
     S. Mathavan, M. R. Jackson, R. M. Parkin: Numerical simulations of the frictional collisions of solid balls on a rough surface, Sports
     Engineering 17 (2014); A theoretical analysis of billiard ball dynamics under cushion impacts, Proc. IMechE C 224 (2010). Rules: WPBSA,

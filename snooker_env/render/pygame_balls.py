@@ -114,7 +114,7 @@ def _mirrored(scene, view, over, where, radius):
     up = LAMP_HEIGHT / far + 1
     lean = across / far[..., None]
     lean /= np.sqrt((lean**2).sum(axis=-1) + up**2)[..., None]
-    lean = lean.reshape(len(where), -1, 2, 2)
+    lean = lean.reshape(len(where), len(over), 2, 2)
     centre = where[:, None] + radius * lean.mean(axis=2)[..., ::-1]
     length = np.abs(lean[:, :, 1, 1] - lean[:, :, 0, 1]) * radius / 2
     for places, lengths in zip(centre, length, strict=True):

@@ -127,9 +127,9 @@ def _bed(canvas, table):
 
 def _marks(canvas):
     """The baulk line, the D and the spots."""
-    half = max(0.0017, 0.75 / canvas.view.scale)
+    half = max(0.0017, 0.55 / canvas.view.scale)
     image, _, y = canvas.around(BAULK_LINE, 2 * half)
-    _paint(image, _INK["line"], 0.88 * canvas.cover(np.abs(y - np.float32(BAULK_Y)) - half) * np.ones(image.shape[:1] + (1,)))
+    _paint(image, _INK["line"], 0.88 * canvas.cover(np.abs(y - np.float32(BAULK_Y)) - half) * np.ones((len(image), 1)))
     image, x, y = canvas.around([(-D_RADIUS, BAULK_Y - D_RADIUS), (D_RADIUS, BAULK_Y)], 2 * half)
     arc = np.abs(np.hypot(x, y - BAULK_Y) - D_RADIUS) - half
     _paint(image, _INK["line"], 0.88 * canvas.cover(np.maximum(arc, y - BAULK_Y)))
@@ -168,13 +168,14 @@ def _cushion(canvas, polygon, nose):
     to_nose = _to_line(x, y, nose, reach + 0.03)
     inside = _inside(x, y, polygon)
     outer = np.where(inside, -to_nose, to_nose)  # the nose is the only edge of a cushion that is seen
-    image *= (1 - 0.50 * np.exp(-np.maximum(outer, 0) / 0.013) * (outer > 0) * (outer < reach))[..., None]
+    within = canvas.cover(canvas.box(x, y, CUSHION + 0.02))  # a nose may run on beyond the frame
+    image *= (1 - 0.50 * np.exp(-np.maximum(outer, 0) / 0.013) * (outer > 0) * (outer < reach) * within)[..., None]
     t = np.clip(to_nose / (CUSHION + 0.004), 0, 1)
     top = _INK["cushion"] * (1.16 - 0.42 * t)[..., None]
     edge = np.exp(-(((to_nose - 0.0035) / 0.0035) ** 2))[..., None]
     top += edge * (_INK["nose"] - top) * 0.85
     grain = canvas.grain(*image.shape[:2], 1.0, 2.0)
-    _paint(image, top * (1 + 0.012 * grain)[..., None], canvas.cover(outer))
+    _paint(image, top * (1 + 0.012 * grain)[..., None], canvas.cover(outer) * within)
 
 
 def _near(x, y, a, b, reach):

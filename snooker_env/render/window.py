@@ -12,15 +12,17 @@
 """
 
 import dataclasses
+import itertools
 import os
 import sys
 from collections.abc import Iterable
 from typing import Any
 
 from .._check import number
+from ..physics.table import Table
 from .palette import PALETTE
 from .pygame_library import BOLD, MEDIUM, pygame_, typeset
-from .pygame_view import draw
+from .pygame_picture import draw
 from .scene import Film, Scene
 from .view import SIZE, View
 
@@ -29,7 +31,7 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 KEYS = "space: pause    right: step    enter: skip    up/down: speed    L: letters    P: paths    esc: close"
 WAITING = "waiting for the next stroke"
 _HINT = 0.026  # part of the window's height for the line that says what it waits for
-_WANTED = ("dummy", "offscreen")
+_TO_NOBODY = ("dummy", "offscreen")  # drivers of SDL
 
 
 def require_display() -> None:
@@ -51,8 +53,8 @@ def require_display() -> None:
 
 def _no_display(why):
     return RuntimeError(
-        f'render_mode="human" opens a window, but there is no display ({why}): use render_mode="rgb_array" for pictures or "ansi" for text, '
-        "or set SDL_VIDEODRIVER=dummy to play to nobody"
+        f'a window (render_mode="human") needs a display, and there is none ({why}): use render_mode="rgb_array" for pictures or "ansi" '
+        "for text, or set SDL_VIDEODRIVER=dummy to play to nobody"
     )
 
 
@@ -69,12 +71,14 @@ class Window:
     """
 
     def __init__(self, height: int | None = None, title: str = "snooker", *, size: tuple[int, int] | None = None):
-        View.of(_any_table(), height, size)  # refused now, not when it opens
+        View.of(Table.of(None), height, size)  # refused now, not when it opens
         self._height, self._size, self._title = height, size, title
         self._screen: Any = None
         self._shut = False
         self._speed, self._paused, self._letters, self._paths = SPEEDS.index(1.0), False, False, True
-        self._steps, self._skip = 0, False
+        self._steps, self._skip, self._hint = 0, False, 0
+        self.status = ""
+        """What the window's last line says that it waits for."""
 
     @property
     def is_open(self) -> bool:
@@ -116,7 +120,8 @@ class Window:
             return False
         if self._screen is None:
             self._open(scene)
-        self._show(scene, status)
+        self.status = status
+        self._show(scene)
         return True
 
     def play(self, scenes: Film | Iterable[Scene], fps: float = 30.0, *, speed: float = 1.0) -> bool:
@@ -169,9 +174,10 @@ class Window:
             pygame.display.init()
         except pygame.error as error:
             raise _no_display(str(error)) from None
-        if not os.environ.get("SDL_VIDEODRIVER") and pygame.display.get_driver() in _WANTED:
+        driver = pygame.display.get_driver()
+        if not os.environ.get("SDL_VIDEODRIVER") and driver in _TO_NOBODY:
             pygame.display.quit()
-            raise _no_display(f"SDL found only its driver {pygame.display.get_driver() if pygame.display.get_init() else 'dummy'!r}")
+            raise _no_display(f"SDL found only its driver {driver!r}")
         pygame.display.set_caption(self._title)
         view = View.of(scene.table, self._height, self._size)
         width, height = view.width, view.height
@@ -180,7 +186,8 @@ class Window:
             part = min(1.0, 0.92 * desk_width / SIZE[0], 0.88 * desk_height / SIZE[1])
             width, height = round(part * width), round(part * height)
         try:
-            self._screen = pygame.display.set_mode((width, height + round(_HINT * height)), pygame.RESIZABLE)
+            self._hint = max(14, round(_HINT * height))
+            self._screen = pygame.display.set_mode((width, height + self._hint), pygame.RESIZABLE)
         except pygame.error as error:
             pygame.display.quit()
             raise _no_display(str(error)) from None
@@ -209,16 +216,16 @@ class Window:
         elif key == pygame.K_p:
             self._paths = not self._paths
 
-    def _show(self, scene, status):
+    def _show(self, scene):
         pygame = pygame_()
         self._screen = pygame.display.get_surface()  # another one once the window was resized
         width, height = self._screen.get_size()
-        hint = max(12, round(_HINT / (1 + _HINT) * height))
+        hint = self._hint
         scene = dataclasses.replace(scene, lettered=scene.lettered or self._letters, paths=scene.paths if self._paths else {})
         pixels = draw(scene, View.of(scene.table, size=(max(width, 100), max(height - hint, 100))))
         self._screen.fill(PALETTE["floor"])
         self._screen.blit(pygame.image.frombuffer(pixels, pixels.shape[1::-1], "RGB"), (0, 0))
-        words = typeset(status, PALETTE["text"], 0.62 * hint, BOLD)
+        words = typeset(self.status, PALETTE["text"], 0.62 * hint, BOLD)
         self._screen.blit(words, words.get_rect(midleft=(hint, height - hint / 2)))
         keys = typeset(KEYS, PALETTE["text_quiet"], 0.58 * hint, MEDIUM)
         if words.get_width() + keys.get_width() < width - 4 * hint:
@@ -226,18 +233,12 @@ class Window:
         pygame.display.flip()
 
 
-def _any_table():
-    from ..physics.table import Table
-
-    return Table.of(None)
-
-
 class _Reel:
-    """A film, or scenes one after the other, from which the next picture is taken."""
+    """A film, or scenes one after the other, from which the next picture is taken; None once the last was taken."""
 
     def __init__(self, scenes, step):
         self._film = scenes if isinstance(scenes, Film) else None
-        self._scenes = iter(()) if self._film else iter(scenes)
+        self._scenes = iter(() if self._film else scenes)
         self._step, self._time, self._due = step, 0.0, 0.0
         self._last: Scene | None = None
 
@@ -246,21 +247,26 @@ class _Reel:
         return self._last
 
     def on(self, speed):
-        """The picture after this one; None after the last."""
+        """The next picture; of scenes some are left out at speeds above 1, and shown again below."""
         if self._film:
-            if self._time >= self._film.duration:
-                return None
-            self._time = min(self._time + speed * self._step, self._film.duration)
-            return self._film.at(self._time)
+            return self._to(self._time + speed * self._step)
         self._due += speed
-        while self._due >= 1:
-            self._due -= 1
-            shown, self._last = self._last, next(self._scenes, None)
-            if self._last is None:
-                self._due = 0.0
-                return shown if speed > 1 and shown is not self._shown() else None
-        return self._last
+        count = int(self._due)
+        self._due -= count
+        return self._pass(count) if count else self._last
 
     def skip(self):
-        """The last picture, or None if that was shown."""
-        return None
+        """The very last picture."""
+        return self._to(self._film.duration) if self._film else self._pass(None)
+
+    def _to(self, time):
+        if self._time >= self._film.duration:
+            return None
+        self._time = min(time, self._film.duration)
+        return self._film.at(self._time)
+
+    def _pass(self, count):
+        passed = None
+        for passed in itertools.islice(self._scenes, count):
+            self._last = passed
+        return passed

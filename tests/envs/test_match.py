@@ -12,7 +12,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, PINK, SPOTS
 from snooker_env.game.frame import Frame
-from snooker_env.render import pygame_view
+from snooker_env.render import window
 from snooker_env.tasks import observations
 
 pytest.importorskip("pettingzoo")
@@ -48,7 +48,7 @@ def test_pettingzoo_checks_its_seeds(strict):
 def test_pettingzoo_checks_its_pictures(monkeypatch):
     pytest.importorskip("pygame")
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    monkeypatch.setattr(pygame_view.Window, "play", lambda self, scenes, fps=30.0: len(list(scenes)) > 0)
+    monkeypatch.setattr(window.Window, "play", lambda self, film, fps=30.0, *, speed=1.0: film.duration > 0)
     render_test(sn.match_env)
 
 

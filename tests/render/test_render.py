@@ -1,6 +1,5 @@
 """Does a drawn table show what lies on it? Pictures, text and films against known places, sizes and balls; no display needed."""
 
-import itertools
 import os
 import re
 import subprocess
@@ -13,9 +12,9 @@ import snooker_env as sn
 from snooker_env.game.balls import BLACK, BROWN, CUE, GREEN, N_BALLS, PINK, SPOTS, YELLOW
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.render.ascii_view import ansi
-from snooker_env.render.palette import COLOURS
+from snooker_env.render.palette import COLOURS, PALETTE
 from snooker_env.render.pygame_view import Window, rgb_array, to_pixels
-from snooker_env.render.scene import ball_paths, outline, scene, shot_scenes
+from snooker_env.render.scene import ball_paths, outline, scene
 
 ALL = np.ones(N_BALLS, bool)
 
@@ -27,29 +26,14 @@ def without(*balls):
 
 
 def at(picture, point):
-    column, row = np.floor(to_pixels(point, len(picture))).astype(int)
+    column, row = np.floor(to_pixels(point, size=picture.shape[1::-1])).astype(int)
     return picture[row, column].astype(int)
 
 
 def looks(picture, point, ball):
-    """The pixel is nearer to this ball's colour than to any other ball's, and near it (the shading changes it by a tenth)."""
-    far = np.abs(COLOURS.astype(int) - at(picture, point)).max(axis=1)
+    """The ball is nearer to its colour than to any other ball's, and near it; looked at beside the lamps that are mirrored in it."""
+    far = np.abs(COLOURS.astype(int) - at(picture, np.add(point, (0.45 * BALL_RADIUS, 0.0)))).max(axis=1)
     return far[ball] == far.min() and far[ball] < 40
-
-
-@pytest.fixture(scope="module")
-def pot():
-    """The cue ball from the middle of the table pots the one red in the middle right pocket."""
-    return sn.simulate([(0.2, 0.0), (0.7, 0.0)], [(1.2, 0.0), (0.0, 0.0)], np.zeros((2, 3)))
-
-
-@pytest.fixture
-def dummy_screen(monkeypatch):
-    pygame = pytest.importorskip("pygame")
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    assert not pygame.display.get_init()
-    yield pygame
-    pygame.display.quit()
 
 
 @pytest.mark.parametrize("table", ["match", "tight"])
@@ -77,7 +61,7 @@ def test_outline_is_the_table_that_the_balls_meet(table):
 
 def test_picture_shows_every_ball_in_its_place():
     picture = rgb_array(scene("match", SPOTS, ALL))
-    assert picture.shape[0] == 600 and picture.shape[1] % 2 == 0 and picture.dtype == np.uint8
+    assert picture.shape == (1080, 1920, 3) and picture.dtype == np.uint8
     for ball in range(N_BALLS):
         assert looks(picture, SPOTS[ball], ball), ball
     # Seen from baulk towards the black the yellow is on the right: black right, yellow below, green above.
@@ -91,7 +75,7 @@ def test_a_ball_has_its_true_size_and_centre(height):
     place = np.array([0.4321, -0.3219])
     here = np.arange(N_BALLS) == CUE
     with_ball = rgb_array(scene("match", np.tile(place, (N_BALLS, 1)), here), height).astype(int)
-    white = with_ball.min(axis=2) > 130
+    white = with_ball.min(axis=2) > 90
     rows, columns = np.nonzero(white)
     inside = np.abs(np.stack([columns, rows], axis=1) + 0.5 - to_pixels(place, height)).max(axis=1) < 15
     rows, columns = rows[inside], columns[inside]
@@ -99,7 +83,7 @@ def test_a_ball_has_its_true_size_and_centre(height):
     centre, x, y = to_pixels([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)], height)
     scale = (y - centre)[0]
     assert x - centre == pytest.approx([0.0, scale]) and y - centre == pytest.approx([scale, 0.0])
-    assert 2 * centre[0] == with_ball.shape[1] and 2 * centre[1] == pytest.approx(2 * scale * (0.889 + 0.155 + 0.02))  # rails and margin
+    assert 2 * centre[0] == with_ball.shape[1] and 2 * centre[1] == pytest.approx(2 * scale * (0.889 + 0.155 + 0.012))  # rails and margin
     assert len(rows) == pytest.approx(np.pi * (BALL_RADIUS * scale) ** 2, rel=0.12)
 
 
@@ -110,7 +94,7 @@ def test_balls_off_the_table_do_not_appear():
         assert not looks(gone, SPOTS[ball], ball)
     alone = rgb_array(scene("match", SPOTS, without(*range(N_BALLS - 1))))
     changed = np.argwhere(np.any(alone != empty, axis=2))
-    assert len(changed) and np.abs(changed[:, ::-1] - to_pixels(SPOTS[BLACK])).max() < 20
+    assert len(changed) and np.abs(changed[:, ::-1] - to_pixels(SPOTS[BLACK])).max() < 44  # with the lamps' shadows
 
 
 def test_picture_of_the_table():
@@ -135,10 +119,12 @@ def test_overlays_and_text_change_only_where_they_are():
     assert at(rgb_array(scene("match", SPOTS, ~ALL, aim=path)), (0.1, 0.5))[:2].min() > 200
     ghost = rgb_array(scene("match", SPOTS, ~ALL, ghost=(0.3, 0.5)))
     assert np.array_equal(at(ghost, (0.3, 0.5)), at(plain, (0.3, 0.5))) and np.any(ghost != plain)
-    for text in ("break 12", "long " * 100):
+    nothing = rgb_array(scene("match", SPOTS, ~ALL, text=" "))
+    for text, least, most in (("break 12", 100, 300), ("long " * 100, 1700, 1900)):  # what does not fit is cut off
         said = rgb_array(scene("match", SPOTS, ~ALL, text=text))
-        rows, columns = np.nonzero(np.any(said != plain, axis=2))
-        assert said.shape == plain.shape and rows.min() > to_pixels((0.889 + 0.155, 0.0))[1] and columns.max() < plain.shape[1] - 10
+        rows, columns = np.nonzero(np.any(said != nothing, axis=2))
+        assert said.shape == plain.shape and rows.min() > to_pixels((0.889 + 0.155, 0.0))[1] and least < columns.max() < most
+        assert np.array_equal(said[:1000], plain[:1000])
 
 
 def test_pictures_are_fresh_repeatable_and_need_no_display():
@@ -165,34 +151,16 @@ def test_scene_copies_and_refuses():
         (lambda: scene("match", SPOTS, paths={22: r}), "paths"),
         (lambda: scene("match", SPOTS, ghost=(1, 2, 3)), "ghost"),
         (lambda: rgb_array(scene("match", SPOTS), 5), "height"),
+        (lambda: rgb_array(scene("match", SPOTS), size=(1920, 50)), "size"),
+        (lambda: rgb_array(scene("match", SPOTS), size=1920), "size"),
+        (lambda: rgb_array(scene("match", SPOTS), 600, size=(1920, 1080)), "size"),
+        (lambda: scene("match", SPOTS, ghosts={-1: r}), "ghosts"),
+        (lambda: scene("match", SPOTS, turns={0: (1, 0, 0)}), "turns"),
+        (lambda: scene("match", SPOTS, bar="12"), "bar"),
         (lambda: ansi(scene("match", SPOTS), 10), "width"),
     ]:
         with pytest.raises(ValueError, match=field):
             bad()
-
-
-def test_film_of_a_shot(pot):
-    assert pot.potted[1] == sn.POCKETS.index("middle right")
-    film = list(shot_scenes("match", pot, fps=50, speed=2.0, text="pot"))
-    assert len(film) == int(np.ceil(pot.duration * 25)) + 1
-    assert [len(s.ids) for s in film] == sorted([len(s.ids) for s in film], reverse=True)
-    drop = pot.events["time"][pot.events["kind"] == sn.EventKind.POT][0]
-    for k, s in enumerate(film[:-1]):
-        assert s.ids.tolist() == ([CUE, 1] if k * 0.04 < drop else [CUE]) and s.text == "pot"
-        assert np.array_equal(s.positions[0], pot.at(k * 0.04)[0][0])
-        assert not s.paths or np.array_equal(s.paths[CUE][-1], s.positions[0])
-    assert np.array_equal(film[-1].positions[0], pot.positions[0])
-    assert film[0].paths == {} and film[-1].paths.keys() == {CUE}
-    assert all(s.paths == {} for s in itertools.islice(shot_scenes("match", pot, trail=()), 5))
-
-
-def test_paths_run_from_start_to_end(pot):
-    paths = ball_paths(pot, (CUE, 1))
-    assert np.array_equal(paths[CUE][0], (0.2, 0.0)) and paths[CUE][-1] == pytest.approx(pot.positions[0], abs=1e-4)
-    assert paths[1][-1] == pytest.approx(pot.positions[1], abs=1e-9)
-    impact = 0.7 - 2 * BALL_RADIUS
-    assert np.min(np.abs(paths[CUE][:, 0] - impact)) < 1e-6  # the place of the impact itself is on the path
-    assert ball_paths(pot, (CUE, 1), until=0.1).keys() == {CUE}
 
 
 def test_text_shows_the_balls():
@@ -246,32 +214,6 @@ def test_pygame_is_imported_only_to_draw():
     assert subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}).returncode == 0
 
 
-def test_window_opens_lazily_plays_and_closes(dummy_screen, pot):
-    window = Window(height=300)
-    assert not window.is_open and not dummy_screen.display.get_init()
-    window.close()
-    film = list(shot_scenes("match", pot, fps=10))
-    assert window.play(film, fps=1000) and window.is_open
-    shown = dummy_screen.surfarray.array3d(dummy_screen.display.get_surface()).transpose(1, 0, 2)
-    assert np.array_equal(shown, rgb_array(film[-1], 300))
-    window.close()
-    window.close()
-    assert not window.is_open and not dummy_screen.display.get_init()
-    assert window.draw(film[0]) and window.is_open
-    window.close()
-
-
-def test_window_heeds_its_close_button(dummy_screen, pot):
-    window = Window(height=300)
-    assert window.draw(scene("match", SPOTS))
-    dummy_screen.event.post(dummy_screen.event.Event(dummy_screen.QUIT))
-    assert not window.play(shot_scenes("match", pot), fps=1000)
-    assert not window.is_open and not window.draw(scene("match", SPOTS)) and not dummy_screen.display.get_init()
-    window.close()
-    assert window.draw(scene("match", SPOTS))
-    window.close()
-
-
 def test_demo_break_off(tmp_path):
     """A break-off with the cue ball's path; the picture is kept for the eye where SNOOKER_RENDER_OUT names a folder."""
     pygame = pytest.importorskip("pygame")
@@ -287,7 +229,7 @@ def test_demo_break_off(tmp_path):
     pygame.image.save(pygame.image.frombuffer(picture, picture.shape[1::-1], "RGB"), os.path.join(folder, "x.png"))
     for ball in np.flatnonzero(shot.on_table):
         assert looks(picture, shot.positions[ball], ball), ball
-    assert at(picture, start).min() > 150  # where the path and the line of aim begin
+    assert np.array_equal(at(picture, start), PALETTE["aim"])  # where the path and the line of aim begin
 
 
 OTHERS = {
@@ -309,8 +251,8 @@ def test_a_picture_shows_the_table_and_the_balls_of_another_game(name):
     first, last = to_pixels([(low_x, low_y), (high_x, high_y)], height, table)
     scale = (last - first)[0] / (high_y - low_y)
     assert (last - first)[1] == pytest.approx(scale * (high_x - low_x))
-    assert empty.shape[1] == pytest.approx((last - first)[0] + 2 * scale * (0.155 + 0.02), abs=2)  # rails and margin
-    assert empty.shape[0] * 0.945 == pytest.approx((last - first)[1] + 2 * scale * (0.155 + 0.02), abs=2)
+    assert empty.shape[1] == pytest.approx((last - first)[0] + 2 * scale * (0.155 + 0.012), abs=2)  # rails and margin
+    assert empty.shape[0] * 14 / 15 == pytest.approx((last - first)[1] + 2 * scale * (0.155 + 0.012), abs=2)
     pixel = lambda point: empty[tuple(np.floor(to_pixels(point, height, table)).astype(int)[::-1])].astype(int)  # noqa: E731
     for x, y, radius in table.falls:
         inner = np.array([x, y]) - 0.8 * radius * np.array([np.sign(x), np.sign(y)]) / np.hypot(np.sign(x), np.sign(y))
@@ -320,7 +262,7 @@ def test_a_picture_shows_the_table_and_the_balls_of_another_game(name):
             red, green, blue = pixel((x, y))  # cloth everywhere, also where snooker's lines and spots would be
             assert green > red + 40 and green > blue + 20 and red < 60
     drawn = rgb_array(scene(table, [place]), height).astype(int)
-    rows, columns = np.nonzero(drawn.min(axis=2) > 130)
+    rows, columns = np.nonzero(drawn.min(axis=2) > 90)
     near = np.abs(np.stack([columns, rows], axis=1) + 0.5 - to_pixels(place, height, table)).max(axis=1) < 2 * 0.03 * scale
     assert [columns[near].mean() + 0.5, rows[near].mean() + 0.5] == pytest.approx(to_pixels(place, height, table), abs=0.5)
     assert near.sum() == pytest.approx(np.pi * (table.ball_radius * scale) ** 2, rel=0.12)
@@ -365,23 +307,3 @@ def test_outlines_of_other_tables_are_what_the_balls_meet(name):
                 with pytest.raises(ValueError, match=r"cushion|jaw"):
                     table.check([middle + normal * (R - 1e-4)], R)
     assert tried == {"pool9": 50, "mine": 164, "carom": 4}[name]
-
-
-def test_the_film_of_a_shot_shows_the_balls_of_the_shot():
-    pool = OTHERS["pool9"]
-    end = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], pool, {"R": pool.ball_radius})
-    assert {one.ball_radius for one in shot_scenes(pool, end, fps=5)} == {pool.ball_radius}
-    small = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], None, {"R": 0.02})
-    assert {one.ball_radius for one in shot_scenes(None, small, fps=5)} == {0.02}
-    assert scene("match", SPOTS).ball_radius == scene(None, SPOTS).ball_radius == BALL_RADIUS
-    with pytest.raises(ValueError, match="ball_radius"):
-        scene("match", SPOTS, ball_radius=-1)
-
-
-def test_a_window_takes_the_size_of_the_table_that_it_shows(dummy_screen):
-    window = Window(200)
-    for table in (sn.Table.preset("match"), OTHERS["carom"], OTHERS["mine"]):
-        assert window.draw(scene(table, [(0.0, 0.0)]))
-        shown = dummy_screen.display.get_surface().get_size()
-        assert shown == rgb_array(scene(table, [(0.0, 0.0)]), 200).shape[1::-1]
-    window.close()

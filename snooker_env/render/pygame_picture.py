@@ -1,0 +1,47 @@
+"""How does a frame come about? The kept picture of the table is copied; paths, balls and the score bar are put on it.
+
+Pictures of balls are kept for each quarter of a pixel, and those of the pieces of paths, so that this takes a few milliseconds.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .palette import PALE, PALETTE
+from .pygame_balls import draw_balls, outline_of_a_ball
+from .pygame_bar import score_bar
+from .pygame_library import pygame_
+from .pygame_lines import draw_lines, line_width
+from .scene import Scene
+from .table_picture import table_picture
+from .view import View
+
+
+def draw(scene: Scene, view: View) -> NDArray[np.uint8]:
+    """The picture of a scene, as a fresh array.
+
+    Parameters
+    ----------
+    scene : Scene
+    view : View
+        Of its table.
+
+    Returns
+    -------
+    uint8 (height, width, 3)
+    """
+    pixels = table_picture(scene.table, view).copy()
+    surface: Any = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")  # draws into ``pixels``
+    surface.set_clip((0, 0, view.width, view.height - view.bar))
+    width = line_width(view.scale)
+    draw_lines(surface, [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()], width)
+    if scene.aim is not None:
+        draw_lines(surface, [(view(scene.aim), PALETTE["aim"])], 0.8 * width)
+    if scene.ghost is not None:
+        draw_lines(surface, [(view(outline_of_a_ball(scene.ghost, scene.ball_radius)), PALETTE["aim"])], 0.6 * width)
+    draw_balls(surface, scene, view)
+    surface.set_clip(None)
+    if scene.bar is not None or scene.text:
+        surface.blit(score_bar(scene.bar, scene.text, view.width, view.bar), (0, view.height - view.bar))
+    return pixels

@@ -1,0 +1,96 @@
+"""Does a film show the shot? Balls, paths, turns and contacts at every time against ``Shot.at`` and against closed forms."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.game.balls import CUE, SPOTS
+from snooker_env.geometry import BALL_RADIUS
+from snooker_env.render.scene import Film, ball_paths, contacts, scene, shot_scenes
+from snooker_env.render.turning import Turning, matrix, product, rotation
+
+
+@pytest.fixture(scope="module")
+def pot():
+    """The cue ball from the middle of the table pots the one red in the middle right pocket."""
+    return sn.simulate([(0.2, 0.0), (0.7, 0.0)], [(1.2, 0.0), (0.0, 0.0)], np.zeros((2, 3)))
+
+
+def test_film_of_a_shot(pot):
+    assert pot.potted[1] == sn.POCKETS.index("middle right")
+    film = list(shot_scenes("match", pot, fps=50, speed=2.0, text="pot"))
+    assert len(film) == int(np.ceil(pot.duration * 25)) + 1
+    assert [len(s.ids) for s in film] == sorted([len(s.ids) for s in film], reverse=True)
+    drop = pot.events["time"][pot.events["kind"] == sn.EventKind.POT][0]
+    for k, s in enumerate(film[:-1]):
+        assert s.ids.tolist() == ([CUE, 1] if k * 0.04 < drop else [CUE]) and s.text == "pot"
+        assert np.array_equal(s.positions[0], pot.at(k * 0.04)[0][0])
+        assert not s.paths or np.array_equal(s.paths[CUE][-1], s.positions[0])
+    assert np.array_equal(film[-1].positions[0], pot.positions[0])
+    assert film[0].paths == {} and film[-1].paths.keys() == {CUE}
+    assert all(s.paths == {} for s in itertools.islice(shot_scenes("match", pot, trail=()), 5))
+
+
+def test_paths_run_from_start_to_end(pot):
+    paths = ball_paths(pot, (CUE, 1))
+    assert np.array_equal(paths[CUE][0], (0.2, 0.0)) and paths[CUE][-1] == pytest.approx(pot.positions[0], abs=1e-4)
+    assert paths[1][-1] == pytest.approx(pot.positions[1], abs=1e-9)
+    impact = 0.7 - 2 * BALL_RADIUS
+    assert np.min(np.abs(paths[CUE][:, 0] - impact)) < 1e-6  # the place of the impact itself is on the path
+    assert ball_paths(pot, (CUE, 1), until=0.1).keys() == {CUE}
+
+
+def test_the_film_of_a_shot_shows_the_balls_of_the_shot():
+    pool = sn.Table.preset("pool9")
+    end = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], pool, {"R": pool.ball_radius})
+    assert {one.ball_radius for one in shot_scenes(pool, end, fps=5)} == {pool.ball_radius}
+    small = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], None, {"R": 0.02})
+    assert {one.ball_radius for one in shot_scenes(None, small, fps=5)} == {0.02}
+    assert scene("match", SPOTS).ball_radius == scene(None, SPOTS).ball_radius == BALL_RADIUS
+    with pytest.raises(ValueError, match="ball_radius"):
+        scene("match", SPOTS, ball_radius=-1)
+
+
+def test_a_film_is_the_same_at_any_time_as_picture_after_picture(pot):
+    film = Film("match", pot, trail=(CUE, 1), text="pot")
+    for k, one in enumerate(shot_scenes("match", pot, fps=20, trail=(CUE, 1), text="pot")):
+        here = film.at(min(k * 0.05, pot.duration))
+        assert np.array_equal(here.positions, one.positions) and here.paths.keys() == one.paths.keys()
+        whole = ball_paths(pot, (CUE, 1))
+        for ball, points in here.paths.items():
+            assert np.array_equal(points, one.paths[ball]) and len(points) <= len(whole[ball]) + 1
+            assert np.array_equal(points[:-1], whole[ball][: len(points) - 1])
+    assert len(film.at(pot.duration).paths[CUE]) == len(whole[CUE])
+
+
+def test_contacts_are_where_the_cue_ball_met_others(pot):
+    assert contacts(pot) == pytest.approx(np.array([(0.7 - 2 * BALL_RADIUS, 0.0)]), abs=1e-6)
+    assert contacts(pot, 1) == pytest.approx(np.array([(0.7, 0.0)]), abs=1e-6)
+    alone = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)])
+    assert contacts(alone).shape == (0, 2)
+
+
+def test_a_rolling_ball_turns_once_each_circumference():
+    """It rolls a quarter of a turn along +x: what was on top is in front, what was in front is below."""
+    R = BALL_RADIUS
+    shot = sn.simulate([(0.0, 0.0)], [(0.3, 0.0)], [(0.0, 0.3 / R, 0.0)], None)
+    turning = Turning(shot, CUE)
+    times = np.linspace(0.0, shot.duration, 4000)
+    t = float(np.interp(np.pi / 2 * R, shot.at(times)[0][:, 0, 0], times))
+    assert matrix(turning.at(t)) == pytest.approx(np.array([(0, 0, 1), (0, 1, 0), (-1, 0, 0)]), abs=2e-3)
+    assert np.array_equal(turning.at(0.0), (1, 0, 0, 0)) and np.linalg.norm(turning.at(shot.duration)) == pytest.approx(1.0, abs=1e-12)
+    film = Film(None, shot, spots=(CUE,))
+    assert np.array_equal(film.at(t).turns[CUE], turning.at(t)) and Film(None, shot).at(t).turns == {}
+
+
+def test_turns_add_up():
+    rng = np.random.default_rng(0)
+    for a, b in rng.normal(0, 1, (20, 2, 3)):
+        both = matrix(product(rotation(a), rotation(b)))
+        assert both == pytest.approx(matrix(rotation(a)) @ matrix(rotation(b)), abs=1e-12)
+        axis = a / np.linalg.norm(a)
+        assert matrix(rotation(a)) @ axis == pytest.approx(axis, abs=1e-12)
+        assert np.trace(matrix(rotation(a))) == pytest.approx(1 + 2 * np.cos(np.linalg.norm(a)), abs=1e-12)
+    assert np.array_equal(rotation(np.zeros(3)), (1, 0, 0, 0))

@@ -1,0 +1,158 @@
+"""Does the window do what its keys say, and does it refuse where nobody would see it? With SDL's driver that needs no display."""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.game.balls import CUE, SPOTS
+from snooker_env.render.pygame_view import Window, require_display, rgb_array
+from snooker_env.render.scene import Film, scene, shot_scenes
+from snooker_env.render.window import SPEEDS, WAITING
+
+
+@pytest.fixture(scope="module")
+def pot():
+    """The cue ball from the middle of the table pots the one red in the middle right pocket."""
+    return sn.simulate([(0.2, 0.0), (0.7, 0.0)], [(1.2, 0.0), (0.0, 0.0)], np.zeros((2, 3)))
+
+
+@pytest.fixture
+def dummy_screen(monkeypatch):
+    pygame = pytest.importorskip("pygame")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    assert not pygame.display.get_init()
+    yield pygame
+    pygame.display.quit()
+
+
+def picture(pygame):
+    """What the window shows above its last line."""
+    shown = pygame.surfarray.array3d(pygame.display.get_surface()).transpose(1, 0, 2)
+    return shown[: len(shown) - 14]
+
+
+def test_window_opens_lazily_plays_and_closes(dummy_screen, pot):
+    window = Window(height=300)
+    assert not window.is_open and not dummy_screen.display.get_init()
+    window.close()
+    film = list(shot_scenes("match", pot, fps=10))
+    assert window.play(film, fps=1000) and window.is_open
+    assert np.array_equal(picture(dummy_screen), rgb_array(film[-1], size=(518, 300)))
+    window.close()
+    window.close()
+    assert not window.is_open and not dummy_screen.display.get_init()
+    assert window.draw(film[0]) and window.is_open
+    window.close()
+
+
+def test_window_heeds_its_close_button(dummy_screen, pot):
+    window = Window(height=300)
+    assert window.draw(scene("match", SPOTS))
+    dummy_screen.event.post(dummy_screen.event.Event(dummy_screen.QUIT))
+    assert not window.play(shot_scenes("match", pot), fps=1000)
+    assert not window.is_open and not window.draw(scene("match", SPOTS)) and not dummy_screen.display.get_init()
+    window.close()
+    assert window.draw(scene("match", SPOTS))
+    window.close()
+
+
+def test_a_window_is_as_wide_as_its_first_table_and_keeps_its_size(dummy_screen):
+    carom, match = sn.Table.preset("carom"), sn.Table.preset("match")
+    window = Window(200)
+    for table in (carom, match):
+        assert window.draw(scene(table, [(0.0, 0.0)]))
+        width = rgb_array(scene(carom, [(0.0, 0.0)]), 200).shape[1]
+        assert dummy_screen.display.get_surface().get_size() == (width, 200 + 14)
+        assert np.array_equal(picture(dummy_screen), rgb_array(scene(table, [(0.0, 0.0)]), size=(width, 200)))
+    window.close()
+    with pytest.raises(ValueError, match="height"):
+        Window(5)
+
+
+def test_a_window_fits_the_screen(dummy_screen):
+    window = Window()
+    window.draw(scene("match", SPOTS))
+    (width, height), (most_wide, most_high) = dummy_screen.display.get_surface().get_size(), dummy_screen.display.get_desktop_sizes()[0]
+    assert 0.5 * most_wide < width <= most_wide and height <= most_high
+    window.close()
+
+
+class Pressed(Window):
+    """A window whose user presses keys: {number of the picture: keys}. It keeps what it showed."""
+
+    def __init__(self, pygame, presses, height=100):
+        super().__init__(height)
+        self.pygame, self.presses, self.seen = pygame, presses, []
+
+    def draw(self, scene, status=WAITING):
+        for key in self.presses.get(len(self.seen), ()):
+            self.pygame.event.post(self.pygame.event.Event(self.pygame.KEYDOWN, key=key))
+        shown = super().draw(scene, status)
+        self.seen.append((scene.positions[CUE, 0], status))
+        return shown
+
+
+@pytest.mark.parametrize("kind", ["film", "scenes"])
+def test_a_film_runs_faster_and_slower_and_shows_its_end(dummy_screen, pot, kind):
+    def made():
+        return Film("match", pot) if kind == "film" else shot_scenes("match", pot, fps=20)
+
+    whole = int(np.ceil(pot.duration * 20)) + 1
+    up, down = dummy_screen.K_UP, dummy_screen.K_DOWN
+    for keys, speed in [((), 1.0), ((up,), 2.0), ((up,) * 9, SPEEDS[-1]), ((down,), 0.5), ((down,) * 9, SPEEDS[0])]:
+        window = Pressed(dummy_screen, {1: keys})
+        assert window.draw(scene("match", SPOTS)) and window.play(made(), fps=100000 if kind == "scenes" else 20)
+        played = window.seen[1:]
+        assert len(played) == pytest.approx((whole - 1) / speed + 1, abs=1 / speed + 1), speed
+        assert played[-1][0] == pot.positions[CUE, 0] and window.speed == speed
+        assert [status for _, status in window.seen[:3]] == [WAITING, "playing 1x", f"playing {speed:g}x"]
+        window.close()
+
+
+def test_a_film_is_paused_stepped_and_skipped(dummy_screen, pot):
+    space, right, enter = dummy_screen.K_SPACE, dummy_screen.K_RIGHT, dummy_screen.K_RETURN
+    window = Pressed(dummy_screen, {2: [space], 6: [right], 9: [space], 12: [enter]})
+    assert window.play(Film("match", pot), fps=50)
+    places, said = zip(*window.seen, strict=True)
+    assert places[2] == places[3] == places[6] and places[7] == places[8] == places[9] and places[6] < places[7]
+    assert said == ("playing 1x",) * 3 + ("paused",) * 7 + ("playing 1x",) * 4
+    assert places[9] < places[10] < places[11] < places[12] and len(places) == 14 and places[13] == pot.positions[CUE, 0]
+    assert not window.paused
+    window.close()
+
+
+def test_letters_and_paths_are_shown_at_will(dummy_screen):
+    given = {"paths": {CUE: [(0.0, -1.0), (0.0, 1.0)]}}
+    window = Pressed(dummy_screen, {1: [dummy_screen.K_l], 2: [dummy_screen.K_p], 3: [dummy_screen.K_l]}, height=300)
+    for wanted in (given, {**given, "lettered": True}, {"lettered": True}, {}):
+        window.draw(scene("match", SPOTS, **given))
+        assert np.array_equal(picture(dummy_screen), rgb_array(scene("match", SPOTS, **wanted), size=(518, 300)))
+    window.close()
+
+
+def test_escape_shuts_the_window(dummy_screen, pot):
+    window = Pressed(dummy_screen, {3: [dummy_screen.K_ESCAPE]})
+    assert not window.play(Film("match", pot), fps=1000)
+    assert len(window.seen) == 4 and not window.is_open
+    window.close()
+
+
+def test_without_a_display_it_refuses(monkeypatch):
+    pytest.importorskip("pygame")
+    for name in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
+    window = Window(100)
+    for ask in (require_display, lambda: window.draw(scene("match", SPOTS))):
+        with pytest.raises(
+            RuntimeError, match=r"there is none \(neither DISPLAY nor WAYLAND_DISPLAY is set\).*rgb_array.*SDL_VIDEODRIVER=dummy"
+        ):
+            ask()
+        assert not window.is_open
+    monkeypatch.setenv("DISPLAY", ":4321")  # nobody listens there
+    require_display()
+    with pytest.raises(RuntimeError, match=r'render_mode="rgb_array"'):
+        window.draw(scene("match", SPOTS))
+    assert not window.is_open
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")  # said aloud: it is wanted
+    require_display()
