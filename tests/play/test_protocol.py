@@ -17,7 +17,7 @@ from tests.playing import COVERED, EASY, STRAIGHT
 from tests.processes import ROOT
 
 
-def waited(game, until, seconds=60.0):
+def waited(game, until, seconds=240.0):
     """The state, once something holds of it."""
     end, state = time.monotonic() + seconds, game.get("state")
     while not until(state):
