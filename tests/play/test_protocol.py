@@ -230,6 +230,13 @@ def test_destinations_spread_with_the_errors(game):
     assert game.get("state")["strokes"] == 0
 
 
+def test_a_question_about_a_table_that_is_gone_is_told_so(game):
+    revision = game("position", position=EASY)["revision"]
+    assert "cue" in game("destinations", speed=1.0, aim=0.0, samples=8, revision=revision)
+    game("stroke", speed=1.0, aim=STRAIGHT)
+    assert game("destinations", speed=1.0, aim=0.0, revision=revision) == {"stale": True} == game("advise", revision=revision)
+
+
 def test_undo_redo_new_save_load_and_replay(game):
     with pytest.raises(ValueError, match="nothing has been played"):
         game.get("replay")
