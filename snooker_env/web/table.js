@@ -25,7 +25,7 @@ const PALETTE = {
 };
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
 
-const css = (rgb, alpha = 1) => `rgba(${rgb.map(round).join()},${alpha})`;
+const css = (rgb, alpha = 1) => (rgb.map ? `rgba(${rgb.map(round)},${alpha})` : rgb);
 /** A colour on the way from one to another. */
 const mix = (a, b, share) => a.map((value, k) => value + (b[k] - value) * share);
 
@@ -137,18 +137,16 @@ export function decode(replay) {
 
 /** A canvas of its own, and its pen. */
 function sheet(width, height) {
-	const canvas = document.createElement("canvas");
-	canvas.width = max(1, ceil(width));
-	canvas.height = max(1, ceil(height));
+	const canvas = Object.assign(document.createElement("canvas"), { width: ceil(width), height: ceil(height) });
 	return [canvas, canvas.getContext("2d")];
 }
 
 /** Grey unrest for cloth and wood, the same at every call. */
 function unrest(strength) {
 	const [canvas, pen] = sheet(256, 256), image = pen.createImageData(256, 256);
-	for (let k = 0; k < 65536; k++) {
-		const noise = sin(12.9898 * k) * 43758.5453 % 1;
-		image.data.set([...(noise > 0 ? WHITE : BLACK), 255 * strength * abs(noise)], 4 * k);
+	for (let k = 0, seed = 1; k < 65536; k++) {
+		seed = Math.imul(seed, 1664525) + 1013904223 | 0;
+		image.data.set([...(seed > 0 ? WHITE : BLACK), abs(seed) / 2 ** 23 * strength], 4 * k);
 	}
 	pen.putImageData(image, 0, 0);
 	return canvas;
@@ -279,7 +277,7 @@ export class TableView {
 		pen.clip();
 		fill(pen, ink.hole);
 		pen.save();
-		start(bed);
+		start(9);
 		for (const [x, y, r] of scene.falls) { pen.moveTo(x + r, y); pen.arc(x, y, r, 0, TURN); } // the slate is cut out there
 		pen.clip("evenodd");
 		start(bed);
@@ -387,7 +385,7 @@ export class TableView {
 	falling(x, y, depth, rgb) {
 		const [u, v] = this.scene.falls.find(fall => hypot(fall[0] - x, fall[1] - y) < 0.2) ?? [x, y];
 		this.pen.globalAlpha = 1 - depth;
-		this.stamp(rgb, ...this.pixel(x + (u - x) * depth / 2, y + (v - y) * depth / 2), this.R * this.scale, 1 - 0.3 * depth);
+		this.stamp(rgb, ...this.pixel(x + (u - x) * sqrt(depth) / 2, y + (v - y) * sqrt(depth) / 2), this.R * this.scale, 1 - 0.3 * depth);
 		this.pen.globalAlpha = 1;
 	}
 
@@ -411,7 +409,7 @@ export class TableView {
 	}
 
 	/** A line through points, or a `path` in metres, at least 3 pixels wide, with a dark edge. */
-	line({ points = [], path, colour, width = 0.007, dash = [], arrow }) {
+	line({ points = [], path, colour = this.ink.text, width = 0.007, dash = [], arrow }) {
 		const { pen } = this, px = this.ratio / this.scale, wide = max(width, 3 * px), way = path ?? new Path2D();
 		for (const point of points) way.lineTo(...point);
 		if (arrow && points.length > 1) {
@@ -421,7 +419,7 @@ export class TableView {
 		this.metres(pen);
 		pen.lineJoin = pen.lineCap = "round";
 		pen.setLineDash(dash);
-		for (const [style, thick] of [[css(this.colours.path_edge, 0.55), wide + 2 * px], [colour?.map ? css(colour) : colour ?? this.ink.text, wide]]) {
+		for (const [style, thick] of [[css(this.colours.path_edge, 0.55), wide + 2 * px], [css(colour), wide]]) {
 			pen.strokeStyle = style;
 			pen.lineWidth = thick;
 			pen.stroke(way);
@@ -495,11 +493,7 @@ font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
 @container (max-width:900px){.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}`;
 
 /** A new element at the end of its parent. */
-function put(parent, tag) {
-	const made = document.createElement(tag);
-	parent.append(made);
-	return made;
-}
+const put = (parent, tag) => parent.appendChild(document.createElement(tag));
 
 const setAll = (element, attributes) => Object.entries(attributes).forEach(([name, value]) => element.setAttribute(name, value));
 
@@ -509,9 +503,8 @@ export class Player {
 		const data = decode(replay), { strokes } = data;
 		if (!strokes.length) throw new Error("a replay must hold at least one stroke");
 		this.options = { autoplay: !matchMedia("(prefers-reduced-motion: reduce)").matches, ...options };
-		this.show = { paths: !data.players.length, ghosts: true, spin: "cue", labels: false };
-		for (const name in this.show) this.show[name] = options[name] ?? this.show[name];
-		Object.assign(this, { replay: data, strokes, speed: options.speed ?? 1, k: 0, playing: false });
+		const { paths = !data.players.length, ghosts = true, spin = "cue", labels = false, speed = 1 } = options;
+		Object.assign(this, { replay: data, strokes, speed, show: { paths, ghosts, spin, labels }, k: 0, playing: false });
 		this.leads = strokes.map(stroke => (stroke.cue ? LEAD : 0));
 		this.t = -this.leads[0];
 		this.total = -PAUSE;
@@ -585,7 +578,7 @@ export class Player {
 	}
 
 	toggle() { if (this.playing) this.pause(); else this.play(); }
-	help() { this.part("help").hidden = !this.part("help").hidden; }
+	help() { this.part("help").toggleAttribute("hidden"); }
 
 	faster(way) {
 		this.speed = SPEEDS[SPEEDS.indexOf(this.speed) + way] ?? this.speed;
@@ -717,8 +710,7 @@ export class Player {
 		if (!cue) return;
 		const [image, half] = view.sprite(this.replay.scene.balls[0].rgb, R);
 		pen.drawImage(image, c - half, c - half);
-		polyline(pen, [[c - R, c], [c + R, c]], 1, "#0006");
-		polyline(pen, [[c, c - R], [c, c + R]], 1, "#0006");
+		polyline(pen, [[c - R, c], [c + R, c], [c, c], [c, c - R], [c, c + R]], 1, "#0006");
 		disc(pen, c + R * cue.side, c - R * cue.top, 0.17 * R, view.ink.bar_accent);
 	}
 
