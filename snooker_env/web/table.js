@@ -2,7 +2,7 @@
  * How is a table drawn in a browser, and how does a replay play? By one module on a 2-D canvas; it loads nothing.
  *
  * `decode` makes strokes that know where every ball is at any time: each phase of its motion is a closed form, in the arithmetic of
- * `physics/cloth.py`, so that places equal the simulation's. `TableView` draws a table from its scene, `mount` makes a `Player` of a replay.
+ * `physics/cloth.py`: places equal the simulation's. `TableView` draws a table from its scene, `mount` makes a `Player` of a replay.
  *
  * Frame: origin at the table's centre, +x to the yellow side, +y to the black end, SI units. On screen +y goes right and +x down.
  *
@@ -29,7 +29,7 @@ const css = (rgb, alpha = 1) => (rgb.map ? `rgba(${rgb.map(round)},${alpha})` : 
 /** A colour on the way from one to another. */
 const mix = (a, b, share) => a.map((value, k) => value + (b[k] - value) * share);
 
-/** Base64 of little-endian numbers, as all browsers keep them, to an array of them. */
+/** Numbers from base64, little-endian as in all browsers. */
 const numbers = (text, Type) => new Type(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 
 /** The rotation q, then one by the vector (x, y, z) [rad]; quaternions are [w, x, y, z]. */
@@ -42,7 +42,7 @@ function turned(q, x, y, z) {
 	return [w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c, w * c + y * a + z * b - x * d, w * d + z * a + x * c - y * b];
 }
 
-/** Step [s] in which the orientation of a ball is followed where its axis turns. */
+/** Step [s] of a ball's orientation where its axis turns. */
 const STEP = 1 / 120;
 
 /** One stroke of a replay: its data, and where the balls are at any time. */
@@ -63,7 +63,7 @@ class Stroke {
 		this.later = { x: places.filter((_, k) => k % 2 === 0), y: places.filter((_, k) => k % 2), on: flags(after.on_table) };
 	}
 
-	/** Which segment of a ball's log holds at time t; -1 before the first. There are tens of them: a search by halves would gain nothing. */
+	/** Which segment of a ball's log holds at time t; -1 before the first. There are tens: no need to halve. */
 	find(ball, t) { return this.logs[ball].findLastIndex(segment => segment.t0 <= t); }
 
 	/** [x, y, vx, vy, wx, wy, wz] at time t of a segment; the order of the arithmetic is that of the simulation. */
@@ -104,7 +104,7 @@ class Stroke {
 		return k < 0 ? known[0].q : this.rolled(log[k], known[k + 1], min(t, this.duration));
 	}
 
-	/** On from the start of a segment to time t: exact in one step where the axis stays, else by the middle of small steps. */
+	/** From the start of a segment to time t: in one exact step where the axis stays, else by the middles of small ones. */
 	rolled(segment, start, t) {
 		const { t0, state, wz } = segment;
 		if (state === GONE || t <= t0) return start.q;
@@ -320,7 +320,7 @@ export class TableView {
 		return [canvas, half];
 	}
 
-	/** The lamps as a ball at (x, y) mirrors them: two rows along the table, 1 m above it. */
+	/** The lamps in the mirror of a ball at (x, y): two rows along the table, 1 m above. */
 	lamps(x, y, px, py, radius) {
 		const { pen, scene: { extent: [[x0, x1], [y0, y1]] } } = this;
 		pen.beginPath();
@@ -461,7 +461,7 @@ export class TableView {
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 /** Seconds shown before a stroke, of the cue, and after it. */
 const LEAD = 0.9, PAUSE = 1.4;
-/** Key, what it does, what its button shows (an icon or a word; none: no button), the method, its argument. */
+/** Key, what it does, its button's icon or word (none: no button), method, argument. */
 const COMMANDS = [
 	["Shift ArrowLeft", "previous stroke", "back", "skip", -1], ["ArrowLeft", "previous event", "last", "step", -1], ["Space", "play or pause", "play", "toggle"],
 	["ArrowRight", "next event", "next", "step", 1], ["Shift ArrowRight", "next stroke", "on", "skip", 1], ["ArrowDown", "slower", "−", "faster", -1], ["ArrowUp", "faster", "+", "faster", 1],
@@ -476,8 +476,8 @@ const STYLE = `
 font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
 .sn *{box-sizing:border-box}.sn-fill{height:100%}
 .sn-stage{position:relative;min-height:0}.sn-stage canvas{position:absolute;width:100%;height:100%;touch-action:manipulation}
-.sn-score{display:flex;flex-wrap:wrap;background:var(--bar);border-top:3px solid var(--bar_accent);font-size:clamp(14px,1.5cqw,26px);line-height:2}
-.sn-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.sn-who{flex:1 1 30%;min-width:0;font-weight:600}.sn-now+.sn-who{flex-direction:row-reverse;text-align:right}
+.sn-score{display:flex;background:var(--bar);border-top:3px solid var(--bar_accent);font-size:clamp(14px,1.5cqw,26px);line-height:2}
+.sn-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.sn-who{flex:1 1 20%;min-width:0;font-weight:600}.sn-now+.sn-who{flex-direction:row-reverse;text-align:right}
 .sn-who span{flex:1;overflow:hidden;text-overflow:ellipsis;white-space:nowrap}.sn-who b{background:var(--text);color:var(--bar);line-height:1.5;min-width:2.6em;text-align:center}
 .sn-turn{background:var(--bar_edge)}.sn .sn-now{justify-content:center;flex-wrap:wrap;column-gap:1.4em;font-size:.8em}
 .sn i{display:inline-block;width:.85em;height:.85em;border-radius:50%;margin:0 1px;vertical-align:-.08em;box-shadow:inset 0 0 0 1px #fff6}
@@ -490,7 +490,7 @@ font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
 .sn [aria-pressed=true]{box-shadow:inset 0 -3px var(--bar_accent)}.sn svg{width:22px;fill:currentColor;vertical-align:middle}
 .sn:focus-visible,.sn :focus-visible{outline:2px solid var(--aim)}
 .sn-help{position:absolute;inset:0;margin:auto;padding:12px;background:var(--bar);border:1px solid var(--bar_edge)}.sn-help td{padding:2px 8px}
-@container (max-width:900px){.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}`;
+@container (max-width:900px){.sn-score{flex-wrap:wrap}.sn-who{flex-basis:30%}.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}`;
 
 /** A new element at the end of its parent. */
 const put = (parent, tag) => parent.appendChild(document.createElement(tag));
@@ -581,7 +581,7 @@ export class Player {
 	help() { this.part("help").toggleAttribute("hidden"); }
 
 	faster(way) {
-		this.speed = SPEEDS[SPEEDS.indexOf(this.speed) + way] ?? this.speed;
+		this.speed = (way > 0 ? SPEEDS.find(speed => speed > this.speed) : SPEEDS.findLast(speed => speed < this.speed)) ?? this.speed;
 		this.update();
 	}
 
@@ -684,7 +684,7 @@ export class Player {
 		this.options.ontime?.(this.t, this.k);
 	}
 
-	/** Words and buttons; they are left alone while they stay the same. */
+	/** Words and buttons, left alone while they stay the same. */
 	say() {
 		const { k, playing, speed, show, t, replay: { scene: { balls }, title } } = this, stroke = this.strokes[k], { cue } = stroke, over = t >= stroke.duration;
 		const event = !playing && stroke.events.findLast(one => one[0] === t && EVENTS[one[1]]), reds = this.shown.on.slice(1, 16).filter(Boolean).length;
