@@ -20,15 +20,15 @@ _POINTS = 16
 
 
 def line_width(scale: float) -> float:
-    """How wide a path is [pixels] at so many pixels a metre: 3.1 on the match table in a picture 1080 pixels high."""
-    return max(1.5, 0.0065 * scale)
+    """How wide a path is [pixels] at so many pixels a metre: 3.4 on the match table in a picture 1080 pixels high."""
+    return max(1.5, 0.0072 * scale)
 
 
 def draw_lines(surface: Any, lines: list[tuple[Floats, tuple[int, int, int]]], width: float, dash: float = 0.0) -> None:
     """Draw polylines (points (m, 2) [pixels], colour) one above the other; ``dash``: pixels of a line and of a gap."""
     for points, colour in lines:
         pieces = list(_pieces(points, dash))
-        edge = width + 2 * max(0.8, 0.4 * width)
+        edge = width + 2 * max(0.9, 0.45 * width)
         surface.fblits([_piece(piece, PALETTE["path_edge"], edge) for piece in pieces])
         surface.fblits([_piece(piece, colour, width) for piece in pieces])
 

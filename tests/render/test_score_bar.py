@@ -1,0 +1,131 @@
+"""Does the score bar say what it is given? Figures evenly set, balls of the break, whose turn it is, and nothing over anything else."""
+
+import numpy as np
+import pytest
+
+from snooker_env.game.balls import SPOTS
+from snooker_env.render import pygame_library
+from snooker_env.render.palette import COLOURS, PALETTE
+from snooker_env.render.pygame_bar import in_words, score_bar
+from snooker_env.render.pygame_library import BOLD, FONTS, MEDIUM, typeset
+from snooker_env.render.pygame_view import rgb_array
+from snooker_env.render.scene import ScoreBar, scene
+
+pytest.importorskip("pygame")
+FULL = {"break_points": 57, "potted": (1, 21, 2, 20), "reds_left": 8, "points_on": 91, "ball_on": "any colour", "words": "red 7, one point"}
+
+
+def pixels(bar, text="", width=1920, height=72):
+    import pygame
+
+    return pygame.surfarray.array3d(score_bar(bar, text, width, height)).transpose(1, 0, 2).astype(int)
+
+
+def where(one, two):
+    """Columns from the first to the last that differ."""
+    columns = np.flatnonzero(np.any(one != two, axis=(0, 2)))
+    return (int(columns[0]), int(columns[-1])) if len(columns) else None
+
+
+@pytest.mark.parametrize("file", [BOLD, MEDIUM])
+def test_figures_are_as_wide_as_each_other(file):
+    widths = {typeset(digit * 20, (255, 255, 255), 40, file).get_width() for digit in "0123456789"}
+    assert len(widths) == 1
+    assert typeset("iii", (255, 255, 255), 40, file).get_width() < typeset("mmm", (255, 255, 255), 40, file).get_width() / 2
+
+
+def test_the_typeface_is_small_free_and_says_so():
+    fonts = sorted(file.name for file in FONTS.iterdir())
+    assert fonts == ["Inter-Bold.otf", "Inter-Medium.otf", "OFL.txt", "README.md"]
+    assert sum(file.stat().st_size for file in FONTS.glob("*.otf")) < 80_000
+    licence = (FONTS / "OFL.txt").read_text()
+    assert "SIL OPEN FONT LICENSE Version 1.1" in licence and "Copyright 2016-2022 The Inter Project Authors" in licence
+    assert "DISCLAIMER" in licence and "OFL.txt" in (FONTS / "README.md").read_text()
+
+
+@pytest.mark.parametrize("letters", ["ÀÉÎÕÜßñçøåæ", "ŁőřžšđčęąŞİğ", "'“”–—…×−"])
+def test_names_of_many_languages_are_in_it(letters):
+    pygame_library.pygame_()
+    missing = [c for c in letters if np.array_equal(*(_ink(text) for text in (c, "\U0001f3b1")))]
+    assert not missing
+
+
+def _ink(text):
+    import pygame
+
+    drawn = pygame.surfarray.array_alpha(typeset(text, (255, 255, 255), 40)).astype(int)
+    return np.pad(drawn, ((0, 120 - drawn.shape[0]), (0, 120 - drawn.shape[1])))
+
+
+def test_the_bar_is_under_the_table_and_changes_nothing_else():
+    bare, said = (rgb_array(scene("match", SPOTS, bar=bar)) for bar in (None, ScoreBar(**FULL)))
+    assert np.array_equal(bare[:1008], said[:1008]) and np.any(bare[1008:] != said[1008:])
+    assert np.array_equal(said, rgb_array(scene("match", SPOTS, bar=ScoreBar(**FULL), text="not shown")))
+
+
+def test_balls_of_the_break_are_shown_in_order():
+    for potted in ((16,), (1, 16, 2, 17), (1, 21) * 15 + (16, 17, 18, 19, 20, 21)):
+        bar = pixels(ScoreBar(("Ann", "Bob"), (0, 0), break_points=1, potted=potted))
+        without = pixels(ScoreBar(("Ann", "Bob"), (0, 0), break_points=1))
+        left, right = where(bar, without)
+        assert left > 60 and right < 720
+        step = min(22.0, (right - left - 18) / max(len(potted) - 1, 1))
+        for k, ball in enumerate(potted):
+            x = left + 9.5 + k * step
+            if step > 18 or k == len(potted) - 1:  # not half hidden by the next
+                shown = bar[30:46, round(x) - 2 : round(x) + 3].reshape(-1, 3)
+                far = np.abs(shown[:, None] - COLOURS.astype(int)).sum(axis=2).min(axis=0)
+                assert far[ball] < 60 and far[ball] == far.min(), (k, ball)
+
+
+def test_each_thing_has_its_place():
+    """What changes when one thing changes lies where it belongs, and never over the rest."""
+    given = {"players": ("Ann", "Bob"), "scores": (41, 12), "striker": 0, **FULL}
+    full = pixels(ScoreBar(**given))
+    for change, low, high in [
+        ({"break_points": 58}, 20, 100), ({"potted": (1, 21, 2, 19)}, 100, 300), ({"words": "red 7, two points"}, 100, 700),
+        ({"scores": (42, 12)}, 860, 960), ({"scores": (41, 13)}, 960, 1060), ({"players": ("Eve", "Bob")}, 600, 870),
+        ({"striker": 1}, 600, 1300), ({"reds_left": 7}, 1600, 1890), ({"points_on": 90}, 1700, 1900),
+    ]:  # fmt: skip
+        left, right = where(full, pixels(ScoreBar(**{**given, **change})))
+        assert low <= left <= right < high, change
+    turn = [np.flatnonzero(np.all(bar[37] == PALETTE["bar_accent"], axis=1)) for bar in (full, pixels(ScoreBar(**{**given, "striker": 1})))]
+    assert turn[0].max() < 960 < turn[1].min()
+
+
+def test_what_is_too_long_is_cut():
+    names, others = (
+        ("A very long name of a player of snooker", "Another name that is quite as long"),
+        ("a ball that is on for " * 5, "words " * 50),
+    )
+    given = {**FULL, "potted": (1, 21) * 15 + tuple(range(16, 22)), "ball_on": others[0], "words": others[1]}
+    players = {"players": names, "scores": (147, 1000), "striker": 1}
+    middle = where(pixels(ScoreBar()), pixels(ScoreBar(**players)))
+    sides = np.any(pixels(ScoreBar(**players)) != pixels(ScoreBar(**players, **given)), axis=(0, 2))
+    assert 500 < middle[0] < 700 and 1220 < middle[1] < 1420 and sides.sum() > 500
+    assert not sides[middle[0] - 10 : middle[1] + 10].any()
+
+
+@pytest.mark.parametrize("given", [{}, {"players": ("Ann",), "scores": (7,)}, {"players": ("Ann", "Bob"), "scores": (7, 0)}])
+@pytest.mark.parametrize("width", [101, 400, 1000, 4000])
+def test_a_bar_of_any_size_and_with_anything_left_out(given, width):
+    for height in (7, 35, 36, 72, 200):
+        assert pixels(ScoreBar(**given), width=width, height=height).shape == (height, width, 3)
+        assert pixels(ScoreBar(**given, **FULL), width=width, height=height).shape == (height, width, 3)
+
+
+def test_a_low_bar_is_one_line_of_text():
+    bar = ScoreBar(("Ann", "Bob"), (41, 12), striker=1, break_points=16, ball_on="red", points_on=59, words="foul")
+    assert in_words(bar) == "Ann 41, Bob 12 · Bob to play · break 16 · red on · 59 left · foul"
+    assert in_words(ScoreBar()) == ""
+    assert np.array_equal(pixels(bar, height=30), pixels(None, in_words(bar), height=30))
+
+
+def test_a_bar_that_cannot_be_is_refused():
+    for given, field in [
+        ({"players": ("a", "b", "c"), "scores": (1, 2, 3)}, "players"), ({"players": ("a",)}, "scores"), ({"striker": 0}, "striker"),
+        ({"players": ("a",), "scores": (1,), "striker": 1}, "striker"), ({"potted": (0,)}, "potted"), ({"potted": (22,)}, "potted"),
+        ({"players": (1,), "scores": (1,)}, "players"),
+    ]:  # fmt: skip
+        with pytest.raises(ValueError, match=field):
+            ScoreBar(**given)
