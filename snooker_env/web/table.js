@@ -152,7 +152,7 @@ function unrest(strength) {
 	return canvas;
 }
 
-/** Fill what a pen has drawn; a filling may be a gradient with its stops [place, colour]. */
+/** Fill what a pen has drawn; a gradient comes with its stops [place, colour]. */
 function fill(pen, filling, ...stops) {
 	for (const [at, colour] of stops) filling.addColorStop(at, colour);
 	pen.fillStyle = filling;
@@ -208,7 +208,7 @@ export class TableView {
 		this.left = w / 2 - this.scale * (y0 + y1) / 2;
 		this.top = h / 2 - this.scale * (x0 + x1) / 2;
 		this.sprites = new Map();
-		this.still = null;
+		if (this.still?.width !== w || this.still?.height !== h) this.still = null;
 	}
 
 	/** CSS pixels on the canvas of a place [m]. */
@@ -381,7 +381,7 @@ export class TableView {
 		this.pen.drawImage(image, px - wide, py - wide, 2 * wide, 2 * wide);
 	}
 
-	/** A ball on its way into the pocket at hand: darker, smaller, towards the middle of the hole. */
+	/** A ball on its way into the pocket at hand: darker, smaller, further in. */
 	falling(x, y, depth, rgb) {
 		const [u, v] = this.scene.falls.find(fall => hypot(fall[0] - x, fall[1] - y) < 0.2) ?? [x, y];
 		this.pen.globalAlpha = 1 - depth;
@@ -482,7 +482,7 @@ font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
 .sn-turn{background:var(--bar_edge)}.sn .sn-now{justify-content:center;flex-wrap:wrap;column-gap:1.4em;font-size:.8em}
 .sn i{display:inline-block;width:.85em;height:.85em;border-radius:50%;margin:0 1px;vertical-align:-.08em;box-shadow:inset 0 0 0 1px #fff6}
 .sn-bar{position:relative;height:30px;margin:0 14px;cursor:pointer;touch-action:none}.sn-bar *{position:absolute;top:12px;height:6px;background:var(--bar_accent)}
-.sn-bar :first-child{width:100%;background:var(--bar_edge)}.sn-bar u{width:2px;background:var(--text_quiet)}.sn-bar b{top:6px;width:18px;height:18px;margin-left:-9px;border-radius:9px;background:var(--text)}
+.sn-bar :first-child{width:100%;background:var(--bar_edge)}.sn-bar u{width:2px;background:var(--text_quiet)}.sn-bar b{z-index:1;top:6px;width:18px;height:18px;margin-left:-9px;border-radius:9px;background:var(--text)}
 .sn-foot{display:flex;flex-wrap:wrap;align-items:center;gap:6px 10px;padding:0 10px 8px}.sn-foot>*{flex:1 1 250px}.sn-words{text-align:right}
 .sn-about{display:flex;align-items:center;gap:10px;min-height:50px;color:var(--text_quiet)}.sn-about canvas{width:50px;height:50px}
 .sn-foot .sn-keys{flex:0 1 auto;display:flex;flex-wrap:wrap;justify-content:center;gap:4px}.sn output{width:3.4em;line-height:40px;text-align:center}
@@ -673,7 +673,7 @@ export class Player {
 	/** [[x, y], ...] [m] of all balls as they are on screen. */
 	positions() { return Array.from(this.shown.x, (x, k) => [x, this.shown.y[k]]); }
 
-	/** Draw and say everything anew. */
+	/** Draw and say all anew. */
 	update() {
 		const sum = this.starts[this.k] + this.t;
 		this.shown = this.frame();

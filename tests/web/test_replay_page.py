@@ -235,6 +235,18 @@ def test_buttons_and_the_table(open_page):
     assert p.page.evaluate("getComputedStyle(document.activeElement).outlineStyle") == "solid"
 
 
+def test_touch(open_page):
+    p = open_page(viewport={"width": 360, "height": 640}, has_touch=True, is_mobile=True)
+    for playing in (True, False):
+        p.page.locator(".sn-stage canvas").tap()
+        assert p("p.playing") == playing
+    box = p.page.locator(".sn-bar").bounding_box()
+    p.page.touchscreen.tap(box["x"] + 0.7 * box["width"], box["y"] + box["height"] / 2)
+    assert p("(p.starts[p.stroke] + p.time) / p.total") == pytest.approx(0.7, abs=0.01)
+    p.page.get_by_label("next stroke").tap()
+    assert p("p.stroke") == 2
+
+
 def test_the_score_bar_says_what_the_referee_says(open_page, shown):
     data = shown[0]
     p = open_page()
