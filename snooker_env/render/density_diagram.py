@@ -10,7 +10,7 @@ from .._types import Floats, Vectors
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
-from .scene import extent
+from .outline import extent
 from .shot_diagram import View, window_of
 from .sketch import Sketch, rgb
 

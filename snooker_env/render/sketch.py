@@ -11,8 +11,8 @@ import numpy as np
 from .._types import Floats, Vector
 from ..game.balls import N_BALLS
 from ..physics.table import Table
+from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, extent, is_marked, outline
 from .palette import COLOURS, LETTERS, PALE, PALETTE
-from .scene import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, extent, is_marked, outline
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
