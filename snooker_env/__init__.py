@@ -3,14 +3,17 @@
 Public are the names in ``__all__`` of this package and of these modules of it; everything else may change in any version:
 
 * ``snooker_env.planning``: strokes tried on copies of positions, and the geometry that finds them
+* ``snooker_env.advice``: what a player would do at a position, and what would come of it
 * ``snooker_env.geometry``: where everything on a table is, and how large
 * ``snooker_env.game``: balls, values, what may be struck, layouts and the tables that they deal
 * ``snooker_env.tasks``: what actions, observations and errors of execution mean, in numbers
 * ``snooker_env.kernels``: for kernels of your own: how they are compiled, and the inner kernels that they may call
 * ``snooker_env.checks``: bad input reported as the package does
 * ``snooker_env.render``: the scene of a table, and its pictures
+* ``snooker_env.render.diagrams``: shots, options, fans and where a ball stops, drawn with matplotlib
 * ``snooker_env.tasks.saved_models``: what a model's file says of itself, read as plain data
 * ``snooker_env.replays``: what was played, as a page, as data and as a film
+* ``snooker_env.widget``: a replay in a notebook
 * ``snooker_env.sb3``: many tables for Stable-Baselines3
 """
 
@@ -31,6 +34,7 @@ from .simulation import simulate, simulate_batch
 
 if _typing.TYPE_CHECKING:
     from . import planning
+    from .advice import advise
     from .envs.snooker import SnookerEnv
     from .envs.vector import SnookerVectorEnv
     from .planning import Planner, Position, Positions
@@ -41,13 +45,14 @@ __version__ = "0.3.0.dev0"
 
 __all__ = [
     "POCKETS", "EventKind", "Options", "Physics", "Planner", "Pocket", "Position", "Positions", "RecordReplay", "Replay", "Shot",
-    "ShotBatch", "SimulationError", "SnookerEnv", "SnookerVectorEnv", "Table", "collide_balls", "collide_cushion", "match_env", "planning",
-    "replay", "simulate", "simulate_batch", "strike", "warmup",
+    "ShotBatch", "SimulationError", "SnookerEnv", "SnookerVectorEnv", "Table", "advise", "collide_balls", "collide_cushion", "match_env",
+    "planning", "replay", "simulate", "simulate_batch", "strike", "warmup",
 ]  # fmt: skip
 
 _LATER = {
     "Options": "tasks.options", "SnookerEnv": "envs.snooker", "SnookerVectorEnv": "envs.vector", "Planner": "planning",
     "Position": "planning", "Positions": "planning", "RecordReplay": "replays", "Replay": "replays", "replay": "replays",
+    "advise": "advice",
 }  # fmt: skip
 """Where the names are that are imported only when they are asked for: shots alone need no environment."""
 

@@ -85,6 +85,8 @@ def _film(args):
     width, x, height = (args.size or "x".join(map(str, SIZES[suffix]))).partition("x")
     if not (x and width.isdigit() and height.isdigit()):
         raise refuse("size", args.size, "must be WIDTHxHEIGHT, such as 1280x720")
+    if int(width) % 2 or int(height) % 2:
+        raise refuse("size", args.size, "must be WIDTHxHEIGHT, both even, as video encoders want them")
     rate = RATES[suffix] if args.fps is None else number("fps", args.fps, 0.0, 240.0, open_low=True)
     speed = number("speed", args.speed, 0.0, 100.0, open_low=True)
     return {"size": (int(width), int(height)), "fps": rate, "speed": speed}

@@ -13,12 +13,11 @@ from gymnasium import spaces
 
 from snooker_env.game import BallOn
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
-from snooker_env.planning import Planner, Positions
+from snooker_env.planning import RULE_OF_THUMB, Planner, Positions, prospects_of, spread_of
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
 from .noise_samples import NOISE_SAMPLES
 from .pot_features import SHOWN, with_pots
-from .prospects import RULE_OF_THUMB, prospects_of, spread_of
 
 POTS_SEEN = 2
 SEEN_SPEEDS, SEEN_TOPS = (1, 3, 5, 7), (0, 2, 4)

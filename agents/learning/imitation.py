@@ -15,9 +15,7 @@ from collections import deque
 import numpy as np
 import torch
 
-from snooker_env.planning import Planner
-
-from ..features.prospects import prospects_of, spread_of
+from snooker_env.planning import Planner, prospects_of, spread_of
 
 TRIES = 48
 """Choices tried in each position: half of them the learner's best, half at random. Where there are no more than half of them, each is tried

@@ -2,14 +2,17 @@
 
 A player says with ``options`` how it wants its tables (``SnookerEnv`` arguments), and ``act(tables, observations, going)`` gives an action
 for each of the n tables of a ``SnookerVectorEnv`` with flat observations. Only the tables ``going`` (n,) bool matter; the others get any.
+
+A player that compares strokes may say how: ``rank(tables, observations, going)`` gives for each table going its actions, best first, and
+its own score of each, a list of (actions, scores). Its first is the one that it plays. ``sn.advise`` shows them.
 """
 
 from typing import Any
 
 import numpy as np
 
-from snooker_env.planning import Positions
-from snooker_env.tasks import CHOICES, SIDES, SPEEDS, TOPS, choice_of
+from snooker_env.planning import Positions, pots
+from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
 from ..features.lookahead_features import PICKS, ForesightView, worth_by_rule
 from .aim_search import Aimer
@@ -45,6 +48,12 @@ class GhostBall:
         """The same stroke at every table's widest pot."""
         return np.full(len(going), self._stroke)
 
+    def rank(self, tables, observations, going):
+        """The same stroke at every pot of each table going, widest first; the score is the tolerance of its aim [rad]."""
+        found = pots(Positions.of(tables)[going])
+        there = [max(1, many) for many in (found.ball >= 0).sum(axis=1).tolist()]
+        return [(self._stroke + STROKES * np.arange(many), found.tolerance[k, :many]) for k, many in enumerate(there)]
+
 
 class Lookahead:
     """What ``ppo_foresight`` sees, rated by a rule of thumb instead of a network: the mean of points and the value of what is left."""
@@ -56,10 +65,22 @@ class Lookahead:
 
     def act(self, tables, observations, going):
         """The stroke that promises most at each table going."""
-        at, picks = Positions.of(tables)[going], np.zeros(len(going), np.int64)
-        masks = tables.action_masks()[going][:, PICKS]
-        picks[going] = PICKS[worth_by_rule(self._foresight.ahead(tables, at, masks)).argmax(1)]
+        picks = np.zeros(len(going), np.int64)
+        picks[going] = PICKS[self._worth(tables, going).argmax(1)]
         return picks
+
+    def rank(self, tables, observations, going):
+        """The strokes looked at on each table going, best first; the score is what each promises [points]."""
+        ranked = []
+        for worth in self._worth(tables, going):
+            order = np.argsort(-worth, kind="stable")[: max(1, np.isfinite(worth).sum())]
+            ranked.append((PICKS[order], worth[order]))
+        return ranked
+
+    def _worth(self, tables, going):
+        """What the picks promise on each table going [points]; -inf where there is no such pot."""
+        at, masks = Positions.of(tables)[going], tables.action_masks()[going][:, PICKS]
+        return worth_by_rule(self._foresight.ahead(tables, at, masks))
 
 
 class Geometric:

@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.planning import Planner, Positions, action_masks, pots, processors
+from snooker_env.planning import RULE_OF_THUMB, SURE, Planner, Positions, action_masks, pots, processors, prospects_of, spread_of
 from snooker_env.tasks import STROKES, TOPS, choice_of
 
 from ..features.pot_features import with_pots
-from ..features.prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 
 KEEP = 3
 """Of a round's candidates one in so many goes on to the next."""
@@ -51,19 +50,26 @@ class Search:
 
     def act(self, tables, observations, going):
         """The shot found for each table that is going."""
+        actions = np.zeros((tables.num_envs, 4), np.float32)
+        for k, (found, _) in zip(np.flatnonzero(going).tolist(), self.rank(tables, observations, going), strict=True):
+            actions[k] = found[0]
+        return actions
+
+    def rank(self, tables, observations, going):
+        """The finalists on each table going, best first; the score is what each is worth [points]."""
         if self._tables is not tables:
             self._tables, self._workers = tables, [_Worker(self, tables) for _ in range(self._threads)]
-        actions, positions = np.zeros((tables.num_envs, 4), np.float32), Positions.of(tables)
+        ranked, positions = {}, Positions.of(tables)
 
         def search(worker, own):
             for k in own:
-                actions[k] = worker.best(positions[k : k + 1], np.random.default_rng((self._seed, self._decisions, k)))
+                ranked[k] = worker.ranked(positions[k : k + 1], np.random.default_rng((self._seed, self._decisions, k)))
 
         wanted = np.flatnonzero(going).tolist()
         with ThreadPoolExecutor(self._threads) as pool:
             list(pool.map(search, self._workers, (wanted[i :: self._threads] for i in range(self._threads))))
         self._decisions += 1
-        return actions
+        return [ranked[k] for k in wanted]
 
 
 class _Worker:
@@ -80,8 +86,14 @@ class _Worker:
         values, chances = prospects_of(left, self._spread, SURE if self._sure else RULE_OF_THUMB)
         return values if self._value is None else np.asarray(self._value(with_pots(observations)), np.float64), chances
 
-    def best(self, at, rng):
-        """The action to play at the one position ``at``."""
+    def ranked(self, at, rng):
+        """The finalists at the one position ``at``, best first: actions and what each is worth."""
+        candidates, scores = self._finalists(at, rng)
+        order = np.argsort(-scores, kind="stable")
+        return candidates[order], scores[order]
+
+    def _finalists(self, at, rng):
+        """The actions that were compared last, and what each is worth."""
         if self._sure:
             return self._exactly(at, rng)
         deep = int(DEEP * self.budget) if self.budget >= 200 else 0
@@ -108,10 +120,10 @@ class _Worker:
             candidates, sums = candidates[keep], sums[keep]
         if deep and records is not None:
             scores = self._second(scores, records, self.budget - spent, rng)
-        return candidates[np.argmax(scores)]
+        return candidates, scores
 
     def _exactly(self, at, rng):
-        """The best action without execution noise: one simulation of a candidate is enough, so more of them are searched two shots deep."""
+        """The finalists without execution noise: one simulation of a candidate is enough, so more of them are searched two shots deep."""
         candidates = self._candidates(at, max(1, self.budget // 2), self.budget, rng)
         n = len(candidates)
         points, goes_on, left, seen = self.exact.play(at, np.zeros(n, np.int64), candidates)
@@ -121,8 +133,8 @@ class _Worker:
         if len(keep):
             records = (points[keep, None], goes_on[keep, None], left[keep], chances[keep])
             better = self._second(scores[keep], records, self.budget - n, rng)
-            return candidates[keep[np.argmax(better)]]
-        return candidates[np.argmax(scores)]
+            return candidates[keep], better
+        return candidates, scores
 
     def _candidates(self, at, most, without_pots, rng):
         """At most so many strokes at the direct pots, evenly from all pots; where there is none, so many random shots at the balls on."""

@@ -7,6 +7,8 @@ sb3-contrib is a file whose pickles run when it is loaded: ``load_other``, with 
 import inspect
 
 import numpy as np
+import torch
+from gymnasium import spaces
 
 from snooker_env import SnookerVectorEnv
 from snooker_env.checks import integer, number
@@ -41,6 +43,18 @@ class ModelPlayer:
         actions = np.zeros(tables.action_space.shape, tables.action_space.dtype)
         actions[going] = self.model.policy.predict(seen, deterministic=True, **masks)[0]
         return actions
+
+    def rank(self, tables, observations, going):
+        """The choices of a masked policy, the likeliest first, with their probabilities; of any other its own action, without a score."""
+        if not self._masked or not isinstance(tables.single_action_space, spaces.Discrete):
+            return [(action[None], None) for action in self.act(tables, observations, going)[going]]
+        policy, masks = self.model.policy, self._view.masks(tables)[going]
+        seen, _ = policy.obs_to_tensor(self._view(tables, observations[going], going))
+        with torch.no_grad():
+            shares = policy.get_distribution(seen, action_masks=masks).distribution.probs.cpu().numpy()
+        orders = np.argsort(np.where(masks, -shares, np.inf), axis=1, kind="stable")
+        counts = masks.sum(axis=1).tolist()
+        return [(order[:many], share[order[:many]]) for order, share, many in zip(orders, shares, counts, strict=True)]
 
 
 def player_options(env_options):

@@ -1,7 +1,8 @@
 """Planning: many strokes played on copies of positions, by the rules, under given noise samples, and the geometry that finds strokes.
 
 A planner asks three questions. Which strokes are there (``pots``, ``action_masks``, ``obstructions``, ``clear_paths``)? What is each one
-as an action (``as_actions``, ``actions_of``, ``pot_aim``)? What does it lead to (``Planner.play``)? What is left is valued by the caller.
+as an action (``as_actions``, ``actions_of``, ``pot_aim``)? What does it lead to (``Planner.play``; ``Planner.stops`` also says where each
+ball stopped)? What is left is valued by the caller, or by a rule of thumb (``prospects_of``).
 
 >>> import snooker_env as sn
 >>> from snooker_env.planning import Planner, Position, pots
@@ -19,9 +20,11 @@ from .geometry import Paths, Pots, clear_paths, obstructions, pots
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
+from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
+from .stops import Stops
 from .strokes import action_masks, actions_of, as_actions, pot_aim
 
 __all__ = [
-    "Outcomes", "Paths", "Planner", "Position", "Positions", "Pots", "action_masks", "actions_of", "as_actions", "clear_paths",
-    "obstructions", "pot_aim", "pots", "processors",
+    "RULE_OF_THUMB", "SURE", "Outcomes", "Paths", "Planner", "Position", "Positions", "Pots", "Stops", "action_masks", "actions_of",
+    "as_actions", "clear_paths", "obstructions", "pot_aim", "pots", "processors", "prospects_of", "spread_of",
 ]  # fmt: skip

@@ -17,10 +17,12 @@ from ..tasks.box_actions import Actions
 from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
+from ..tasks.tables import I_FIRST, I_PENALTY, StepOutput
 from ..tasks.threads import Threads, processors
 from ..tasks.visit import Visits
 from . import strokes
 from .positions import Positions, PositionsLike, bare, check_played, rows_of
+from .stops import Stops, WatchedVisits
 
 
 class Outcomes(NamedTuple):
@@ -87,7 +89,7 @@ class Planner:
         errors = rules.noise if noise is None else Noise.of(noise)
         self._rules = replace(rules, noise=errors, reward=REWARDS[0], opponent=None)
         self._threads = Threads(min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024))
-        self._visits = Visits(self._rules, 0)
+        self._visits, self._watched = Visits(self._rules, 0), WatchedVisits(self._rules, 0)
         self._lock = threading.Lock()
         self._shots = 0
 
@@ -160,25 +162,59 @@ class Planner:
         -----
         May be called from several threads at once. A stroke costs about 20 us; below a few dozen strokes a call the checks count too.
         """
+        after, out = self._strokes(copy.copy(self._visits), positions, rows, actions, keys)
+        return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
+
+    def stops(
+        self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers, keys: Integers | Sequence[Integers] | None = None
+    ) -> Stops:
+        """Play n strokes as ``play`` does, and keep where each ball stopped.
+
+        Parameters
+        ----------
+        positions, rows, actions, keys
+            As of ``play``.
+
+        Returns
+        -------
+        Stops
+
+        Raises
+        ------
+        ValueError, SimulationError
+            As ``play``.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Planner, Position
+        >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+        >>> stops = Planner({"action": "discrete"}).stops(position, [0], [67])
+        >>> int(stops.first[0]), int(stops.potted[0, 21])
+        (21, 3)
+        """
+        visits = copy.copy(self._watched)
+        after, out = self._strokes(visits, positions, rows, actions, keys)
+        first, penalty = out.counts[:, I_FIRST].copy(), out.counts[:, I_PENALTY].copy()
+        return Stops(visits.places, visits.potted, first, out.reals[:, 0].copy(), penalty, ~after.over, after)
+
+    def _strokes(
+        self, visits: Visits, positions: PositionsLike, rows: Integers, actions: Vectors | Integers,
+        keys: Integers | Sequence[Integers] | None,
+    ) -> tuple[Positions, StepOutput]:  # fmt: skip
+        """Check and play strokes on fresh ``visits``, each on a copy of its position: the afterstates, and what a step returns of them."""
         at = Positions.of(positions)
         which = rows_of(at, rows)
         n = len(which)
         rows_of_actions = self._rules.actions.check_many(actions, n)
         streams = _streams(keys, n, self.noise.silent)
         check_played(at, which, self.table, self.physics.R)
-        outcomes = self._strokes(at[which], rows_of_actions, streams)
-        with self._lock:
-            self._shots += n
-        return outcomes
-
-    def _strokes(self, after: Positions, actions: NDArray[np.float64], streams: NDArray[np.uint64]) -> Outcomes:
-        """Play a stroke on each row of ``after``, which becomes its afterstate. The one place that knows how visits are played."""
-        n = len(after)
-        visits = copy.copy(self._visits)
+        after = at[which]  # the one place that knows how visits are played: each row becomes its afterstate
         visits.n, visits.positions, visits.on_table, visits.game, visits.streams = n, after.positions, after.on_table, after.game, streams
         out = visits.output()
-        visits.step(actions, np.zeros(n, np.bool_), out, self._threads)
-        return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
+        visits.step(rows_of_actions, np.zeros(n, np.bool_), out, self._threads)
+        with self._lock:
+            self._shots += n
+        return after, out
 
     def as_actions(self, positions: PositionsLike, rows: Integers, choices: Integers) -> NDArray[np.float32]:
         """``snooker_env.planning.as_actions`` in this planner's world.

@@ -1,7 +1,8 @@
 """How does one write down a position? ``Position``: the balls by name and what is on, checked; and the arrays that it stands for."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import InitVar, asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -168,6 +169,82 @@ class Position:
         for name in ("cue", *COLOUR_NAMES):
             kept[name] = kept[name] and list(kept[name])
         return {name: value for name, value in kept.items() if value is not None}
+
+    @classmethod
+    def from_dict(cls, given: Mapping[str, Any], *, table: TableLike = "match") -> "Position":
+        """The position that ``to_dict`` has described.
+
+        Parameters
+        ----------
+        given : dict
+            Fields of ``Position`` as JSON types. A ball that is left out, or None, is off the table.
+        table : str, Table or None
+            As of ``Position``.
+
+        Returns
+        -------
+        Position
+
+        Raises
+        ------
+        ValueError
+            For an unknown key, and as ``Position``.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Position
+        >>> Position.from_dict({"cue": [0.0, 0.0], "black": [0.0, 1.4605]}).on
+        'black'
+        """
+        from . import position_file  # which needs this module
+
+        return position_file.of_dict(given, table)
+
+    def save(self, path: str | Path) -> None:
+        """Write the position to a file, as small JSON: that of ``to_dict``.
+
+        Parameters
+        ----------
+        path : str or Path
+            An old file of that name is replaced, at once and whole.
+
+        Returns
+        -------
+        None
+
+        Raises
+        ------
+        OSError
+            If it cannot be written.
+        """
+        from . import position_file
+
+        position_file.write(self, path)
+
+    @classmethod
+    def load(cls, path: str | Path, *, table: TableLike = "match") -> "Position":
+        """Read a position from a file of ``save``.
+
+        Parameters
+        ----------
+        path : str or Path
+        table : str, Table or None
+            The table that the balls must fit on, as of ``Position``.
+
+        Returns
+        -------
+        Position
+
+        Raises
+        ------
+        ValueError
+            If the file does not hold the JSON of a position: the message names the key that is unknown, or the ball that is wrong.
+        OSError
+            If it cannot be read.
+        """
+        from . import position_file
+
+        return position_file.read(path, table)
 
 
 def _named(on: Any, balls: int) -> str:

@@ -76,7 +76,8 @@ class Positions:
         ----------
         source : environment, Positions, Position, dict, or a sequence of the last two
             An environment of one table or many, wrapped or not, gives where it stands now, a visit that has ended too; one that plays a
-            whole frame or a match gives the stroke to come as one of a visit. A dict is a state of ``get_state()`` of a visit.
+            whole frame or a match gives the stroke to come as one of a visit. A dict is a state of ``get_state()`` of a visit, or a
+            ``Position.to_dict()``.
 
         Returns
         -------
@@ -185,6 +186,8 @@ def _arrays(one: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[n
     if isinstance(one, Position):
         return one.arrays()
     names = ("positions", "on_table", "ball_on", "in_hand", "points", "over")
+    if {"cue", "reds", "on"} & one.keys() and "positions" not in one:
+        return Position.from_dict(one).arrays()
     if missing := [name for name in names if name not in one]:
         raise refuse_what("state", f"a dict without {missing}", "must be a state of get_state() of a visit")
     game = np.array([*(int(one[name]) for name in names[2:]), 0], np.int64)

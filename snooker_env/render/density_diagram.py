@@ -11,7 +11,7 @@ from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
 from .outline import extent
-from .shot_diagram import View, window_of
+from .shot_diagram import View, region_of
 from .sketch import Sketch, rgb
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def density(
         raise refuse("shares", list(shares), "must each be below 1")
     wide = bandwidth_of(sound) if bandwidth is None else number("bandwidth", bandwidth, 1e-4, 1.0)
     table = Table.of(table)
-    sketch = Sketch(table, table.ball_radius or BALL_RADIUS, window_of(view, sound, table), ax)
+    sketch = Sketch(table, table.ball_radius or BALL_RADIUS, region_of(view, sound, table), ax)
     sketch.title(title)
     _draw_balls(sketch, position)
     _draw_cloud(sketch, sound, wide, lines, colour)
@@ -178,16 +178,17 @@ def _draw_cloud(sketch, points, bandwidth, shares, colour):
             lines = sketch.ax.contour(ys, xs, values, levels=[level], **style)
             lines.set_gid(f"share-{share:g}")
             lines.set_path_effects([withStroke(linewidth=2.6, foreground=rgb("path_edge", 0.6))])
-            _label(sketch, lines, share)
+            _label(sketch, lines, share, outer=share == max(shares))
 
 
-def _label(sketch, lines, share):
-    """How much a line holds, at its rightmost point."""
+def _label(sketch, lines, share, *, outer):
+    """How much a line holds, at its rightmost point; of one within another at its leftmost."""
     from matplotlib.patheffects import withStroke
 
     ring = max(lines.get_paths()[0].to_polygons(closed_only=False), key=len, default=None)
     if ring is not None and len(ring):
-        y, x = ring[np.argmax(ring[:, 0])]
+        y, x = ring[np.argmax(ring[:, 0]) if outer else np.argmin(ring[:, 0])]
         stroke = [withStroke(linewidth=2.0, foreground=rgb("path_edge", 0.8))]
-        away = y + 0.4 * sketch.font / sketch.points_per_metre
-        sketch.text(away, x, f"{100 * share:g} %", size=0.9, zorder=8.5, gid="share", path_effects=stroke)
+        away, side = (0.4, "left") if outer else (-0.4, "right")
+        y += away * sketch.font / sketch.points_per_metre
+        sketch.text(y, x, f"{100 * share:g} %", size=0.9, zorder=8.5, gid="share", path_effects=stroke, ha=side)

@@ -32,17 +32,19 @@ ALLOWED = {
     "kernels": {"_jit", "game", "tasks"},
     "geometry": {"_check", "_types"},
     "physics": BASE,
-    "shot": BASE | {"physics"},
+    "shot": BASE | {"physics", "render"},
     "impacts": BASE | {"physics", "shot"},
     "simulation": BASE | {"physics", "shot"},
     "game": BASE,
     "tasks": BASE | {"physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
+    "advice": BASE | {"physics", "simulation", "game", "tasks", "planning", "envs"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render", "replays"},
-    "replays": BASE | {"physics", "simulation", "game", "tasks", "render"},
-    "render": {"_check", "_types", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
+    "replays": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
+    "render": BASE - {"_jit"} | {"physics", "game.balls", "impacts", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
+    "widget": {"_check", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
     "__init__": {
         "geometry",
@@ -52,6 +54,7 @@ ALLOWED = {
         "simulation",
         "tasks",
         "planning",
+        "advice",
         "envs",
         "match",
         "replays",
@@ -62,15 +65,18 @@ ALLOWED = {
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
     "pygame": {"render"},
+    "matplotlib": {"render", "shot"},
     "pettingzoo": {"envs"},
     "imageio_ffmpeg": {"replays"},
+    "anywidget": {"widget"},
+    "traitlets": {"widget"},
 }
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "abc", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools",
-    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "subprocess", "sys", "tempfile",
+    "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "re", "subprocess", "sys", "tempfile",
     "textwrap", "threading", "time", "types", "typing", "warnings", "zipfile", "zlib",
 }  # fmt: skip
 
@@ -135,11 +141,13 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
         if library in ALWAYS | STANDARD:
             continue
         assert part in OUTSIDE.get(library, ()), f"{name} imports {library}"
-        if library in ("pygame", "stable_baselines3", "sb3_contrib") and part != "sb3":  # sb3.py itself is only loaded when it is wanted
+        if (
+            library in ("pygame", "matplotlib", "stable_baselines3", "sb3_contrib") and part != "sb3"
+        ):  # sb3.py itself is only loaded when it is wanted
             assert not top, f"{name} imports {library} when it is imported, not when it is wanted"
 
 
-LATE = {"envs": (".render", ".planning", ".replays"), "_warmup": (".planning", ".envs")}
+LATE = {"shot": (".render",), "envs": (".render", ".planning", ".replays"), "_warmup": (".planning", ".envs")}
 """What these parts import only when it is asked for."""
 
 

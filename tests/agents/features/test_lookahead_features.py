@@ -4,12 +4,12 @@ import numpy as np
 from positions import tables
 
 from agents.evaluation.rollouts import play, summary
-from agents.features import lookahead_features, pot_features, prospects
+from agents.features import lookahead_features, pot_features
 from agents.features.noise_samples import NOISE_SAMPLES, errors_of, find, unevenness
 from agents.players.built_in import DISCRETE, GhostBall
 from agents.players.by_name import player_of
 from snooker_env.game.balls import BallOn
-from snooker_env.planning import Planner, Positions
+from snooker_env.planning import Planner, Positions, prospects
 from snooker_env.tasks.discrete_actions import SIZE
 from snooker_env.tasks.visit import BALL_ON
 

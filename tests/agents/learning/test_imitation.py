@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 import torch
 
-from agents.features.prospects import prospects_of, spread_of
 from agents.features.views import training_tables
 from agents.learning import imitation
 from agents.learning.hyperparameters import Recipe
 from agents.learning.imitation import Expert, Imitation, to_try
-from snooker_env.planning import Positions
+from snooker_env.planning import Positions, prospects_of, spread_of
 from snooker_env.tasks.discrete_actions import SIZE, STROKES
 
 

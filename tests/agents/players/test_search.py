@@ -5,11 +5,11 @@ import pytest
 from positions import tables
 
 from agents.evaluation.rollouts import play, summary
-from agents.features import pot_features, prospects
+from agents.features import pot_features
 from agents.players.built_in import DISCRETE, GhostBall, Random
 from agents.players.by_name import player_of
 from agents.players.search import Search, _Worker
-from snooker_env.planning import Positions, action_masks
+from snooker_env.planning import Positions, action_masks, prospects
 from snooker_env.tasks.discrete_actions import STROKES
 from snooker_env.tasks.noise import Noise
 
@@ -74,7 +74,7 @@ def thought():
 def test_the_second_shot_decides(thought, monkeypatch):
     """Scores turned round by it: another shot is played. It has 0.4 of the budget, and what was left."""
     at, mind = thought
-    own, asked = mind.best(at, np.random.default_rng(1)), []
+    own, asked = mind.ranked(at, np.random.default_rng(1))[0][0], []
     assert mind.exact.shots > 0.3 * 2000 and mind.noisy.shots + mind.exact.shots <= 2000
 
     def turned_round(self, scores, records, budget, rng):
@@ -82,7 +82,7 @@ def test_the_second_shot_decides(thought, monkeypatch):
         return -scores
 
     monkeypatch.setattr(_Worker, "_second", turned_round)
-    assert not np.array_equal(mind.best(at, np.random.default_rng(1)), own)
+    assert not np.array_equal(mind.ranked(at, np.random.default_rng(1))[0][0], own)
     ((finalists, budget),) = asked
     assert finalists == 6 and budget >= 800
 
@@ -122,7 +122,7 @@ def test_all_candidates_of_a_round_meet_the_same_errors(thought, monkeypatch):
         return play_on(at, rows, actions, keys)
 
     monkeypatch.setattr(mind.noisy, "play", watched)
-    mind.best(at, np.random.default_rng(1))
+    mind.ranked(at, np.random.default_rng(1))
     assert len(rounds) > 2
     for actions, keys in rounds:
         n = len(np.unique(actions, axis=0))

@@ -4,11 +4,16 @@ from concurrent.futures import ThreadPoolExecutor
 from math import erf, exp, radians, sqrt
 
 import numpy as np
+from numpy.typing import NDArray
 
-from snooker_env.game import N_BALLS, VALUES, BallOn
-from snooker_env.geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
-from snooker_env.kernels import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, balls_on, bits, entry, find_pots
-from snooker_env.tasks import POTS
+from .._jit import entry
+from ..game.balls import N_BALLS, VALUES, BallOn, balls_on_kernel, bits
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
+from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
+from ..physics.parameters import PhysicsLike
+from ..tasks.discrete_actions import POTS
+from ..tasks.noise import Noise
+from .positions import Positions
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
 
@@ -37,7 +42,7 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
     for k in range(len(values)):
         chances[k, :] = 0.0
         values[k] = 0.0
-        p, on = positions[k], balls_on(ball_on[k], bits(on_table[k]))
+        p, on = positions[k], balls_on_kernel(ball_on[k], bits(on_table[k]))
         many = find_pots(p, on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
         left = 7.0 if ball_on[k] == _ANY_COLOUR else 0.0  # points: a black for each red, and after a red that was potted
         for i in range(1, N_BALLS):
@@ -62,21 +67,68 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
         values[k] = a + second * b + third * c
 
 
-def spread_of(noise, physics):
-    """Standard deviation [rad] of the cue ball's direction under a ``Noise``, tip errors included; at least 1e-5."""
+def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
+    """Standard deviation of the cue ball's direction, tip errors included; at least 1e-5.
+
+    Parameters
+    ----------
+    noise : Noise
+    physics : None, str, dict or Physics
+
+    Returns
+    -------
+    float
+        [rad]
+
+    Examples
+    --------
+    >>> from snooker_env.planning import spread_of
+    >>> from snooker_env.tasks import LEVELS
+    >>> round(spread_of(LEVELS["club"]) * 1e3, 2)
+    1.99
+    """
     return max(1e-5, radians(noise.direction_deg(physics)))
 
 
-def prospects_of(at, spread, constants=RULE_OF_THUMB, most=POTS, threads=1):
-    """What ``Positions`` promise to a player whose aim errs by ``spread`` [rad] (``spread_of``), by the rule of thumb ``constants``.
+def prospects_of(
+    at: Positions, spread: float, constants: tuple[float, float, float, float] = RULE_OF_THUMB, most: int = POTS, threads: int = 1
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """What positions promise to a player whose aim errs by ``spread``, by a rule of thumb.
 
-    Returns their values (n,) [points] and the chances (n, most) to make each of the widest pots. Any number of threads gives the same.
+    A pot's chance is that of an error of the direction within its tolerance, less for long runs of the balls; its worth that chance times
+    its points and what may follow. A position is worth its best pot and a little of the second and the third.
+
+    Parameters
+    ----------
+    at : Positions
+    spread : float
+        As ``spread_of`` gives it [rad].
+    constants : (float, float, float, float)
+        ``RULE_OF_THUMB``, or ``SURE`` for a player without errors.
+    most : int
+        How many chances.
+    threads : int
+        Any number of them gives the same.
+
+    Returns
+    -------
+    values : float64 (n,)
+        Worth of the positions [points].
+    chances : float64 (n, most)
+        To make each of the widest pots, in the order of ``pots``.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, Positions, prospects_of
+    >>> values, chances = prospects_of(Positions.of(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))), 1e-3)
+    >>> bool(values[0] > 0), chances.shape
+    (True, (1, 4))
     """
     n = len(at)
     values, chances, ball_on = np.empty(n), np.empty((n, most)), at.ball_on.copy()
     threads = min(threads, n // WORTH_A_THREAD)
 
-    def fill(first, last):
+    def fill(first: int, last: int) -> None:
         here = slice(first, last)
         _prospects(at.positions[here], at.on_table[here], ball_on[here], spread, constants, values[here], chances[here])
 

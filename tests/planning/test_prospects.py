@@ -7,12 +7,11 @@ import pytest
 from positions import tables
 from scipy.stats import norm
 
-from agents.features import prospects
 from snooker_env.game.balls import BLACK, CUE, PINK, BallOn, mask_of
 from snooker_env.game.pots import pots
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.physics.parameters import Physics
-from snooker_env.planning import Positions
+from snooker_env.planning import Positions, prospects
 from snooker_env.tasks.noise import Noise
 from snooker_env.tasks.visit import BALL_ON
 

@@ -1,0 +1,24 @@
+"""Advice: what a player would do at a position, and what would come of it under errors of execution, as data and in words.
+
+>>> import snooker_env as sn
+>>> position = sn.Position(cue=(0.25, 0.6), reds=[(-0.4, 1.3)], black=(0.0, 1.4605), on="red")
+>>> advice = sn.advise(position, n=2, samples=40, visits=8)
+>>> print(advice[0].words)  # doctest: +ELLIPSIS
+red, top left, ... m/s, ..., chance ... %, ... points expected
+
+A pocket is an index of ``snooker_env.POCKETS``. In words the pockets are the green pocket, the yellow pocket, right middle, top right, top
+left and left middle: left and right as seen from baulk, looking to the black end, so right is the yellow side (+x).
+"""
+
+from .advisor import Advisor
+from .ask import advise, stroke_of
+from .destinations import Destinations, destinations
+from .players import names, player_of
+from .strokes import CueStroke
+from .suggestions import Advice, Suggestion
+from .words import POCKET_WORDS
+
+__all__ = [
+    "POCKET_WORDS", "Advice", "Advisor", "CueStroke", "Destinations", "Suggestion", "advise", "destinations", "names", "player_of",
+    "stroke_of",
+]  # fmt: skip

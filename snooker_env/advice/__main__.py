@@ -1,0 +1,47 @@
+"""What would a player do at a position in a file? ``python -m snooker_env.advice --position FILE --agent NAME`` prints its strokes."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+
+from ..planning import Position
+from ..tasks.noise import LEVELS
+from .ask import advise
+from .players import names
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Print advice. Exit code 0; 2 for wrong arguments and files, with one line that says what is wrong."""
+    parser = argparse.ArgumentParser("python -m snooker_env.advice", description="What would a player do here, and what would come of it?")
+    parser.add_argument("--position", required=True, metavar="FILE", help="JSON of a position: Position.save, or by hand")
+    parser.add_argument("--agent", default="lookahead", help=f"{', '.join(names())}, a model's .zip or MODULE:CLASS (default: lookahead)")
+    parser.add_argument("--noise", default="professional", help=f"{', '.join(LEVELS)} (default: professional)")
+    parser.add_argument("--n", type=int, default=5, help="strokes at most (default: 5)")
+    parser.add_argument("--samples", type=int, default=200, help="how often each is played (default: 200)")
+    parser.add_argument("--visits", type=int, default=60, help="visits of each that are played on (default: 60)")
+    parser.add_argument("--seed", type=int, default=0, help="of the noise samples (default: 0)")
+    parser.add_argument("--json", action="store_true", help="all figures as JSON")
+    parser.add_argument("--trust", action="store_true", help="whether code in a model's file may run")
+    given = parser.parse_args(argv)
+    try:
+        advice = advise(
+            Position.load(given.position), agent=given.agent, noise=given.noise, n=given.n, samples=given.samples, visits=given.visits,
+            seed=given.seed, trust=given.trust,
+        )  # fmt: skip
+    except (ValueError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    if given.json:
+        print(json.dumps(advice.to_dict(), indent=1))
+        return 0
+    for k, one in enumerate(advice, 1):
+        (low, high), (least, most) = one.chance_interval, one.points_interval
+        print(f"{k}. {one.words}")
+        print(f"   chance {100 * low:.0f} to {100 * high:.0f} %, points {least:.1f} to {most:.1f} (95 %)", end="")
+        print("" if one.stops is None else f"; cue ball stops at ({one.stops[0]:.2f}, {one.stops[1]:.2f}) m, spread {one.spread:.2f} m")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

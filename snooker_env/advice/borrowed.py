@@ -1,0 +1,105 @@
+"""How is any other player asked for advice? ``Borrowed`` deals it the position on a table of its own and reads its action as a stroke.
+
+A player says with ``options`` how its actions are read, and ``act(tables, observations, going)`` gives one for each table of a
+``SnookerVectorEnv`` with flat observations. If it has a method ``rank(tables, observations, going)`` too, that gives for each table going
+the actions that it considered, best first, and its own score of each: a list of (actions, scores).
+"""
+
+from math import atan2
+from typing import Any
+
+import numpy as np
+
+from .._check import refuse_what
+from .._types import Bools
+from ..game.balls import balls_on, mask_of_present
+from ..physics.cue import strike
+from ..planning import Positions, as_actions
+from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS, Choices
+from .advisor import Advisor, Ranked
+from .practice import Practice, starts
+from .strokes import CueStroke
+
+WORLD = ("physics", "table", "fidelity")
+
+
+class Borrowed(Advisor):
+    """A player of tables that is asked at one position, as ``rank`` of an ``Advisor``.
+
+    A player whose actions hold no place in the D plays a cue ball in hand from the place that promises most by the rule of thumb.
+    """
+
+    def __init__(self, player: Any, name: str):
+        super().__init__()
+        if not isinstance(getattr(player, "options", None), dict) or not callable(getattr(player, "act", None)):
+            raise refuse_what("agent", f"a {type(player).__name__}", "must be a player's name, or a player: with options and act(...)")
+        self.player, self.name, self.options = player, name, player.options  # type: ignore[misc]
+        self._practice: Practice | None = None
+        self._tables: Any = None
+
+    def act(self, tables: Any, observations: Any, going: Bools) -> Any:
+        """The player's own actions."""
+        return self.player.act(tables, observations, going)
+
+    def rank(self, practice: Practice, at: Positions, n: int, seed: int) -> Ranked:
+        """The player's own ranking, or its one stroke without a score."""
+        tables, start = self._dealt(practice, at, seed)
+        observations, going = tables.tables.observe(np.arange(1)), np.ones(1, np.bool_)
+        if callable(getattr(self.player, "rank", None)):
+            ((actions, scores),) = self.player.rank(tables, observations, going)
+            given = [(action, None if scores is None else float(scores[k])) for k, action in enumerate(actions[: 8 * n])]
+        else:
+            given = [(self.player.act(tables, observations, going)[0], None)]
+        return [(self._stroke(tables, start, bool(at.in_hand[0]), action), score) for action, score in given]
+
+    def _dealt(self, practice: Practice, at: Positions, seed: int) -> tuple[Any, Positions]:
+        """The player's own table with the position on it."""
+        if self._practice is not practice:
+            from ..envs.vector import SnookerVectorEnv  # here: most advice needs no environment
+
+            world = {name: getattr(practice.options, name) for name in WORLD}
+            self._tables = SnookerVectorEnv(1, threads=1, **{**self.player.options, **world, "noise": practice.noise})
+            self._practice = practice
+        if at.in_hand[0] and not self._tables.options.rules.actions.placement:
+            at = starts(practice, at, 1)
+        self._tables.reset(seed=seed)
+        (state,) = self._tables.get_state()
+        ball_on, in_hand, points, over, _ = at.game[0].tolist()
+        state |= {
+            "positions": at.positions[0].tolist(), "on_table": at.on_table[0].tolist(), "ball_on": ball_on, "in_hand": bool(in_hand),
+            "points": points, "over": bool(over),
+        }  # fmt: skip
+        self._tables.reset(seed=seed, options={"state": state})
+        return self._tables, at
+
+    def _stroke(self, tables: Any, start: Positions, in_hand: bool, action: Any) -> CueStroke:
+        """An action of the player at the position ``start`` as a stroke."""
+        rules = tables.options.rules
+        place = tuple(start.positions[0, 0].tolist()) if in_hand else None
+        if isinstance(rules.actions, Choices):
+            choice = int(np.asarray(action).item())
+            row = as_actions(start, [0], [choice], physics=rules.physics, fidelity=tables.options.fidelity)[0].astype(np.float64)
+            stroke = choice % STROKES
+            speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
+            side, top = SIDES[stroke // len(TOPS) % len(SIDES)], TOPS[stroke % len(TOPS)]
+            return CueStroke(speed=speed, side=side, top=top, aim=float(np.pi * row[3]), place=place)
+        actions = rules.actions
+        a = np.asarray(actions.check(action))
+        if in_hand and actions.placement:
+            start, place = self._put(actions, a, start)
+        on = balls_on(int(start.ball_on[0]), mask_of_present(start.on_table[0]))
+        speed, side, top, cue, elevation = actions.shot(a, start.positions[0], start.on_table[0], on)
+        (vx, vy, _), _ = strike(speed, cue, side, top, elevation, rules.physics)  # with squirt: where the ball leaves
+        return CueStroke(speed=speed, side=side, top=top, aim=atan2(vy, vx), elevation=elevation, place=place)
+
+    @staticmethod
+    def _put(actions: Any, a: Any, start: Positions) -> tuple[Positions, tuple[float, float]]:
+        """The position with the cue ball where the action puts it, and that place."""
+        from ..geometry import BAULK_Y, D_RADIUS
+        from .practice import placed
+
+        x, back = a[5 if actions.elevation else 4], 0.5 * (a[6 if actions.elevation else 5] + 1.0)
+        wish = (D_RADIUS * x, BAULK_Y - D_RADIUS * np.sqrt(max(0.0, 1.0 - x * x)) * back)
+        there = placed(start, [wish])
+        px, py = there.positions[0, 0].tolist()
+        return there, (px, py)

@@ -1,0 +1,155 @@
+"""Where do the balls of a stroke stop? ``destinations``: cue ball and object ball under many errors, as a cloud and as a map."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._check import choice, integer, number
+from ..game.balls import CUE
+from ..geometry import HALF_LENGTH, HALF_WIDTH
+from ..planning.positions import PositionsLike
+from ..tasks.noise import NoiseLike
+from . import seeds
+from .practice import one_position, played_from, practice_of
+from .strokes import CueStroke, StrokeLike
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Destinations:
+    """Where the balls of one stroke stop under errors of execution.
+
+    Attributes
+    ----------
+    samples : int
+        How often it was played.
+    object_ball : int
+        The ball that it strikes first without errors, -1 if none.
+    cue : float64 (m, 2)
+        Where the cue ball stopped, of the samples in which it stayed on the table [m].
+    ball : float64 (m, 2)
+        Where the object ball stopped, of the samples in which it was not potted [m]; before it was respotted. (0, 2) if there is none.
+    potted : float
+        Share of the samples in which the object ball was potted.
+    in_off : float
+        Share of the samples in which the cue ball was potted.
+    foul : float
+        Share of the samples with a foul.
+    scored : float
+        Share of the samples that scored.
+    points : float
+        Mean points of the stroke.
+    """
+
+    samples: int
+    object_ball: int
+    cue: NDArray[np.float64]
+    ball: NDArray[np.float64]
+    potted: float
+    in_off: float
+    foul: float
+    scored: float
+    points: float
+
+    def density(self, cell: float = 0.05, ball: str = "cue") -> dict[str, Any]:
+        """In which cells of the table a ball stops, as a map.
+
+        Parameters
+        ----------
+        cell : float
+            Side of a cell [m], 0.005 to 1.
+        ball : {"cue", "ball"}
+            Which.
+
+        Returns
+        -------
+        dict
+            "x0", "y0": the corner of the first cell [m]; "cell"; "nx", "ny"; "values": shares of all samples, row after row of x,
+            ny rows of nx numbers in one list. They add up to the share in which the ball stayed on the table.
+
+        Raises
+        ------
+        ValueError
+            If an argument is none of these.
+        """
+        number("cell", cell, 0.005, 1.0)
+        places = getattr(self, choice("ball", ball, ("cue", "ball")))
+        nx, ny = int(np.ceil(2.0 * HALF_WIDTH / cell)), int(np.ceil(2.0 * HALF_LENGTH / cell))
+        x0, y0 = -0.5 * nx * cell, -0.5 * ny * cell
+        columns = np.clip(((places - (x0, y0)) / cell).astype(int), 0, (nx - 1, ny - 1))  # a ball may come to rest between the jaws
+        values = np.bincount(columns[:, 1] * nx + columns[:, 0], minlength=nx * ny) / self.samples
+        return {"x0": x0, "y0": y0, "cell": float(cell), "nx": nx, "ny": ny, "values": values.tolist()}
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as JSON types.
+
+        Returns
+        -------
+        dict
+            All attributes by name, places as lists rounded to a tenth of a millimetre.
+        """
+        clouds = {name: getattr(self, name).round(4).tolist() for name in ("cue", "ball")}
+        names = ("samples", "object_ball", "potted", "in_off", "foul", "scored", "points")
+        return {name: getattr(self, name) for name in names} | clouds
+
+
+def destinations(
+    position: PositionsLike,
+    stroke: StrokeLike,
+    *,
+    noise: NoiseLike = "professional",
+    samples: int = 500,
+    seed: int = 0,
+    options: Any = None,
+) -> Destinations:
+    """Where cue ball and object ball of a stroke stop under errors of execution, and how often it pots and fouls.
+
+    Parameters
+    ----------
+    position : Position, dict, state, Positions or environment
+        One position, as ``advise`` takes it.
+    stroke : CueStroke, Suggestion or dict
+        A dict holds fields of ``CueStroke``.
+    noise : str, dict or Noise
+        Without noise one sample is played.
+    samples : int
+        How often it is played: the same seed meets the same errors at every stroke, so that a map moves smoothly with the stroke.
+    seed : int
+    options : mapping or Options, optional
+        "physics", "table" and "fidelity", see ``advise``.
+
+    Returns
+    -------
+    Destinations
+
+    Raises
+    ------
+    ValueError
+        If an argument is none of these, or there is no stroke to play.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import destinations
+    >>> position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> stops = destinations(position, {"speed": 1.8, "aim": 0.8}, samples=100)
+    >>> stops.object_ball, stops.cue.shape[1], stops.density(0.1)["nx"]
+    (21, 2, 18)
+    """
+    integer("samples", samples, 1, 1_000_000)
+    integer("seed", seed, 0, 2**63)
+    practice, struck = practice_of(noise, options, position), CueStroke.of(stroke)
+    start = played_from(one_position(position), struck)
+    row = struck.numbers()[None]
+    look = practice.play(start, np.zeros(1, np.int64), row)
+    ball, tries = int(look.first[0]), 1 if practice.sure else samples
+    keys = seeds.keys(seed, seeds.JUDGING, tries)
+    stops = practice.play(start, np.zeros(tries, np.int64), np.repeat(row, tries, 0), keys)
+    stayed = stops.potted[:, CUE] < 0
+    here = stops.potted[:, ball] < 0 if ball > 0 else np.zeros(tries, np.bool_)
+    return Destinations(
+        samples=tries, object_ball=ball, cue=stops.places[stayed, CUE], ball=stops.places[here, max(0, ball)],
+        potted=float(1.0 - here.mean()) if ball > 0 else 0.0, in_off=float(1.0 - stayed.mean()), foul=float((stops.penalty > 0).mean()),
+        scored=float((stops.points > 0).mean()), points=float(stops.points.mean()),
+    )  # fmt: skip

@@ -1,0 +1,113 @@
+"""Who may be asked for advice? The players built into the package, those of the repository, and classes and models of one's own."""
+
+import importlib
+import re
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from .._check import refuse, truth
+from .advisor import Advisor
+from .borrowed import Borrowed
+from .lookahead import LookaheadAdvisor
+from .simple import GhostBallAdvisor, RandomAdvisor
+
+BUILT_IN: dict[str, type[Advisor]] = {maker.name: maker for maker in (LookaheadAdvisor, GhostBallAdvisor, RandomAdvisor)}
+"""The players that the package itself holds, by name."""
+
+
+def names() -> list[str]:
+    """The names that ``player_of`` knows here: the built-in players and, in a clone, those of the repository.
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> from snooker_env.advice import names
+    >>> names()[:3]
+    ['lookahead', 'ghost_ball', 'random']
+    """
+    return [*BUILT_IN, *(name for name in _others() if name not in BUILT_IN)]
+
+
+def player_of(agent: Any, *, trust: bool = False) -> Advisor:
+    """The player that a name means, ready to be asked.
+
+    Parameters
+    ----------
+    agent : str, path or player
+        "lookahead", "ghost_ball" or "random", which are built in; in a clone of the repository also the names of its players and
+        pre-trained agents (``names``), and a model's ``.zip`` or the folder of a run; "MODULE:CLASS" of a player of one's own, whose
+        module is imported; or a player: an object with ``options`` and ``act(tables, observations, going)``.
+    trust : bool
+        Whether the code in a model's ``.zip`` may run that the repository's ``train.py`` did not write.
+
+    Returns
+    -------
+    Advisor
+        A player: ``options``, ``act(tables, observations, going)``, and ``rank``, which is what advice asks.
+
+    Raises
+    ------
+    ValueError
+        If no player has that name, or the file holds none.
+
+    Examples
+    --------
+    >>> from snooker_env.advice import player_of
+    >>> player_of("ghost_ball").name
+    'ghost_ball'
+    """
+    truth("trust", trust)
+    if isinstance(agent, Advisor):
+        return agent
+    if isinstance(agent, str) and agent in BUILT_IN:
+        return BUILT_IN[agent]()
+    if not isinstance(agent, str | Path):
+        return Borrowed(agent, type(agent).__name__)
+    name = str(agent)
+    if re.fullmatch(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*", name) and not Path(name).exists():
+        return Borrowed(_own(name), name)
+    by_name = _repository("agents.players.by_name")
+    if by_name is None:
+        allowed = ", ".join(map(repr, BUILT_IN)) + ", MODULE:CLASS or a player; models and other players need a clone of the repository"
+        raise refuse("agent", name, f"must be {allowed}")
+    if trust and Path(name).exists():
+        return Borrowed(importlib.import_module("agents.players.trained").load_any(Path(name), trust, {}), name)
+    return Borrowed(by_name.player_of(name), name)
+
+
+def _own(name: str) -> Any:
+    """The player MODULE:CLASS."""
+    module, _, maker = name.partition(":")
+    try:
+        return getattr(importlib.import_module(module), maker)()
+    except Exception as error:  # it is the user's code
+        raise refuse("agent", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
+
+
+def _repository(module: str) -> ModuleType | None:
+    """A module of the repository's ``agents``, which no wheel holds: found where Python runs in a clone, else None.
+
+    By ``importlib``, since the package must not need it: it is an optional plug-in.
+    """
+    try:
+        return importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] == "agents":
+            return None
+        raise
+
+
+def _others() -> list[str]:
+    """Names of the repository's players and pre-trained agents, if it is there."""
+    by_name = _repository("agents.players.by_name")
+    if by_name is None:
+        return []
+    try:
+        models = importlib.import_module("agents.learning.models").pretrained()
+    except ModuleNotFoundError:  # without the libraries that learn, no model is played either
+        models = []
+    return [*by_name.NAMES, *models]

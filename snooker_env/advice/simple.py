@@ -1,0 +1,47 @@
+"""How do the two simple built-in players rank strokes? The widest pots first, at one speed; or choices at random."""
+
+import numpy as np
+
+from ..planning import Positions, action_masks, pots
+from ..tasks.discrete_actions import SIDES, SPEEDS, TOPS, choice_of
+from . import seeds
+from .advisor import Advisor, Ranked
+from .candidates import rows_of_choices
+from .practice import Practice, starts, stroke_of_row
+
+USUAL = 2.3
+"""Cue speed of the ghost-ball player [m/s]."""
+
+
+class GhostBallAdvisor(Advisor):
+    """The built-in "ghost_ball": the widest direct pots, aims solved, without spin, at one soft speed; else full at the nearest ball on.
+
+    Scores are tolerances of the aim [mrad].
+    """
+
+    name = "ghost_ball"
+
+    def rank(self, practice: Practice, at: Positions, n: int, seed: int) -> Ranked:
+        """The widest pots of the one position, from the most promising place if the cue ball is in hand."""
+        there = starts(practice, at, 1)
+        found = pots(there)
+        many = max(1, int((found.ball[0] >= 0).sum()))
+        choices = np.array([choice_of(pot, SPEEDS.index(USUAL), SIDES.index(0.0), TOPS.index(0.0)) for pot in range(many)])
+        strokes = rows_of_choices(practice, there, np.zeros(many, np.int64), choices)
+        in_hand, wide = bool(at.in_hand[0]), (1e3 * found.tolerance[0]).tolist()
+        return [(stroke_of_row(row, there, in_hand), wide[k]) for k, row in enumerate(strokes)]
+
+
+class RandomAdvisor(Advisor):
+    """The built-in "random": choices of ``action="discrete"``, each as likely, from a place in the D that is as likely as the others."""
+
+    name = "random"
+
+    def rank(self, practice: Practice, at: Positions, n: int, seed: int) -> Ranked:
+        """n of the choices that there are, without a score."""
+        rng = np.random.default_rng((seed, seeds.CHOOSING))
+        there = starts(practice, at, 100)
+        rows, choices = np.nonzero(action_masks(there))
+        some = rng.permutation(len(rows))[: max(1, n)]
+        strokes, in_hand = rows_of_choices(practice, there, rows[some], choices[some]), bool(at.in_hand[0])
+        return [(stroke_of_row(row, there[k : k + 1], in_hand), None) for k, row in zip(rows[some].tolist(), strokes, strict=True)]

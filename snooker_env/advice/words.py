@@ -1,0 +1,159 @@
+"""How is a stroke said? Balls, pockets, spin and chances in the words of the game: "blue, right middle, 1.8 m/s, screw, chance 87 %".
+
+Left and right are as seen from baulk, looking to the black end: right is the yellow side (+x), left the green side.
+"""
+
+from math import copysign, cos, degrees, inf, sin, sqrt
+
+from ..game.balls import NAMES
+from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
+from ..physics.parameters import Physics
+from .strokes import CueStroke
+
+POCKET_WORDS = ("green pocket", "yellow pocket", "right middle", "top right", "top left", "left middle")
+"""What each of ``snooker_env.POCKETS`` is called: the corners at the baulk end by the colours beside them, those at the black end "top"."""
+_STILL = 0.1
+"""A tip offset over R up to this is the middle of the ball."""
+_FAR_OFF = 0.3
+"""From this offset on: "deep" screw, and "top" in place of follow."""
+_STUN = 0.25
+"""A ball whose roll is within so much of its speed, over it, arrives as if without spin."""
+_SIDE = 0.05
+RAISED = 0.05
+"""From this elevation on [rad] a cue is said to be raised."""
+
+
+def ball_words(ball: int) -> str:
+    """The colour of a ball.
+
+    Examples
+    --------
+    >>> from snooker_env.advice.words import ball_words
+    >>> ball_words(7), ball_words(19)
+    ('red', 'blue')
+    """
+    return "red" if 1 <= ball <= 15 else NAMES[ball].replace("_", " ")
+
+
+def rolling(speed: float, top: float, distance: float, physics: Physics) -> float:
+    """How much a struck ball rolls when it has run that far [m]: surface speed of its roll over its speed; 1 rolls, 0 is stun, < 0 screw.
+
+    It slides until it rolls: the speed v falls by mu_s g t, the roll R w, 5/2 v times the tip's height at first, grows by 5/2 mu_s g t.
+    """
+    brake = physics.mu_s * physics.g
+    v, roll = speed, 2.5 * top * speed
+    way = 1.0 if roll < v else -1.0  # too much top: the roll falls, the ball gains speed
+    slip = abs(v - roll)
+    until = slip / (3.5 * brake)
+    t = until
+    if way > 0.0:
+        inside = v * v - 2.0 * brake * distance
+        t = min(until, (v - sqrt(inside)) / brake) if inside > 0.0 else until
+    else:
+        t = min(until, (sqrt(v * v + 2.0 * brake * distance) - v) / brake)
+    return (roll + way * 2.5 * brake * t) / max(v - way * brake * t, 1e-9)
+
+
+def spin_words(stroke: CueStroke, distance: float | None, physics: Physics) -> str:
+    """The spin of a stroke: "deep screw", "screw", "drag", "stun", "plain", "follow" or "top", with "left side" or "right side".
+
+    Below the middle it depends on what is left of the backspin when the ball on is reached, ``distance`` [m] away: screw, none (stun), or
+    the ball rolls already (drag). A blow on the middle is plain, or stun where the ball still slides. None: nothing is struck.
+    """
+    top = stroke.top
+    arrives = None if distance is None else rolling(stroke.speed, top, distance, physics)
+    if top > _STILL:
+        word = "top" if top > _FAR_OFF else "follow"
+    elif top >= -_STILL:
+        word = "plain" if arrives is None or arrives > _STUN else "stun"
+    elif arrives is not None and arrives >= -_STUN:
+        word = "stun" if arrives <= _STUN else "drag"
+    else:
+        word = "deep screw" if top < -_FAR_OFF else "screw"
+    if abs(stroke.side) > _SIDE:
+        word += " with right side" if stroke.side > 0 else " with left side"
+    return word
+
+
+def place_words(x: float, y: float) -> str:
+    """Where in the D a cue ball lies, from the middle of the baulk line.
+
+    Examples
+    --------
+    >>> from snooker_env.advice.words import place_words
+    >>> place_words(-0.12, -1.0475)
+    'from 12 cm left of the brown spot'
+    """
+    across, back = round(100.0 * abs(x)), round(100.0 * (BAULK_Y - y))
+    parts = [f"{across} cm {'right' if x > 0 else 'left'} of"] if across else []
+    parts += [f"{back} cm behind"] if back else []
+    return f"from {' and '.join(parts)} the brown spot" if parts else "from the brown spot"
+
+
+def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics) -> str:
+    """Speed, spin, raised cue and place."""
+    words = f"{stroke.speed:.1f} m/s, {spin_words(stroke, distance, physics)}"
+    if stroke.elevation >= RAISED:
+        words += f", cue raised {degrees(stroke.elevation):.0f} degrees"
+    return words if stroke.place is None else f"{words}, {place_words(*stroke.place)}"
+
+
+def cushion_words(x: float, y: float, aim: float) -> str:
+    """The cushion that a ball at (x, y), sent in the direction ``aim`` [rad], runs at: left, right, top (the black end) or baulk.
+
+    Examples
+    --------
+    >>> from snooker_env.advice.words import cushion_words
+    >>> cushion_words(0.0, 0.0, 0.1), cushion_words(0.0, 0.0, -1.6)
+    ('right cushion', 'baulk cushion')
+    """
+    dx, dy = cos(aim), sin(aim)
+    to_side = (HALF_WIDTH - x * copysign(1.0, dx)) / max(abs(dx), 1e-9)
+    to_end = (HALF_LENGTH - y * copysign(1.0, dy)) / max(abs(dy), 1e-9)
+    if to_side < to_end:
+        return "right cushion" if dx > 0 else "left cushion"
+    return "top cushion" if dy > 0 else "baulk cushion"
+
+
+def contact_words(x: float, y: float, aim: float) -> str:
+    """How full a ball that lies (x, y) away is struck by a cue ball that runs straight in the direction ``aim`` [rad].
+
+    Examples
+    --------
+    >>> from snooker_env.advice.words import contact_words
+    >>> contact_words(1.0, 0.0, 0.0), contact_words(1.0, 0.026, 0.0)
+    ('full', 'half-ball on the right')
+    """
+    aside = (y * cos(aim) - x * sin(aim)) / (2.0 * BALL_RADIUS)
+    for far, words in ((0.12, "full"), (0.38, "three-quarter ball"), (0.62, "half-ball"), (0.87, "quarter-ball"), (inf, "thin")):
+        if abs(aside) <= far:
+            return words if far < 0.2 else f"{words} on the {'right' if aside > 0 else 'left'}"
+    raise AssertionError(aside)
+
+
+def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
+    """What a stroke does when it comes out as intended; ``how``: of an escape the cushion that it goes off first, of a safety the contact.
+
+    Examples
+    --------
+    >>> from snooker_env.advice.words import what_words
+    >>> what_words("pot", 19, 2, 19), what_words("pot", 2, 5, 1), what_words("safety", 3, -1, 3)
+    ('blue, right middle', 'red by a plant, left middle', 'safety off the red')
+    """
+    if kind == "pot":
+        how = "" if ball == first else " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
+        return f"{ball_words(ball)}{how}, {POCKET_WORDS[pocket]}"
+    if kind == "in-off":
+        return f"in-off from the {ball_words(first)}" if first >= 0 else "in-off, nothing struck"
+    if kind == "foul":
+        return f"foul, {ball_words(first)} first" if first >= 0 else "foul, nothing struck"
+    if kind == "escape":
+        return f"escape{f' off the {how}' if how else ''} to the {ball_words(ball)}"
+    return f"safety off the {ball_words(ball)}" + (f", {how}" if how else "")
+
+
+def figures_words(kind: str, chance: float, points: float) -> str:
+    """Chance and points expected."""
+    share = f"{'chance' if kind == 'pot' else 'fair'} {100.0 * chance:.0f} %"
+    scored = f"{points:.0f}" if points >= 9.5 else f"{points:.1f}".removesuffix(".0")
+    return f"{share}, {scored} point{'' if scored == '1' else 's'} expected"

@@ -1,0 +1,187 @@
+"""Is advice right? Chances and points against independent visits in the environment; its order, its seeds, and every kind of position."""
+
+import json
+
+import numpy as np
+import pytest
+from cases import ALL, ENDGAME, IN_HAND, OPEN, RESPOTTED, SNOOKERED, played, state_of
+
+import snooker_env as sn
+from snooker_env.advice import names, player_of, stroke_of
+from snooker_env.advice.players import BUILT_IN
+from snooker_env.planning import clear_paths
+from tests.refusals import refused
+
+QUICK = {"samples": 60, "visits": 4}
+
+
+def test_chances_are_those_of_the_environment():
+    """Each stroke 2,000 times with other errors: the interval of 95 % holds the share of its pots, and is no wider than due."""
+    advice = sn.advise(ENDGAME, noise="club", n=3, samples=400, visits=0)
+    assert advice[0].kind == "pot" and advice[0].ball == 19
+    inside = 0
+    for one in advice:
+        points, fouls, after = played(ENDGAME, one.stroke, 2000, noise="club")
+        share = float(((points == 5) & ~fouls).mean())
+        low, high = one.chance_interval
+        assert low <= one.chance <= high and high - low < 2 * 2.1 * np.sqrt(0.25 / 400)
+        assert abs(one.chance - share) < 4.0 * np.sqrt(share * (1 - share) * (1 / 400 + 1 / 2000)) + 1e-3
+        inside += low <= share <= high
+        cue = np.array([s["positions"][0] for s in after if s["on_table"][0]])
+        assert one.stops == pytest.approx(cue.mean(axis=0), abs=5 * one.spread / 20)
+        assert one.spread == pytest.approx(np.sqrt(((cue - cue.mean(axis=0)) ** 2).sum(1).mean()), rel=0.2)
+        assert one.foul == pytest.approx(fouls.mean(), abs=0.06)
+    assert inside >= 2
+
+
+def test_points_expected_of_the_last_ball_are_its_chance_times_its_value():
+    last = sn.Position(cue=(0.3, 1.0), black=(0.0, 1.4605))
+    (one,) = sn.advise(last, noise="club", n=1, samples=300, visits=20)
+    assert one.points == pytest.approx(7 * one.chance) and 0.0 < one.chance < 1.0
+    assert one.points_interval[0] < one.points < one.points_interval[1]
+
+
+def test_points_expected_hold_what_follows():
+    """The whole visit again, with other errors: the intervals overlap."""
+    few, many = (sn.advise(OPEN, n=1, samples=s, visits=v, seed=seed)[0] for s, v, seed in ((200, 60, 1), (400, 200, 2)))
+    again = sn.advise(OPEN, n=1, samples=400, visits=200, seed=1)[0]
+    assert few.points > 2.0 * few.chance > 0.0
+    assert abs(few.points - again.points) < 3.0 * (few.points_interval[1] - few.points)
+    assert few.points_interval[1] - few.points > again.points_interval[1] - again.points > 0
+    only = sn.advise(OPEN, n=1, samples=200, visits=0, seed=1)[0]
+    assert only.points == pytest.approx(only.chance, abs=0.05) and many.points > only.points  # one red
+
+
+def test_the_same_seed_gives_the_same_advice_and_another_one_other_samples():
+    first, again, other = (sn.advise(OPEN, noise="club", n=3, seed=seed, **QUICK).to_dict() for seed in (4, 4, 5))
+    assert first == again and first != other
+
+
+def test_the_noise_stream_of_a_state_has_no_say():
+    """The trap: a state that is played again meets its own errors again. Advice is that of the seed, whatever the stream."""
+    states = [state_of(OPEN) | {"stream": [key, 0]} for key in (1, 2)]
+    one, other = (sn.advise(state, noise="club", n=2, **QUICK).to_dict() for state in states)
+    assert one == other == sn.advise(OPEN, noise="club", n=2, **QUICK).to_dict()
+
+
+def test_a_position_may_be_given_in_every_way():
+    env = sn.SnookerEnv(noise="club")
+    env.reset(seed=1, options={"state": state_of(OPEN)})
+    many = sn.planning.Positions.of([OPEN])
+    asked = [sn.advise(p, n=1, **QUICK).to_dict() for p in (OPEN, OPEN.to_dict(), state_of(OPEN), env, many)]
+    assert all(one["suggestions"] == asked[0]["suggestions"] for one in asked)
+
+
+def test_the_order_is_the_agents_own():
+    advice = sn.advise(OPEN, n=5, **QUICK)
+    assert len(advice) == 5 and [one.score for one in advice] == sorted((one.score for one in advice), reverse=True)
+    wide = sn.advise(OPEN, agent="ghost_ball", n=4, **QUICK)
+    found = sn.planning.pots(OPEN).tolerance[0]
+    assert [one.score for one in wide] == pytest.approx(1e3 * found[: len(wide)])
+    assert all(one.speed == 2.3 and one.side == one.top == 0.0 for one in wide)
+
+
+def test_strokes_that_read_the_same_are_given_once():
+    said = [one.words.split(" m/s, ")[1].split(", chance")[0] + str((one.ball, one.pocket)) for one in sn.advise(ENDGAME, n=8, **QUICK)]
+    assert len(set(said)) == len(said) > 2
+    assert len({round(one.speed, 3) for one in sn.advise(ENDGAME, n=8, distinct=False, **QUICK)}) > 1
+
+
+def test_the_first_advice_is_good():
+    """The blue goes in nine times out of ten, and the best stroke scores more than the widest pot played without a thought."""
+    best, plain = (sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0] for agent in ("lookahead", "ghost_ball"))
+    assert best.points > plain.points
+
+
+def test_without_noise_everything_is_certain():
+    one = sn.advise(ENDGAME, noise="none", n=1)[0]
+    assert one.chance == 1.0 and one.chance_interval == (1.0, 1.0) and one.spread == 0.0
+    assert one.points == one.points_interval[0] == one.points_interval[1] == 18.0  # blue, pink, black
+
+
+@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("agent", BUILT_IN)
+def test_every_built_in_agent_has_a_stroke_at_every_position(name, agent):
+    position = ALL[name]
+    stroke = stroke_of(agent, position, seed=3)
+    assert (stroke.place is not None) == position.in_hand
+    points, fouls, _ = played(position, stroke, 1, noise="none")
+    (first, *_) = sn.advise(position, agent=agent, n=1, seed=3, **QUICK)
+    assert first.stroke == stroke
+    assert (first.kind == "pot") == bool(points[0] > 0) and (first.kind in ("foul", "in-off")) == bool(fouls[0])
+    if agent == "lookahead":
+        assert not fouls[0] and first.foul < 0.3
+
+
+def test_in_hand_a_stroke_has_a_place_in_the_d_that_counts():
+    one = sn.advise(IN_HAND, n=1, samples=100, visits=0)[0]
+    x, y = one.place
+    assert y <= -1.0475 + 1e-9 and np.hypot(x, y + 1.0475) <= 0.292 + 1e-9 and one.kind == "pot" and "brown spot" in one.words
+    points, _, _ = played(IN_HAND, one.stroke, 400, noise="professional")
+    assert abs((points > 0).mean() - one.chance) < 4 * np.sqrt(0.25 / 100)
+    assert sn.Position(**{**IN_HAND.to_dict(), "cue": one.place}).in_hand  # no ball is in the way
+
+
+def test_where_nothing_can_be_potted_a_ball_on_is_hit():
+    for position, kind in ((SNOOKERED, "escape"), (ALL["hidden"], "safety")):
+        one = sn.advise(position, n=1, **QUICK)[0]
+        assert one.kind == kind and one.pocket == -1 and one.ball == one.first and 1 <= one.ball <= 15
+        assert bool(clear_paths(position).any_part[0]) == (kind == "safety")
+        points, fouls, _ = played(position, one.stroke, 400, noise="professional")
+        assert abs((~fouls).mean() - one.chance) < 4 * np.sqrt(0.25 / 60) and points.mean() == pytest.approx(one.points, abs=0.3)
+        assert one.words.startswith("escape off the " if kind == "escape" else "safety off the red, ") and " fair " in one.words
+
+
+def test_a_long_pot_gives_way_to_safety_and_a_short_one_does_not():
+    assert sn.advise(RESPOTTED, n=1, **QUICK)[0].kind == "safety"
+    assert sn.advise(RESPOTTED, n=1, noise="none", **QUICK)[0].kind == "pot"
+    assert sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), n=1, **QUICK)[0].kind == "pot"
+
+
+def test_advice_is_json_and_a_sequence():
+    advice = sn.advise(OPEN, n=2, noise={"aim_deg": 0.1}, **QUICK)
+    kept = json.loads(json.dumps(advice.to_dict()))
+    assert kept == advice.to_dict() and len(kept["suggestions"]) == 2 and kept["noise"]["aim_deg"] == 0.1
+    assert sn.Position(**kept["position"]) == OPEN
+    assert advice[0] is next(iter(advice)) and advice[:1] == (advice[0],) and str(advice).startswith(f"1. {advice[0].words}\n2. ")
+    assert advice[0].words == str(advice[0])
+
+
+def test_the_world_may_be_chosen():
+    usual, slow = (sn.advise(ENDGAME, n=1, options=o, **QUICK)[0] for o in (None, {"physics": {"mu_r": 0.02}, "table": "tight"}))
+    assert usual.to_dict() != slow.to_dict()
+    env = sn.SnookerEnv(physics={"mu_r": 0.02}, table="tight")
+    env.reset(seed=1, options={"state": state_of(ENDGAME)})
+    assert sn.advise(env, n=1, **QUICK)[0].to_dict() == slow.to_dict()
+
+
+WRONG = [
+    ({"n": 0}, "n", "0", "must be an integer in [1, 100]"),
+    ({"samples": 0}, "samples", "0", "must be an integer"),
+    ({"visits": -1}, "visits", "-1", "must be an integer"),
+    ({"seed": 1.5}, "seed", "1.5", "must be an integer"),
+    ({"agent": "nobody_at_all"}, "agent", "nobody_at_all", "ghost_ball"),
+    ({"agent": 3}, "agent", "a int", "must be a player's name"),
+    ({"agent": "no_module:Player"}, "agent", "no_module:Player", "must be MODULE:CLASS"),
+    ({"noise": "wild"}, "noise", "wild", "must be one of"),
+    ({"options": {"layout": "opened"}}, "key of options", "layout", "'physics', 'table', 'fidelity'"),
+    ({"options": 3}, "options", "a int", "must be None, an Options, or a dict"),
+]
+
+
+@pytest.mark.parametrize(("given", "field", "value", "allowed"), WRONG, ids=[next(iter(w[0])) + str(i) for i, w in enumerate(WRONG)])
+def test_wrong_arguments_are_refused(given, field, value, allowed):
+    refused(lambda: sn.advise(OPEN, **given), field, value, allowed)
+
+
+def test_wrong_positions_are_refused():
+    refused(lambda: sn.advise(sn.planning.Positions.of([OPEN, OPEN])), "position", "2 positions", "must be one position")
+    refused(lambda: sn.advise(sn.Position(cue=(0.0, 0.0), over=True)), "position.over", "True", "must be False")
+    with pytest.raises(ValueError, match="key of position = 'cues'"):
+        sn.advise({"cue": (0.0, 0.0), "cues": 3})
+
+
+def test_names_are_those_of_players():
+    assert names()[:3] == ["lookahead", "ghost_ball", "random"] and "search" in names()
+    for name in names():
+        assert player_of(name).name == name

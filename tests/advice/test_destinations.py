@@ -1,0 +1,92 @@
+"""Do the balls stop where destinations say? Against the environment, stroke by stroke, and against what a map must add up to."""
+
+import json
+
+import numpy as np
+import pytest
+from cases import ENDGAME, IN_HAND, OPEN, SNOOKERED, played
+
+import snooker_env as sn
+from snooker_env.advice import CueStroke, destinations
+from tests.refusals import refused
+
+
+@pytest.fixture(scope="module")
+def blue():
+    return sn.advise(ENDGAME, n=1, samples=10, visits=0)[0]
+
+
+def test_shares_are_those_of_the_environment(blue):
+    stops = destinations(ENDGAME, blue, noise="club", samples=2000)
+    points, fouls, after = played(ENDGAME, blue.stroke, 2000, noise="club")
+    cue = np.array([s["positions"][0] for s in after if s["on_table"][0]])
+    assert stops.scored == pytest.approx((points > 0).mean(), abs=0.05) and stops.foul == pytest.approx(fouls.mean(), abs=0.03)
+    assert stops.points == pytest.approx(points.mean(), abs=0.25) and stops.object_ball == 19 and stops.samples == 2000
+    assert 0.3 < stops.potted < 1.0 and stops.potted == pytest.approx(1.0 - len(stops.ball) / 2000)
+    assert len(stops.cue) == round(2000 * (1.0 - stops.in_off))
+    assert stops.cue.mean(axis=0) == pytest.approx(cue.mean(axis=0), abs=0.05)
+    assert stops.cue.std(axis=0) == pytest.approx(cue.std(axis=0), rel=0.1)
+    missed = np.array([s["positions"][19] for s, p, f in zip(after, points, fouls, strict=True) if p == 0 and s["on_table"][0] and not f])
+    assert stops.ball.mean(axis=0) == pytest.approx(missed.mean(axis=0), abs=0.1)
+
+
+def test_without_noise_it_is_the_one_shot(blue):
+    stops = destinations(ENDGAME, blue, noise="none")
+    _, _, (state,) = played(ENDGAME, blue.stroke, 1, noise="none")
+    assert stops.samples == 1 and stops.potted == 1.0 and stops.ball.shape == (0, 2)
+    assert np.allclose(stops.cue[0], state["positions"][0], atol=2e-3)
+
+
+def test_an_in_off_and_a_stroke_at_nothing():
+    straight = sn.Position(cue=(0.0, 0.0), black=(0.0, 1.4605))
+    miss = destinations(straight, CueStroke(speed=1.0, aim=-np.pi / 2), samples=50)
+    assert miss.object_ball == -1 and miss.foul == 1.0 and miss.potted == 0.0 and miss.ball.shape == (0, 2) and miss.cue.shape == (50, 2)
+    at_pocket = destinations(straight, {"speed": 2.0, "aim": float(np.arctan2(-1.7845, 0.889))}, samples=50)
+    assert at_pocket.in_off > 0.9 and at_pocket.foul == 1.0 and len(at_pocket.cue) == round(50 * (1 - at_pocket.in_off))
+
+
+def test_a_map_adds_up(blue):
+    stops = destinations(ENDGAME, blue, noise="club", samples=500)
+    for cell, ball in ((0.05, "cue"), (0.11, "cue"), (0.05, "ball")):
+        there = stops.density(cell, ball)
+        values = np.array(there["values"]).reshape(there["ny"], there["nx"])
+        assert values.sum() == pytest.approx(len(getattr(stops, ball)) / 500)
+        x, y = getattr(stops, ball).T
+        k = np.unravel_index(values.argmax(), values.shape)
+        low = np.array([there["x0"] + k[1] * cell, there["y0"] + k[0] * cell])
+        inside = (x >= low[0]) & (x < low[0] + cell) & (y >= low[1]) & (y < low[1] + cell)
+        assert inside.mean() * len(x) / 500 == pytest.approx(values.max())
+        assert there["x0"] <= -0.889 and there["y0"] <= -1.7845 and there["x0"] + there["nx"] * cell >= 0.889
+    kept = json.loads(json.dumps(stops.to_dict()))
+    assert len(kept["cue"]) == len(stops.cue) and kept["potted"] == stops.potted
+
+
+def test_seeds_and_common_errors(blue):
+    first, again, other = (destinations(ENDGAME, blue, seed=seed) for seed in (1, 1, 2))
+    assert np.array_equal(first.cue, again.cue) and not np.array_equal(first.cue, other.cue)
+    # a hair's turn of the aim moves every sample a little: the same errors are met
+    soft = CueStroke(speed=0.5, aim=0.2)
+    turned = CueStroke(speed=0.5, aim=0.2 + 1e-6)
+    empty = sn.Position(cue=(-0.6, 0.6), black=(0.6, -1.5))
+    near = destinations(empty, soft).cue - destinations(empty, turned).cue
+    assert 0.0 < np.abs(near).max() < 1e-4
+
+
+def test_in_hand_the_place_counts():
+    left, right = (destinations(IN_HAND, CueStroke(speed=1.0, aim=1.57, place=(x, -1.1)), noise="none").cue[0] for x in (-0.2, 0.2))
+    assert left[0] < 0 < right[0]
+
+
+def test_wrong_strokes_are_refused():
+    ask = lambda stroke, position=OPEN, **more: lambda: destinations(position, stroke, **more)  # noqa: E731
+    refused(ask({"speed": 9.0, "aim": 0.0}), "speed", "9.0", "[0.2, 7]")
+    refused(ask({"speed": 2.0}), "stroke", "without 'aim'", "must be a CueStroke")
+    refused(ask({"speed": 2.0, "aim": 0.0, "spin": 1}), "field of the stroke", "spin", "'speed'")
+    refused(ask({"speed": 2.0, "aim": 0.0, "side": 0.4, "top": 0.4}), "side, top", "(0.4, 0.4)", "within the disc")
+    refused(ask({"speed": 2.0, "aim": 0.0, "elevation": 1.0}), "elevation", "1.0", "must be")
+    refused(ask({"speed": 2.0, "aim": 0.0, "place": (0.0, -1.1)}), "place", "(0.0, -1.1)", "must be None: the cue ball is not in hand")
+    refused(ask({"speed": 2.0, "aim": 0.0, "place": (0.0, 0.0)}, IN_HAND), "place", "(0, 0)", "lines of the D")
+    refused(ask({"speed": 2.0, "aim": 0.0}, samples=0), "samples", "0", "must be an integer")
+    stops = destinations(SNOOKERED, {"speed": 2.0, "aim": 0.0}, samples=5)
+    refused(lambda: stops.density(0.0), "cell", "0.0", "must be")
+    refused(lambda: stops.density(0.1, "red"), "ball", "'red'", "'cue', 'ball'")

@@ -1,0 +1,77 @@
+"""Does ``python -m agents.watch`` show what an agent plays? The same visit as the protocol plays, as a page, as data and as films."""
+
+import json
+
+import numpy as np
+import pytest
+
+from agents.evaluation import watch
+from agents.evaluation.rollouts import HELD_OUT_SEED, play
+from agents.players.by_name import player_of
+
+SHORT = ["--agent", "ghost_ball", "--noise", "club"]
+
+
+@pytest.mark.parametrize("name", ["ghost_ball", "geometric", "ppo_mask"])
+def test_the_visit_is_the_one_that_the_protocol_plays(name):
+    env = watch.visit(player_of(name), HELD_OUT_SEED + 3, layout="held_out", noise="professional")
+    strokes = play(player_of(name), 1, first_seed=HELD_OUT_SEED + 3, threads=1)
+    assert [p.points for p in env.history] == strokes.points.tolist()
+    cue = np.array([p.positions[0] for p in env.history if p.on_table[0]])
+    assert np.array_equal(cue, strokes.cue[~np.isnan(strokes.cue[:, 0])])
+
+
+def test_a_page_and_data_are_written_and_the_play_is_told(tmp_path, capsys):
+    assert watch.main([*SHORT, "--out", str(tmp_path / "visit.json")]) == 0
+    said = capsys.readouterr().out
+    data = json.loads((tmp_path / "visit.json").read_text())
+    assert all(stroke["words"] in said for stroke in data["strokes"]) and data["players"] == ["ghost_ball"]
+    assert watch.main([*SHORT, "--out", str(tmp_path / "new" / "visit.html")]) == 0
+    assert "<html" in (tmp_path / "new" / "visit.html").read_text("utf-8")
+
+
+def test_without_a_file_the_browser_is_opened(monkeypatch, capsys):
+    opened = []
+    monkeypatch.setattr(watch.webbrowser, "open", opened.append)
+    watch.main(SHORT)
+    assert len(opened) == 1 and opened[0].startswith("file://") and opened[0].endswith("replay.html")
+
+
+@pytest.mark.parametrize("suffix", [".mp4", ".gif"])
+def test_films_last_as_long_as_the_play(tmp_path, suffix):
+    pytest.importorskip("pygame")
+    moviepy = pytest.importorskip("moviepy")
+    file = tmp_path / f"visit{suffix}"
+    args = watch.parser().parse_args([*SHORT, "--out", str(file)])
+    env, _, _ = watch.found(args)
+    watch.main([*SHORT, "--out", str(file), "--size", "320x180", "--speed", "2", "--fps", "10"])
+    seconds = sum(p.shot.duration / 2 + 0.8 for p in env.history)
+    with moviepy.VideoFileClip(str(file)) as clip:
+        assert clip.size == [320, 180] and clip.duration == pytest.approx(seconds, abs=0.3 * len(env.history))
+
+
+def test_the_first_visit_that_is_long_enough_is_taken(capsys):
+    args = watch.parser().parse_args([*SHORT, "--at-least", "1", "--seed", str(HELD_OUT_SEED)])
+    env, seed, _ = watch.found(args)
+    assert env.points >= 1
+    for earlier in range(HELD_OUT_SEED, seed):
+        assert watch.visit(player_of("ghost_ball"), earlier, layout="held_out", noise="club").points < 1
+    with pytest.raises(SystemExit, match="no visit of 140 points in 3 tries"):
+        watch.main([*SHORT, "--at-least", "140", "--tries", "3"])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (["--agent", "nobody"], "agent"), (["--out", "a.exe"], "must be one of '.html'"), (["--out", "a.html", "--speed", "2"], "a film"),
+        (["--out", "a.mp4", "--size", "big"], "WIDTHxHEIGHT"), (["--out", "a.mp4", "--size", "321x180"], "even"),
+        (["--tries", "0"], "tries"),
+        (["--out", "a.gif", "--fps", "0"], "fps"), (["--layout", "nowhere"], "layout"), (["--noise", "loud"], "noise"),
+    ],
+)  # fmt: skip
+def test_wrong_arguments_are_named(wrong, words, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as stop:
+        watch.main(["--agent", "ghost_ball", *wrong])
+    assert stop.value.code == 2 and words in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
