@@ -49,7 +49,8 @@ def density_of(points: Floats, low: Floats, high: Floats, bandwidth: float, cell
         half = int(min(np.ceil(_REACH * bandwidth / size[axis]), n[axis]))
         bell = np.exp(-0.5 * (np.arange(-half, half + 1) * size[axis] / bandwidth) ** 2)
         wide = np.pad(values, [(half, half) if k == axis else (0, 0) for k in range(2)], mode="symmetric")
-        values = np.apply_along_axis(np.convolve, axis, wide, bell / bell.sum(), mode="valid")
+        bell /= bell.sum()
+        values = np.apply_along_axis(lambda line, bell=bell: np.convolve(line, bell, mode="valid"), axis, wide)
     return values, size
 
 
@@ -76,7 +77,8 @@ def density(
     Parameters
     ----------
     points : array_like, float (m, 2)
-        Where it stopped each time [m]. Rows of NaN, times at which it did not, are left out, and the share of the others is written.
+        Where it stopped each time [m], for instance ``snooker_env.advice.destinations(...).cue``. Rows of NaN, times at which it did not,
+        are left out, and the share of the others is written.
     ax : matplotlib.axes.Axes, optional
         Where to draw, on a diagram that is there too: then the table stays as it is. None: in a figure of its own.
     table : str, Table or None
@@ -112,6 +114,7 @@ def density(
     >>> ax = density(np.random.default_rng(0).normal((0.2, 0.9), 0.1, (500, 2)))
     >>> ax.figure.savefig("/tmp/density.png")
     """
+    given: Any
     try:
         given = np.array(points, np.float64)
     except (TypeError, ValueError):
