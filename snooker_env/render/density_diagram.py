@@ -12,7 +12,7 @@ from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
 from .outline import extent
 from .shot_diagram import View, region_of
-from .sketch import Sketch, rgb
+from .sketch import Sketch, is_closed, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -112,7 +112,8 @@ def density(
     >>> import numpy as np
     >>> from snooker_env.render.diagrams import density
     >>> ax = density(np.random.default_rng(0).normal((0.2, 0.9), 0.1, (500, 2)))
-    >>> ax.figure.savefig("/tmp/density.png")
+    >>> [text.get_text() for text in ax.texts]
+    ['50 %', '90 %']
     """
     given: Any
     try:
@@ -162,9 +163,9 @@ def _draw_cloud(sketch, points, bandwidth, shares, colour):
     bounds = extent(sketch.table)
     reach = 4.5 * bandwidth + 0.02
     low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
-    if np.isfinite(sketch.table.bounds).all():  # no ball stops beyond the cushions
-        low, high = np.maximum(low, bounds[:, 0]), np.minimum(high, bounds[:, 1])
-    values, size = density_of(points, low, high, bandwidth)
+    if is_closed(sketch.table):  # no ball's centre comes nearer to a cushion, but in a pocket's jaws
+        low, high = np.maximum(low, bounds[:, 0] + sketch.R), np.minimum(high, bounds[:, 1] - sketch.R)
+    values, size = density_of(points.clip(low, high), low, high, bandwidth)
     strength = values / values.max()
     picture = np.empty((*values.shape, 4))
     picture[..., :3] = np.array(rgb(colour)[:3]) + (1 - np.array(rgb(colour)[:3])) * (0.55 * strength[..., None] ** 3)

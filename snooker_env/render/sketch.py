@@ -207,9 +207,9 @@ class Sketch:
         add = self.ax.add_patch
         add(Circle((y + 0.25 * R, x + 0.3 * R), 1.08 * R, fc=rgb("shadow", 0.4), ec="none", zorder=6.9))
         add(Circle((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), lw=0.4, zorder=7.0, gid=f"ball-{ball}"))
-        for k in range(1, 6):
-            away = 0.07 * k * R
-            add(Circle((y - away, x - away), R * (1 - 0.15 * k), fc=(1, 1, 1, 0.055), ec="none", zorder=7.0 + 0.01 * k))
+        for k in range(1, 13):
+            away = 0.029 * k * R
+            add(Circle((y - away, x - away), R * (1 - 0.065 * k), fc=(1, 1, 1, 0.022), ec="none", zorder=7.0 + 0.005 * k))
         add(Circle((y - 0.36 * R, x - 0.40 * R), 0.17 * R, fc=rgb("lamp", 0.85), ec="none", zorder=7.1))
         self.keep_clear(np.asarray(place)[None], 2 * R)
         if label:
