@@ -46,21 +46,8 @@ ALLOWED = {
     "match": {"_types", "envs", "tasks"},
     "widget": {"_check", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {
-        "geometry",
-        "physics",
-        "impacts",
-        "shot",
-        "simulation",
-        "tasks",
-        "planning",
-        "advice",
-        "envs",
-        "match",
-        "replays",
-        "_warmup",
-        "_registration",
-    },
+    "__init__": {"geometry", "physics", "impacts", "shot", "simulation", "tasks", "planning", "advice", "envs", "match", "replays", "_warmup",
+                 "_registration"},  # fmt: skip
 }
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
