@@ -46,6 +46,7 @@ ALLOWED = {
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
     "widget": {"_check", "replays"},
+    "play": BASE | {"physics", "shot", "simulation", "game", "tasks", "planning", "advice", "render", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
     "__init__": {
         "geometry",
@@ -72,6 +73,7 @@ OUTSIDE = {
     "anywidget": {"widget"},
     "traitlets": {"widget"},
 }
+OUTSIDE |= dict.fromkeys(("hmac", "http", "secrets", "socket", "urllib", "webbrowser"), {"play"})  # the network, as well
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
