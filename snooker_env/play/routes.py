@@ -15,7 +15,7 @@ from ..game.frame import MOST_BREAK
 from ..game.ruling import AUTO
 from ..planning.position import Position
 from ..replays.encode import encoded_stroke
-from ..replays.replay import Replay
+from ..replays import Replay
 from ..tasks.noise import LEVELS
 from ..tasks.states import MOST
 from . import questions

@@ -73,7 +73,7 @@ OUTSIDE = {
     "anywidget": {"widget"},
     "traitlets": {"widget"},
 }
-OUTSIDE |= dict.fromkeys(("hmac", "http", "secrets", "socket", "urllib", "webbrowser"), {"play"})  # the network, as well
+OUTSIDE |= {name: {"play"} for name in ("hmac", "http", "secrets", "socket", "urllib", "webbrowser")}  # the network, as well
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
