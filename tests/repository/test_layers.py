@@ -48,21 +48,23 @@ ALLOWED = {
     "widget": {"_check", "replays"},
     "play": BASE | {"physics", "shot", "simulation", "game", "tasks", "planning", "advice", "render", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {
-        "geometry",
-        "physics",
-        "impacts",
-        "shot",
-        "simulation",
-        "tasks",
-        "planning",
-        "advice",
-        "envs",
-        "match",
-        "replays",
-        "_warmup",
-        "_registration",
-    },  # fmt: skip
+    "__init__": set(
+        [
+            "geometry",
+            "physics",
+            "impacts",
+            "shot",
+            "simulation",
+            "tasks",
+            "planning",
+            "advice",
+            "envs",
+            "match",
+            "replays",
+            "_warmup",
+            "_registration",
+        ]
+    ),
 }
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
