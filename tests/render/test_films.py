@@ -85,6 +85,19 @@ def test_a_rolling_ball_turns_once_each_circumference():
     assert np.array_equal(film.at(t).turns[CUE], turning.at(t)) and Film(None, shot).at(t).turns == {}
 
 
+def test_a_ball_that_rolls_and_spins_turns_about_both():
+    """Against a marked point of it, carried along in tiny steps: p' = w x p."""
+    R = BALL_RADIUS
+    shot = sn.simulate([(0.0, 0.0)], [(0.5, 0.3)], [(-0.3 / R, 0.5 / R, 25.0)], None)
+    end, steps = 1.2, 60_000
+    spins = shot.at((np.arange(steps) + 0.5) * end / steps)[2][:, CUE] * end / steps
+    point = np.array([0.0, 0.0, 1.0])
+    for w in spins:
+        middle = point + np.cross(w, point) / 2
+        point = point + np.cross(w, middle)
+    assert matrix(Turning(shot, CUE).at(end)) @ (0.0, 0.0, 1.0) == pytest.approx(point, abs=2e-4)
+
+
 def test_turns_add_up():
     rng = np.random.default_rng(0)
     for a, b in rng.normal(0, 1, (20, 2, 3)):
