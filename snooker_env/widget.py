@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ._check import choice, number, truth
-from .replays import replay
+from .replays.make import replay
 from .replays.replay import WEB
 
 __all__ = ["replay_widget"]

@@ -18,7 +18,7 @@ LOOKED_AT = 8
 
 def advise(
     position: PositionsLike, *, agent: Any = "lookahead", noise: NoiseLike = "professional", n: int = 5, samples: int = 200,
-    visits: int = 60, seed: int = 0, options: Any = None, distinct: bool = True, trust: bool = False,
+    visits: int = 100, seed: int = 0, options: Any = None, distinct: bool = True, trust: bool = False,
 ) -> Advice:  # fmt: skip
     """The strokes that a player would play at a position, best first, and what comes of each under errors of execution.
 
