@@ -72,6 +72,17 @@ def test_contacts_are_where_the_cue_ball_met_others(pot):
     assert contacts(alone).shape == (0, 2)
 
 
+def test_ghosts_stay_from_the_contact_on(pot):
+    film = Film("match", pot, faded=(CUE, 1))
+    met = pot.events["time"][pot.events["kind"] == sn.EventKind.BALL_BALL][0]
+    for t, count in [(0.0, 0), (met - 1e-6, 0), (met, 1), (pot.duration, 1)]:
+        ghosts = film.at(t).ghosts
+        assert [len(ghosts[ball]) for ball in (CUE, 1)] == [count, count]
+    assert np.array_equal(ghosts[CUE], contacts(pot)) and Film("match", pot).at(pot.duration).ghosts == {}
+    end = list(shot_scenes("match", pot, faded=(CUE,)))[-1]
+    assert np.array_equal(end.ghosts[CUE], contacts(pot))
+
+
 def test_a_rolling_ball_turns_once_each_circumference():
     """It rolls a quarter of a turn along +x: what was on top is in front, what was in front is below."""
     R = BALL_RADIUS
