@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ._check import choice, number, truth
-from .replays.make import replay
-from .replays.replay import WEB
+from .replays import replay
+from .replays.document import WEB
 
 __all__ = ["replay_widget"]
 

@@ -16,7 +16,7 @@ from .bars import bars
 from .words import pots_of
 
 if TYPE_CHECKING:
-    from .replay import Replay
+    from .document import Replay
 
 PAUSE = 0.8
 """How long the table is shown after each stroke [s of the film]."""

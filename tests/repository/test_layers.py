@@ -48,21 +48,23 @@ ALLOWED = {
     "widget": {"_check", "replays"},
     "play": BASE | {"physics", "shot", "simulation", "game", "tasks", "planning", "advice", "render", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {
-        "geometry",
-        "physics",
-        "impacts",
-        "shot",
-        "simulation",
-        "tasks",
-        "planning",
-        "advice",
-        "envs",
-        "match",
-        "replays",
-        "_warmup",
-        "_registration",
-    },  # fmt: skip
+    "__init__": set(
+        [
+            "geometry",
+            "physics",
+            "impacts",
+            "shot",
+            "simulation",
+            "tasks",
+            "planning",
+            "advice",
+            "envs",
+            "match",
+            "replays",
+            "_warmup",
+            "_registration",
+        ]
+    ),
 }
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
@@ -73,7 +75,7 @@ OUTSIDE = {
     "anywidget": {"widget"},
     "traitlets": {"widget"},
 }
-OUTSIDE |= dict.fromkeys(("hmac", "http", "secrets", "socket", "urllib", "webbrowser"), {"play"})  # the network, as well
+OUTSIDE |= {name: {"play"} for name in ("hmac", "http", "secrets", "socket", "urllib", "webbrowser")}  # the network, as well
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
