@@ -10,8 +10,10 @@ Public are the names in ``__all__`` of this package and of these modules of it; 
 * ``snooker_env.kernels``: for kernels of your own: how they are compiled, and the inner kernels that they may call
 * ``snooker_env.checks``: bad input reported as the package does
 * ``snooker_env.render``: the scene of a table, and its pictures
+* ``snooker_env.render.diagrams``: shots, options, fans and where a ball stops, drawn with matplotlib
 * ``snooker_env.tasks.saved_models``: what a model's file says of itself, read as plain data
 * ``snooker_env.replays``: what was played, as a page, as data and as a film
+* ``snooker_env.widget``: a replay in a notebook
 * ``snooker_env.sb3``: many tables for Stable-Baselines3
 """
 

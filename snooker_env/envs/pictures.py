@@ -18,8 +18,6 @@ MODES = ("human", "rgb_array", "ansi")
 FPS = 30
 SIZE = (1920, 1080)
 """Width and height of pictures [pixels] unless told: those of render.view."""
-WINDOW_SPEED = 2.0
-"""How fast a window shows strokes, unless its user wants otherwise."""
 
 
 Picture: TypeAlias = NDArray[np.uint8] | str | None
@@ -82,7 +80,7 @@ class Pictures:
             self._window = Window(size=None if self.size == SIZE else self.size)
         if played:
             film = next(self._films(history, 1))
-            self._window.play(film, FPS, speed=WINDOW_SPEED)
+            self._window.play(film, FPS)
         self._window.draw(self._scene(tables, 0, history))
 
     def require_display(self) -> None:

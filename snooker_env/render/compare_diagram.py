@@ -8,7 +8,7 @@ import numpy as np
 from .._check import refuse, refuse_what
 from ..physics.table import Table
 from ..simulation import Shot
-from .shot_diagram import View, area, plot, window_of
+from .shot_diagram import View, area, plot, region_of
 from .sketch import CAPTIONS, WIDTH, pyplot, rgb
 
 if TYPE_CHECKING:
@@ -74,14 +74,14 @@ def compare(
     for k, shot in enumerate(shots):
         if shot.table is not table:
             raise refuse_what(f"shots[{k}].table", "another table", "must be that of shots[0]")
-    window = window_of(view, np.concatenate([area(shot) for shot in shots]), Table.of(None) if table is None else table)
+    region = region_of(view, np.concatenate([area(shot) for shot in shots]), Table.of(None) if table is None else table)
     caption = options.pop("caption", "full" if len(shots) == 1 else "short")
     if axes is None:
         n = len(shots)
         wide = (1.0 - (n - 1) * _GAP) / n
-        high = wide * (window.height / window.width + CAPTIONS.get(caption, 0.0))
+        high = wide * (region.height / region.width + CAPTIONS.get(caption, 0.0))
         figure = pyplot().figure(figsize=(WIDTH, WIDTH * high), facecolor=rgb("floor"))
         axes = [figure.add_axes((k * (wide + _GAP), 0.0, wide, 1.0)) for k in range(n)]
-    seen = np.array(window).reshape(2, 2)
+    seen = np.array(region).reshape(2, 2)
     each = zip(shots, axes, labels or [""] * len(shots), cues or [None] * len(shots), strict=True)
     return tuple(plot(shot, ax, cue=cue, view=seen, title=label, caption=caption, **options) for shot, ax, label, cue in each)  # pyright: ignore[reportArgumentType]

@@ -13,7 +13,7 @@ from ..physics.engine import EventKind
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
 from ..simulation import Shot, simulate, simulate_batch
-from .shot_diagram import SLIDES, View, window_of
+from .shot_diagram import SLIDES, View, region_of
 from .shot_paths import contacts, cue_ball, paths
 from .sketch import CAPTIONS, Sketch, rgb
 
@@ -108,8 +108,8 @@ def fan(
     r, here = _places(position, on_table)
     options = fan_options(r, here, ball, pocket, speed, tops, sides, elevation, aim, table, physics)
     shots = [option.shot for option in options]
-    window = window_of(view, np.concatenate([*map(_way, shots), _ends(shots)]), table)
-    sketch = Sketch(table, physics.R, window, ax, strip=0.8 * CAPTIONS["full"])
+    region = region_of(view, np.concatenate([*map(_way, shots), _ends(shots)]), table)
+    sketch = Sketch(table, physics.R, region, ax, strip=0.8 * CAPTIONS["full"])
     sketch.title(title)
     for k in np.flatnonzero(here).tolist():
         sketch.ball(k, r[k], label=labels)
@@ -243,7 +243,7 @@ def shade(top: float, tops: Sequence[float]) -> tuple[int, ...]:
 
 def _write(sketch, options, tops, speed):
     """What the colours and the signs mean."""
-    w, depth = sketch.window, sketch.depth
+    w, depth = sketch.region, sketch.depth
     if not depth:
         return
     rows = sketch.rows(2)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .._types import Floats
+from ..game.balls import YELLOW
 from .palette import COLOURS, LETTERS, PALETTE
 from .pygame_library import BOLD, surface_of, typeset
 from .scene import Scene
@@ -34,19 +35,18 @@ def draw_balls(surface: Any, scene: Scene, view: View) -> None:
         for place in view(places):
             images.append(_at(place, _body, tuple(COLOURS[ball].tolist()), round(radius, 2), _FADED))
     where = view(scene.positions)
-    images += _shadows(scene, view, over, where, radius)
+    images += _shadows(scene.positions, over, where, radius)
     for ball, place in zip(scene.ids.tolist(), where, strict=True):
         colour = tuple(COLOURS[ball].tolist())
         if ball in scene.turns:
             images.append(_spotted(place, colour, radius, scene.turns[ball]))
         else:
             images.append(_at(place, _body, colour, round(radius, 2), 1.0))
-    images += _mirrored(scene, view, over, where, radius)
-    if scene.lettered:
-        for ball, place in zip(scene.ids.tolist(), where, strict=True):
-            if ball > 15:
-                letter = _letter(ball, round(radius, 1))
-                images.append((letter, (round(place[0] - letter.get_width() / 2), round(place[1] - letter.get_height() / 2))))
+    lettered = (scene.ids >= YELLOW) & scene.lettered
+    images += _mirrored(scene.positions[~lettered], over, where[~lettered], radius)
+    for ball, place in zip(scene.ids[lettered].tolist(), where[lettered], strict=True):
+        letter = _letter(ball, round(radius, 1))
+        images.append((letter, (round(place[0] - letter.get_width() / 2), round(place[1] - letter.get_height() / 2))))
     surface.fblits(images)
 
 
@@ -106,11 +106,11 @@ def _rays(positions, over):
     return across, np.sqrt((across**2).sum(axis=-1) + LAMP_HEIGHT**2)
 
 
-def _mirrored(scene, view, over, where, radius):
+def _mirrored(positions, over, where, radius):
     """The lamps in the balls: each where the surface leans half-way between the eye, straight above, and the lamp."""
     found = []
     ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.5)])[None] * PANEL[0]
-    across, far = _rays(scene.positions, ends.reshape(-1, 2))
+    across, far = _rays(positions, ends.reshape(-1, 2))
     up = LAMP_HEIGHT / far + 1
     lean = across / far[..., None]
     lean /= np.sqrt((lean**2).sum(axis=-1) + up**2)[..., None]
@@ -135,10 +135,10 @@ def _lamp(half, radius, fx, fy):
     return surface_of(image)
 
 
-def _shadows(scene, view, over, where, radius):
+def _shadows(positions, over, where, radius):
     """One soft shadow a lamp, away from it, fainter the flatter its light falls; and the dark where the ball meets the cloth."""
     found = []
-    across, far = _rays(scene.positions, over)
+    across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3
     strength *= _ALL_DARK / strength.sum(axis=1, keepdims=True)
     centre = where[:, None] - (radius * across / LAMP_HEIGHT)[..., ::-1]

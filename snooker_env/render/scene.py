@@ -19,14 +19,10 @@ from ..geometry import BALL_RADIUS
 from ..physics.engine import EventKind
 from ..physics.table import Table, TableLike
 from ..simulation import Shot
-from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, extent, is_marked, outline, scene_data
-from .palette import COLOURS, LETTERS, PALE, PALETTE
+from .outline import outline as outline  # a part of what there is to draw
+from .outline import scene_data as scene_data
+from .palette import COLOURS, LETTERS
 from .turning import Turning
-
-__all__ = [
-    "BAULK_LINE", "COLOURS", "CUSHION", "D_ARC", "LETTERS", "PALE", "PALETTE", "RAIL", "SPOT_MARKS", "Film", "Outline", "Scene", "ScoreBar",
-    "ball_paths", "contacts", "extent", "is_marked", "outline", "scene", "scene_data", "shot_scenes",
-]  # fmt: skip
 
 
 @dataclass(frozen=True)

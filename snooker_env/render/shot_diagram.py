@@ -12,8 +12,8 @@ from ..physics.engine import EventKind
 from ..physics.table import Table
 from ..simulation import Shot
 from .palette import PALE
-from .shot_paths import Contact, Piece, Tip, arrow_places, contacts, cue_ball, cut_angle, paths, tip_of, velocity_before
-from .sketch import CAPTIONS, PATH_WIDTH, Sketch, Window, flipped, is_closed, rgb
+from .shot_paths import Meeting, Piece, Tip, arrow_places, contacts, cue_ball, cut_angle, paths, tip_of, velocity_before
+from .sketch import CAPTIONS, PATH_WIDTH, Region, Sketch, flipped, is_closed, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -97,8 +97,9 @@ def plot(
     >>> import snooker_env as sn
     >>> v, w = sn.strike(speed=2.0, aim=1.5708, top=-0.3)
     >>> shot = sn.simulate([(0.0, 0.5), (0.02, 1.2)], [v[:2], (0.0, 0.0)], [w, (0.0, 0.0, 0.0)])
-    >>> ax = shot.plot(view="shot")
-    >>> ax.figure.savefig("/tmp/shot.png")
+    >>> ax = shot.plot(view="shot", title="Screw")
+    >>> ax.texts[0].get_text(), bool(ax.yaxis_inverted())
+    ('Screw', True)
     """
     if len(shot.positions) > N_BALLS:
         raise refuse("balls of the shot", len(shot.positions), f"must be at most {N_BALLS}")
@@ -109,7 +110,7 @@ def plot(
     wanted = set(found if balls is None else (integer("balls", ball, 0, len(shot.positions) - 1) for ball in balls))
     first = cue_ball(shot)
     tip = _tip(cue, shot, first)
-    sketch = Sketch(table, shot.physics.R, window_of(view, area(shot), table), ax, strip=CAPTIONS[caption])
+    sketch = Sketch(table, shot.physics.R, region_of(view, area(shot), table), ax, strip=CAPTIONS[caption])
     sketch.title(title)
     start, there = shot.at(0.0)[0], shot.on_table | (shot.potted >= 0)
     for ball in np.flatnonzero(there).tolist():
@@ -131,16 +132,16 @@ def plot(
     return sketch.ax
 
 
-def window_of(view: Any, points: Floats, table: Table) -> Window:
+def region_of(view: Any, points: Floats, table: Table) -> Region:
     """What of the table a view shows, if something happens at these points (m, 2)."""
     if isinstance(view, str) and view in ("table", "shot"):
-        return Window.of_table(table) if view == "table" and is_closed(table) else Window.around(points, table)
+        return Region.of_table(table) if view == "table" and is_closed(table) else Region.around(points, table)
     if isinstance(view, str) or np.shape(view) != (2, 2):
         raise refuse("view", view, 'must be "table", "shot" or ((lowest x, highest x), (lowest y, highest y))')
     (low_x, high_x), (low_y, high_y) = array("view", view, (2, 2)).tolist()
     if low_x >= high_x or low_y >= high_y:
         raise refuse("view", view, "must have its lower ends first")
-    return Window(low_x, high_x, low_y, high_y)
+    return Region(low_x, high_x, low_y, high_y)
 
 
 def area(shot: Shot) -> Floats:
@@ -171,7 +172,7 @@ def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = No
         sketch.line(piece.points, colour, level=5.0 + 0.3 * (ball == 0), **style)
     points = np.concatenate([piece.points for piece in path])
     points = points[np.append(True, np.hypot(*np.diff(points, axis=0).T) > 0)]
-    for place, direction in arrow_places(points, 0.085 * sketch.window.width):
+    for place, direction in arrow_places(points, 0.085 * sketch.region.width):
         sketch.arrow(place, direction, colour)
 
 
@@ -260,11 +261,11 @@ def draw_tip(sketch: Sketch, tip: Tip | None, middle: tuple[float, float], radiu
 
 
 def _write_strip(sketch: Sketch, shot: Shot, first: int | None, tip: Tip | None, known: bool, *, short: bool) -> None:
-    rows, left = sketch.rows(4 if short else 3), sketch.window.low_y + 0.12 * sketch.depth
+    rows, left = sketch.rows(4 if short else 3), sketch.region.low_y + 0.12 * sketch.depth
     said = summary(shot, first)
     if first is not None:
         radius = (0.32 if short else 0.40) * sketch.depth
-        draw_tip(sketch, tip, (left + radius, sketch.window.high_x + sketch.depth / 2), radius, shot.physics.max_offset)
+        draw_tip(sketch, tip, (left + radius, sketch.region.high_x + sketch.depth / 2), radius, shot.physics.max_offset)
         left += 2 * radius + 0.16 * sketch.depth
         if tip is None:
             lines = ["a spin that no tip gives"]
@@ -277,7 +278,7 @@ def _write_strip(sketch: Sketch, shot: Shot, first: int | None, tip: Tip | None,
             sketch.text(left, x, words, "text_quiet" if words == lines[-1] and len(lines) == 3 else "text")
     if not short:
         for x, words in zip(rows, said, strict=False):
-            sketch.text(sketch.window.low_y + 0.425 * sketch.window.width, x, words)
+            sketch.text(sketch.region.low_y + 0.425 * sketch.region.width, x, words)
         _write_legend(sketch, shot, rows)
 
 
@@ -295,7 +296,7 @@ def summary(shot: Shot, first: int | None) -> list[str]:
     return [*lines, "; ".join(pots[:2]) + (" ..." if len(pots) > 2 else "") if pots else f"at rest after {shot.duration:.1f} s"]
 
 
-def contact_of(shot: Shot, met: Contact) -> Contact:
+def contact_of(shot: Shot, met: Meeting) -> Meeting:
     """The same meeting of two balls as the other one sees it."""
     return next(contact for contact in contacts(shot, met.other) if contact.time == met.time and contact.other == met.ball)
 
@@ -313,7 +314,7 @@ def pocket(shot: Shot, k: int) -> str:
 
 def _write_legend(sketch, shot, row):
     """What stripes and signs mean; of the signs those that there are."""
-    w, long = sketch.window, 0.035 * sketch.window.width
+    w, long = sketch.region, 0.035 * sketch.region.width
     y = w.low_y + 0.735 * w.width
     line = {"lw": PATH_WIDTH, "zorder": 9.5}
     sketch.ax.plot([y, y + long], [row[0]] * 2, color=rgb(PALE[0]), ls=DASHES, gapcolor=rgb(SLIDES), **line)

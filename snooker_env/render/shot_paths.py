@@ -36,7 +36,7 @@ class Piece(NamedTuple):
     """(m, 2) [m]: where ``Shot.at`` has the ball at these times."""
 
 
-class Contact(NamedTuple):
+class Meeting(NamedTuple):
     """A ball meets a ball, a cushion, a jaw or a pocket."""
 
     time: float
@@ -116,8 +116,8 @@ def velocity_before(shot: Shot, ball: int, time: float) -> Floats:
     return row[[VX, VY]] + row[[AX, AY]] * (time - row[T0])
 
 
-def contacts(shot: Shot, ball: int) -> Iterator[Contact]:
-    """What a ball meets, in order of time. Of two balls that meet, ``ball`` is ``Contact.ball``. A ball that rests is only met."""
+def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
+    """What a ball meets, in order of time. Of two balls that meet, ``ball`` is ``Meeting.ball``. A ball that rests is only met."""
     R = shot.physics.R
     for time, number, i, j in shot.events[_is_impact(shot)].tolist():
         kind = EventKind(number)
@@ -138,10 +138,10 @@ def contacts(shot: Shot, ball: int) -> Iterator[Contact]:
         elif shot.table is not None and kind == EventKind.POT:
             place = shot.table.falls[other, [FALL_X, FALL_Y]]
         before, after = velocity_before(shot, ball, time), v[ball]
-        yield Contact(time, kind, ball, other, place, centre, float(np.hypot(*before)), float(np.hypot(*after)))
+        yield Meeting(time, kind, ball, other, place, centre, float(np.hypot(*before)), float(np.hypot(*after)))
 
 
-def cut_angle(shot: Shot, contact: Contact) -> float:
+def cut_angle(shot: Shot, contact: Meeting) -> float:
     """The cut [rad] of a contact with a ball: between the ball's direction just before and the line of centres; 0 is a full hit."""
     v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
     return float(np.arctan2(abs(v[0] * line[1] - v[1] * line[0]), v @ line))

@@ -11,8 +11,8 @@ import numpy as np
 from .._types import Floats, Vector
 from ..game.balls import N_BALLS
 from ..physics.table import Table
+from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, extent, is_marked, outline
 from .palette import COLOURS, LETTERS, PALE, PALETTE
-from .scene import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, extent, is_marked, outline
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +38,7 @@ def pyplot() -> Any:
     return plt
 
 
-class Window(NamedTuple):
+class Region(NamedTuple):
     """What of a table is to be seen [m]."""
 
     low_x: float
@@ -57,14 +57,14 @@ class Window(NamedTuple):
         return self.high_x - self.low_x
 
     @classmethod
-    def of_table(cls, table: Table) -> "Window":
+    def of_table(cls, table: Table) -> "Region":
         """All of a table, with its rails."""
         (low_x, high_x), (low_y, high_y) = extent(table)
         rim = RAIL + _MARGIN if is_closed(table) else 0.0
         return cls(low_x - rim, high_x + rim, low_y - rim, high_y + rim)
 
     @classmethod
-    def around(cls, points: Floats, table: Table, margin: float = 0.18, ratio: tuple[float, float] = (1.35, 2.1)) -> "Window":
+    def around(cls, points: Floats, table: Table, margin: float = 0.18, ratio: tuple[float, float] = (1.35, 2.1)) -> "Region":
         """As much as points (m, 2) need, at least 1 m wide, its width over its height within ``ratio``, and within the table's picture."""
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         height, width = high - low
@@ -105,31 +105,32 @@ class Sketch:
     Axes that a sketch has drawn on before keep their table and what they show of it.
     """
 
-    def __init__(self, table: Table, R: float, window: Window | None = None, ax: "Axes | None" = None, *, strip: float = 0.0):
+    def __init__(self, table: Table, R: float, region: Region | None = None, ax: "Axes | None" = None, *, strip: float = 0.0):
         plt = pyplot()
-        window = Window.of_table(table) if window is None else window
+        region = Region.of_table(table) if region is None else region
         self.table, self.R = table, R
-        depth = strip * window.width
-        if ax is None:
-            figure = plt.figure(figsize=(WIDTH, WIDTH * (window.height + depth) / window.width), facecolor=rgb("floor"))
-            ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        self.ax: Axes = ax
-        self.fresh = not any(artist.get_gid() == TABLE for artist in ax.get_children())
+        depth = strip * region.width
+        axes: Any = ax
+        if axes is None:
+            figure = plt.figure(figsize=(WIDTH, WIDTH * (region.height + depth) / region.width), facecolor=rgb("floor"))
+            axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        self.ax: Axes = axes
+        self.fresh = not any(artist.get_gid() == TABLE for artist in axes.get_children())
         if self.fresh:
-            self.window, self.depth = window, depth
+            self.region, self.depth = region, depth
             self._set_up()
             self._draw_table()
         else:
-            (low_y, high_y), (bottom, low_x) = ax.get_xlim(), ax.get_ylim()
-            self.window, self.depth = Window(low_x, bottom, low_y, high_y), 0.0
-        box, (wide, high) = ax.get_position(), ax.get_figure().get_size_inches()
-        self.points_per_metre = 72 * min(box.width * wide / self.window.width, box.height * high / (self.window.height + self.depth))
-        self.font = float(np.clip(9.0 * self.points_per_metre * self.window.width / (72 * WIDTH), 7.5, 11.0))
+            (low_y, high_y), (bottom, low_x) = axes.get_xlim(), axes.get_ylim()
+            self.region, self.depth = Region(low_x, bottom, low_y, high_y), 0.0
+        room, points = axes.get_window_extent(), 72 / axes.figure.dpi
+        self.points_per_metre = points * min(room.width / self.region.width, room.height / (self.region.height + self.depth))
+        self.font = float(np.clip(9.0 * self.points_per_metre * self.region.width / (72 * WIDTH), 7.5, 11.0))
         self._taken: list[tuple[float, float, float, float]] = []
         self._busy: list[Floats] = []
 
     def _set_up(self):
-        w, ax = self.window, self.ax
+        w, ax = self.region, self.ax
         ax.set_xlim(w.low_y, w.high_y)
         ax.set_ylim(w.high_x + self.depth, w.low_x)
         ax.set_aspect("equal")
@@ -144,7 +145,7 @@ class Sketch:
     def _draw_table(self):
         from matplotlib.patches import Circle, FancyBboxPatch, Polygon, Rectangle
 
-        ax, parts, w = self.ax, outline(self.table), self.window
+        ax, parts, w = self.ax, outline(self.table), self.region
         (low_x, high_x), (low_y, high_y) = extent(self.table)
         scale = 72 * WIDTH / w.width  # of lines that are so many metres wide, about
 
@@ -154,7 +155,7 @@ class Sketch:
             if clip is not None:
                 patch.set_clip_path(clip)
 
-        def box(extra, kind=Rectangle, **more):
+        def box(extra, kind: Any = Rectangle, **more):
             return kind((low_y - extra, low_x - extra), high_y - low_y + 2 * extra, high_x - low_x + 2 * extra, **more)
 
         def rail(extra, radius, colour, level):
@@ -206,9 +207,9 @@ class Sketch:
         add = self.ax.add_patch
         add(Circle((y + 0.25 * R, x + 0.3 * R), 1.08 * R, fc=rgb("shadow", 0.4), ec="none", zorder=6.9))
         add(Circle((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), lw=0.4, zorder=7.0, gid=f"ball-{ball}"))
-        for k in range(1, 6):
-            away = 0.07 * k * R
-            add(Circle((y - away, x - away), R * (1 - 0.15 * k), fc=(1, 1, 1, 0.055), ec="none", zorder=7.0 + 0.01 * k))
+        for k in range(1, 13):
+            away = 0.029 * k * R
+            add(Circle((y - away, x - away), R * (1 - 0.065 * k), fc=(1, 1, 1, 0.022), ec="none", zorder=7.0 + 0.005 * k))
         add(Circle((y - 0.36 * R, x - 0.40 * R), 0.17 * R, fc=rgb("lamp", 0.85), ec="none", zorder=7.1))
         self.keep_clear(np.asarray(place)[None], 2 * R)
         if label:
@@ -239,18 +240,12 @@ class Sketch:
         self.keep_clear(points, 0.0)
 
     def arrow(self, place: Floats, direction: Floats, colour: Any, size: float = 10.0, level: float = 5.6) -> None:
-        """An arrowhead at a place, pointing along a unit vector."""
-        from matplotlib.markers import MarkerStyle
-        from matplotlib.path import Path
-        from matplotlib.transforms import Affine2D
+        """An arrowhead about a place, ``size`` [points] long, pointing along a unit vector."""
+        from matplotlib.patches import Polygon
 
-        head = Path([(1.2, 0.0), (-0.8, 0.75), (-0.4, 0.0), (-0.8, -0.75), (1.2, 0.0)])
-        across, along = -direction[0], direction[1]  # as seen: up and to the right
-        turn = Affine2D().rotate(np.arctan2(across, along))
-        y, x = flipped(place)
-        marker = MarkerStyle(head, transform=turn)
-        style = {"mfc": rgb(colour), "mec": rgb("path_edge"), "mew": 0.8, "ls": "none", "zorder": level}
-        self.ax.plot(y, x, marker=marker, ms=size, **style, gid="arrow")
+        head = np.array([(0.5, 0.0), (-0.35, 0.32), (-0.17, 0.0), (-0.35, -0.32)]) * size / self.points_per_metre
+        points = place + head @ np.array([direction, [-direction[1], direction[0]]])
+        self.ax.add_patch(Polygon(flipped(points), fc=rgb(colour), ec=rgb("path_edge"), lw=0.8, zorder=level, gid="arrow"))
 
     def mark(self, place: Vector, marker: Any, colour: Any, size: float = 6.0, level: float = 8.0, **more: Any) -> None:
         """A small sign at a place."""
@@ -273,16 +268,17 @@ class Sketch:
 
     def rows(self, n: int) -> list[float]:
         """The heights (as x) of n lines of words in the strip under the picture."""
-        return [self.window.high_x + self.depth * (k + 0.62) / (n + 0.24) for k in range(n)]
+        return [self.region.high_x + self.depth * (k + 0.62) / (n + 0.24) for k in range(n)]
 
     def title(self, words: str) -> None:
         """A line at the top left."""
         from matplotlib.patheffects import withStroke
 
         if words:
-            w, line = self.window, 1.5 * self.font / self.points_per_metre
+            w, line = self.region, 1.5 * self.font / self.points_per_metre
             within = w.low_x < extent(self.table)[0, 0] - CUSHION  # on the rail, else on the cloth
-            y, x = (w.low_y + 0.055 * w.width, w.low_x + 0.072) if within else (w.low_y + 0.5 * line, w.low_x + 0.7 * line)
+            y = w.low_y + (0.055 * w.width if w.low_y < extent(self.table)[1, 0] - CUSHION else 0.5 * line)  # right of the pocket
+            x = w.low_x + (0.072 if within else 0.7 * line)
             stroke = [withStroke(linewidth=2.2, foreground=rgb("path_edge", 0.85))]
             self.text(y, x, words, weight="bold", size=1.1, gid="title", path_effects=stroke)
             self._taken.append((w.low_y, w.low_y + 0.66 * line * len(words), w.low_x, w.low_x + 1.3 * line))
@@ -318,7 +314,7 @@ class Sketch:
     def _cost(self, box, busy):
         """How much a label in that box would cover."""
         left, right, top, bottom = box
-        w = self.window
+        w = self.region
         out = max(w.low_y - left, right - w.high_y, w.low_x - top, bottom - w.high_x, 0.0)
         half = busy[:, 2] / 2
         inside = (busy[:, 1] > left - half) & (busy[:, 1] < right + half) & (busy[:, 0] > top - half) & (busy[:, 0] < bottom + half)

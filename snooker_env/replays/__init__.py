@@ -8,7 +8,7 @@
 """
 
 from .make import replay
-from .replay import Replay
+from .document import Replay
 from .wrapper import RecordReplay
 
 __all__ = ["RecordReplay", "Replay", "replay"]

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import number, refuse
+from .._files import write_whole
 from ..render.scene import Film, Scene, contacts, scene
 from ..tasks.played import Played
 from .bars import bars
 from .words import pots_of
-from .write import write_whole
 
 if TYPE_CHECKING:
-    from .replay import Replay
+    from .document import Replay
 
 PAUSE = 0.8
 """How long the table is shown after each stroke [s of the film]."""

@@ -4,13 +4,16 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from .._check import refuse_what
-from ..physics.table import TableLike
-from ..simulation import Shot
-from ..tasks.played import Played
-from .replay import Replay
+import numpy as np
 
-_ALLOWED = "must be a Shot, a list of shots or of strokes of env.history, a Replay, or an environment with keep_history = True"
+from .._check import refuse_what
+from ..physics.table import Table, TableLike
+from ..planning import Position
+from ..simulation import Shot, simulate
+from ..tasks.played import Played
+from .document import Replay
+
+_ALLOWED = "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay, or an environment that keeps its history"
 
 
 def replay(source: Any, path: str | Path | None = None, *, title: str = "", players: Iterable[str] = (), table: TableLike = None) -> Replay:
@@ -18,10 +21,10 @@ def replay(source: Any, path: str | Path | None = None, *, title: str = "", play
 
     Parameters
     ----------
-    source : Shot, sequence of Shot or of strokes, environment, or Replay
+    source : Shot, sequence of Shot or of strokes, environment, Position, or Replay
         A ``Shot`` of ``sn.simulate``, or several in the order in which they were played. The strokes of an episode: ``env.history`` of
         ``SnookerEnv`` or a match, or the environment itself, wrapped or not, of which ``keep_history`` was set to True, or which has a
-        render mode.
+        render mode. A ``Position`` is shown as it stands.
     path : str or Path, optional
         Where to write it, see ``Replay.save``: "break.html", ".json", ".mp4" or ".gif".
     title : str
@@ -50,17 +53,26 @@ def replay(source: Any, path: str | Path | None = None, *, title: str = "", play
     >>> sn.replay(env, title="one stroke")
     Replay(1 strokes, 'one stroke')
     """
-    made = source if isinstance(source, Replay) else Replay(_strokes(source), title=title, players=players, table=table)
+    made = source if isinstance(source, Replay) else Replay(_strokes(source, table), title=title, players=players, table=table)
     if path is not None:
         made.save(path)
     return made
 
 
-def _strokes(source: Any) -> list[Shot | Played]:
+def _still(position: Position, table: TableLike) -> Shot:
+    """The shot in which nothing moves."""
+    places, on_table, _ = position.arrays()
+    nothing = np.zeros((len(places), 3))
+    return simulate(places, nothing[:, :2], nothing, table=Table.of("match" if table is None else table), on_table=on_table)
+
+
+def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
     if isinstance(source, Shot | Played):
         return [source]
     if isinstance(source, list | tuple):
         return list(source)
+    if isinstance(source, Position):
+        return [_still(source, table)]
     env = getattr(source, "unwrapped", source)
     if not hasattr(env, "history"):
         raise refuse_what("source", f"a {type(source).__name__}", _ALLOWED)

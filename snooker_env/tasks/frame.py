@@ -35,6 +35,7 @@ from ..game.frame_columns import (
     write_frame,
 )
 from ..game.layouts import deal_tables
+from ..game.ruling import AUTO
 from . import frame_kernels
 from .frame_kernels import AGENT
 from .observations import FRAME_SIZE
@@ -54,10 +55,15 @@ class Frames(Tables):
     SIZE = FRAME_SIZE
     COLUMNS = COLUMNS
 
+    nominated: Ints
+    """(n,) the colour that the striker has named after a red or as his free ball. AUTO, as always in the environments: the one first
+    struck. Whoever sets it checks it, and sets it back after the stroke."""
+
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         super().__init__(rules, n, limit=limit)
         self._saved_positions, self._saved_on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
         self._lead, self._replies, self._played = (np.zeros(n, np.int64) for _ in range(3))
+        self.nominated = np.full(n, AUTO, np.int64)
         self.positions[:], self.on_table[:] = SPOTS, True  # as a frame stands before its first reset
         if n:
             write_frame(Frame.start(miss="clear_path" if rules.miss else "off"), 0, self.game[0], self.saved, 0)
@@ -70,7 +76,7 @@ class Frames(Tables):
         return Layouts(self._saved_positions, self._saved_on_table)
 
     def _columns(self) -> tuple[str, ...]:
-        return (*super()._columns(), "_saved_positions", "_saved_on_table", "_lead", "_replies", "_played")
+        return (*super()._columns(), "_saved_positions", "_saved_on_table", "_lead", "_replies", "_played", "nominated")
 
     def frame(self, k: int) -> Frame:
         """The ``game.frame.Frame`` on table k."""
@@ -113,7 +119,7 @@ class Frames(Tables):
         if not len(which):
             return
         if self.rules.miss:
-            frame_kernels.remember(which, self.positions, self.on_table, self.game, self.saved, buffers.seen)
+            frame_kernels.remember(which, self.positions, self.on_table, self.game, self.saved, self.nominated, buffers.seen)
         unfinished = self.run(which, buffers)
         self._conclude(which, buffers, out, own, alone)
         for j in unfinished:
@@ -122,9 +128,9 @@ class Frames(Tables):
 
     def _conclude(self, which, b, out, own, alone):
         frame_kernels.conclude(
-            which, self.positions, self.on_table, self.game, self.streams, b.r, b.potted, b.status, b.duration, b.event_time, b.event_what,
-            b.n_events, b.shots, b.seen, self._jaws, self.rules.miss, own, alone, self._played if own else self._replies, out.reals,
-            out.counts,
+            which, self.positions, self.on_table, self.game, self.streams, self.nominated, b.r, b.potted, b.status, b.duration,
+            b.event_time, b.event_what, b.n_events, b.shots, b.seen, self._jaws, self.rules.miss, own, alone,
+            self._played if own else self._replies, out.reals, out.counts,
         )  # fmt: skip
 
     def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:

@@ -37,7 +37,6 @@ from ..game.frame_columns import (
 )  # fmt: skip
 from ..game.paths import clear_path, full_ball_path
 from ..game.philox import pair
-from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS
 from ..physics.engine import Status
 from .observations import SIZE, observe_into
@@ -71,11 +70,14 @@ def decide(which, actions, decision, positions, on_table, game, saved, plays):
 
 
 @entry(what="the paths of the miss rule", seconds=2)
-def remember(which, positions, on_table, game, saved, seen):
-    """What the miss rule needs of the tables ``which`` before their strokes: the position, and which paths are clear."""
+def remember(which, positions, on_table, game, saved, nominated, seen):
+    """What the miss rule needs of the tables ``which`` before their strokes: the position, and which paths are clear.
+
+    ``nominated`` (n,): the colour that each striker has named, the only one that he may then strike first, or AUTO.
+    """
     for j in range(which.shape[0]):
         k = which[j]
-        on = strikeable(game[k], bits(on_table[k]) & ~1)
+        on = 1 << nominated[k] if nominated[k] > 0 else strikeable(game[k], bits(on_table[k]) & ~1)
         seen[j, CLEAR_PATH] = clear_path(positions[k], on_table[k], on, BALL_RADIUS)
         seen[j, FULL_PATH] = full_ball_path(positions[k], on_table[k], on, BALL_RADIUS)
         for i in range(N_BALLS):
@@ -93,9 +95,12 @@ def _hand_back(row):
 
 
 @entry(what="the referee of frames", seconds=6)
-def conclude(which, positions, on_table, game, streams, r, potted, status, duration, event_time, event_what, n_events, shots, seen, jaws,
-              miss, own, alone, played, reals, counts):  # fmt: skip
-    """Judge the shots that came to rest and put tables and frames in order. ``own``: infos tell of the strokes; ``played`` counts them."""
+def conclude(which, positions, on_table, game, streams, nominated, r, potted, status, duration, event_time, event_what, n_events, shots,
+              seen, jaws, miss, own, alone, played, reals, counts):  # fmt: skip
+    """Judge the shots that came to rest and put tables and frames in order. ``own``: infos tell of the strokes; ``played`` counts them.
+
+    ``nominated`` (n,): the colour that each striker has named, or AUTO: the one first struck.
+    """
     for j in range(which.shape[0]):
         if status[j] != _OK:
             continue
@@ -107,7 +112,7 @@ def conclude(which, positions, on_table, game, streams, r, potted, status, durat
         ball_on = row[BALL_ON]
         result = settle(
             p, on, ball_on, row[FREE_BALL], lead_of(row, row[STRIKER]), seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN],
-            0, AUTO, 0, jaws, BALL_RADIUS,
+            0, nominated[k], 0, jaws, BALL_RADIUS,
         )  # fmt: skip
         write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], result, seen)
         after_stroke(row, result, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], miss)

@@ -21,7 +21,7 @@ FOLDER = ROOT / "benchmarks"
 FILES = {file.stem: file for file in FOLDER.glob("*.py") if not file.name.startswith("_")}
 FOLDERS = {file.parent.name: file for file in FOLDER.glob("*/command.py") if not file.parent.name.startswith("_")}
 COMMANDS = sorted(FILES | FOLDERS)
-WITHOUT_CHANCE = ("film", "left_out", "nap", "paper", "pockets")
+WITHOUT_CHANCE = ("film", "left_out", "nap", "paper", "pockets", "web")
 
 
 def started(name, *arguments, **environment):

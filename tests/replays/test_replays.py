@@ -200,6 +200,13 @@ def test_keeping_history_changes_no_result():
     assert np.array_equal(run(True), run(False))
 
 
+def test_a_position_is_shown_as_it_stands():
+    position = sn.Position(cue=(0.1, -1.2), reds=[(0.3, 0.4)], black=(0.0, 1.4605))
+    stroke = sn.replay(position).to_dict()["strokes"][0]
+    assert stroke["on_table"] == [0, 1, 21] and stroke["duration"] == 0.0 and stroke["paths"]["count"] == 0
+    assert numbers(stroke["start"], "f8", 2)[[0, 1, 21]].tolist() == [[0.1, -1.2], [0.3, 0.4], [0.0, 1.4605]]
+
+
 @pytest.mark.parametrize(
     ("source", "words"),
     [

@@ -19,7 +19,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
-BASE = {"_jit", "_check", "_types", "geometry"}
+BASE = {"_jit", "_check", "_files", "_types", "geometry"}
 ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
@@ -27,12 +27,13 @@ ALLOWED = {
     "_registration": set(),
     "_autoregister": set(),
     "_types": set(),
+    "_files": set(),
     "_check": {"_types"},
     "checks": {"_check", "physics"},
     "kernels": {"_jit", "game", "tasks"},
     "geometry": {"_check", "_types"},
     "physics": BASE,
-    "shot": BASE | {"physics"},
+    "shot": BASE | {"physics", "render"},
     "impacts": BASE | {"physics", "shot"},
     "simulation": BASE | {"physics", "shot"},
     "game": BASE,
@@ -40,10 +41,12 @@ ALLOWED = {
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
     "advice": BASE | {"physics", "simulation", "game", "tasks", "planning", "envs"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render", "replays"},
-    "replays": BASE | {"physics", "simulation", "game", "tasks", "render"},
-    "render": {"_check", "_types", "geometry", "physics.columns", "physics.table", "physics.engine", "game.balls", "simulation"},
+    "replays": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
+    "render": BASE - {"_jit"} | {"physics", "game.balls", "impacts", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
+    "widget": {"_check", "replays"},
+    "play": BASE | {"physics", "shot", "simulation", "game", "tasks", "planning", "advice", "render", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
     "__init__": {
         "geometry",
@@ -59,14 +62,18 @@ ALLOWED = {
         "replays",
         "_warmup",
         "_registration",
-    },
+    },  # fmt: skip
 }
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
     "pygame": {"render"},
+    "matplotlib": {"render", "shot"},
     "pettingzoo": {"envs"},
     "imageio_ffmpeg": {"replays"},
+    "anywidget": {"widget"},
+    "traitlets": {"widget"},
 }
+OUTSIDE |= {name: {"play"} for name in ("hmac", "http", "secrets", "socket", "urllib", "webbrowser")}  # the network, as well
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
@@ -137,11 +144,13 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
         if library in ALWAYS | STANDARD:
             continue
         assert part in OUTSIDE.get(library, ()), f"{name} imports {library}"
-        if library in ("pygame", "stable_baselines3", "sb3_contrib") and part != "sb3":  # sb3.py itself is only loaded when it is wanted
+        if (
+            library in ("pygame", "matplotlib", "stable_baselines3", "sb3_contrib") and part != "sb3"
+        ):  # sb3.py itself is only loaded when it is wanted
             assert not top, f"{name} imports {library} when it is imported, not when it is wanted"
 
 
-LATE = {"envs": (".render", ".planning", ".replays"), "_warmup": (".planning", ".envs")}
+LATE = {"shot": (".render",), "envs": (".render", ".planning", ".replays"), "_warmup": (".planning", ".envs")}
 """What these parts import only when it is asked for."""
 
 

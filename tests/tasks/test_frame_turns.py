@@ -162,3 +162,16 @@ def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
         with pytest.raises(gymnasium.error.ResetNeeded):
             env.step(np.zeros((2, 4)) if isinstance(env, sn.SnookerVectorEnv) else np.zeros(7))
     assert frame_env().frame.phase == "stroke" and frame_env().over
+
+
+# A colour that is named
+
+
+def test_a_colour_named_that_is_not_struck_first_costs_the_higher_of_the_two():
+    """Blue lies in the way: struck when nothing or blue was named it is fair, and when black was named it costs black's seven."""
+    places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
+    for named, penalty in ((-1, 0), (BLUE, 0), (PINK, 6), (BLACK, 7)):
+        env = frame_state(frame_env(aim="absolute"), places, {"ball_on": BallOn.ANY_COLOUR})
+        env.tables.nominated[0] = named
+        _, _, _, _, info = env.step([-0.9, 0, 0, TO_BLUE, 0, 0, 0])
+        assert (info["penalty"], info["fouls"]) == (penalty, Foul.WRONG_FIRST if penalty else 0), named

@@ -1,45 +1,58 @@
-"""How does a simulated shot become the data of a replay? By hand from its log, so that the browser is tested against the format itself."""
+"""Which shots and replays do the tests of the browser show? Struck here, and written down by ``snooker_env.replays``."""
 
 import base64
 
 import numpy as np
 
-from snooker_env.physics import cloth
-from snooker_env.render.scene import scene_data
+import snooker_env as sn
+from snooker_env.game import layout
+from snooker_env.replays.encode import packed
 
-_F8 = [cloth.T0, cloth.X, cloth.Y, cloth.VX, cloth.VY, cloth.AX, cloth.AY]
-_F4 = [cloth.WX, cloth.WY, cloth.WZ]
-_U1 = [cloth.SEGMENT_BALL, cloth.SEGMENT_STATE]
-
-
-def packed(values, kind):
-    """Base64 of numbers, little-endian."""
-    return base64.b64encode(np.ascontiguousarray(values, kind).tobytes()).decode()
+MATCH = sn.Physics.preset("match")
 
 
-def stroke_of(shot, start, on_table=None, **words):
-    """One stroke of a replay: ``shot`` from the places ``start`` (n, 2)."""
-    n = len(start)
-    here = np.ones(n, bool) if on_table is None else np.asarray(on_table)
-    rows = shot.segments
-    still = (rows[:, cloth.T0] == 0.0) & (rows[:, cloth.SEGMENT_STATE] <= cloth.REST) & (rows[:, cloth.WZ] == 0.0)
-    rows = rows[~still]
-    said = {"cue": None, "player": None, "ball_on": None, "points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0}
-    return said | {
-        "n": n,
-        "start": packed(start, "<f8"),
-        "on_table": np.flatnonzero(here).tolist(),
-        "paths": {"count": len(rows), "f8": packed(rows[:, _F8], "<f8"), "f4": packed(rows[:, _F4], "<f4"), "u1": packed(rows[:, _U1], "u1")},
-        "events": [[float(t), int(kind), int(i), int(j)] for t, kind, i, j in shot.events.tolist()],
-        "duration": shot.duration,
-        "pots": np.flatnonzero(shot.potted >= 0).tolist(),
-        "after": None,
-    } | words  # fmt: skip
+def hit(r, here, speed, aim, side=0.0, top=0.0, elevation=0.0, table="match", physics=MATCH):
+    """The shot of a cue that strikes ball 0."""
+    v, w = sn.strike(speed, aim, side, top, elevation, physics)
+    velocities, spins = np.zeros((len(r), 2)), np.zeros((len(r), 3))
+    velocities[0], spins[0] = v[:2], w
+    return sn.simulate(r, velocities, spins, table, physics, on_table=here)
 
 
-def replay_of(strokes, table="match", physics=None, players=(), title="test"):
-    """A whole replay; ``physics``: the ``Physics`` of all its shots."""
-    return {
-        "format": "snooker-replay", "version": 1, "title": title, "players": list(players), "scene": scene_data(table),
-        "R": physics.R, "spin_decel": physics.spin_decel, "strokes": strokes,
-    }  # fmt: skip
+def break_off():
+    """A hard break-off: all reds move."""
+    r, here = layout("break_off", np.random.default_rng(3))
+    r[0] = 0.2, -1.2
+    return hit(r, here, 8.0, np.arctan2(0.885 + 1.2, -0.21), 0.0, 0.1)
+
+
+def visit():
+    """The data of a replay of three strokes by two players; after the second the black is respotted and the cue ball placed."""
+    shots = [break_off()]
+    for aim in (2.0, -1.0):
+        shots.append(hit(shots[-1].positions, shots[-1].on_table, 3.0, aim, 0.2, -0.3, 0.1))
+    data = sn.replay(shots, title="A visit of tests").to_dict()
+    places, on = shots[1].positions.copy(), shots[1].on_table.copy()
+    places[[0, 21]], on[[0, 21]] = [(0.1, -1.2), (0.0, 1.4605)], True
+    told = [(0, 1, [2], "red", [1, 0], 1), (0, 7, [21], "black", [8, 0], 8), (1, 0, [], "red", [8, 0], 0)]
+    for k, (player, points, pots, on_words, score, run) in enumerate(told):
+        data["strokes"][k] |= {
+            "player": player, "points": points, "pots": pots, "ball_on": on_words, "score": score, "break": run,
+            "words": f"The referee's words after stroke {k + 1}.",
+            "cue": {"speed": 8.0 if k == 0 else 3.0, "side": 0.2, "top": -0.3, "aim": (1.67, 2.0, -1.0)[k], "elevation": 0.2},
+        }  # fmt: skip
+    data["strokes"][1]["after"] = {"places": packed(places, "f8"), "on_table": np.flatnonzero(on).tolist()}
+    data["players"] = ["Ada <b>Lovelace</b>", "Someone with a name that is much too long for its place in the bar"]
+    return data, shots, places
+
+
+def page_of(data):
+    """The page of a replay that is given as data."""
+    film = sn.replay(break_off(), title=data["title"])
+    film._data = data
+    return film.html()
+
+
+def doubles(text):
+    """The numbers in base64."""
+    return np.frombuffer(base64.b64decode(text), "<f8")

@@ -64,7 +64,8 @@ def test_the_first_visit_that_is_long_enough_is_taken(capsys):
     ("wrong", "words"),
     [
         (["--agent", "nobody"], "agent"), (["--out", "a.exe"], "must be one of '.html'"), (["--out", "a.html", "--speed", "2"], "a film"),
-        (["--out", "a.mp4", "--size", "big"], "WIDTHxHEIGHT"), (["--out", "a.mp4", "--size", "321x180"], "even"), (["--tries", "0"], "tries"),
+        (["--out", "a.mp4", "--size", "big"], "WIDTHxHEIGHT"), (["--out", "a.mp4", "--size", "321x180"], "even"),
+        (["--tries", "0"], "tries"),
         (["--out", "a.gif", "--fps", "0"], "fps"), (["--layout", "nowhere"], "layout"), (["--noise", "loud"], "noise"),
     ],
 )  # fmt: skip

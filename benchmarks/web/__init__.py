@@ -1,0 +1,1 @@
+"""How fluently the browser plays: ``python -m benchmarks.web``."""

@@ -1,0 +1,115 @@
+"""How is the page opened? ``python -m snooker_env.play``: a server on this machine's own address, and the browser on its page."""
+
+import argparse
+import json
+import sys
+import webbrowser
+from pathlib import Path
+from typing import Any
+
+from .._check import refuse_what
+from ..tasks.noise import LEVELS
+
+MOST_FILE = 1_000_000
+"""Bytes of a position's file."""
+
+
+def _arguments(argv: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="python -m snooker_env.play",
+        description="Play snooker in the browser: against yourself or an agent, from any position, with an advisor. Programs can play, "
+        "too: docs/protocol.md. The server listens on 127.0.0.1 alone, and only answers who knows the address that it prints.",
+    )
+    parser.add_argument("--port", type=int, default=0, help="port to listen on (default: any that is free)")
+    parser.add_argument("--no-browser", action="store_true", help="only print the address")
+    parser.add_argument(
+        "--agent", action="append", default=[], metavar="NAME",
+        help="an agent that may be chosen on the page: a name of snooker_env.advice, a model's .zip, or MODULE:CLASS; the first one sits "
+        "down against you; may be given more than once",
+    )  # fmt: skip
+    parser.add_argument("--trust", action="store_true", help="let code in an --agent's model file run")
+    parser.add_argument(
+        "--noise", choices=list(LEVELS), default="professional", help="errors of execution of the agent (default: %(default)s)"
+    )
+    parser.add_argument("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
+    parser.add_argument("--layout", default="break_off", help="how the table is dealt (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=None, help="of all random numbers (default: another each time)")
+    return parser.parse_args(argv)
+
+
+def service_of(given: argparse.Namespace) -> Any:
+    """The game that the command line asks for: a ``Service``. ValueError or OSError for what cannot be."""
+    import numpy as np
+
+    from ..advice import player_of
+    from .routes import position_of
+    from .seats import PERSON, Seats
+    from .service import Service
+    from .session import Session
+
+    seed = int(np.random.SeedSequence().entropy) % 2**62 if given.seed is None else given.seed  # type: ignore[arg-type]
+    session = Session(layout=given.layout, seed=seed)
+    agents = {Path(name).stem if name.endswith(".zip") else name: player_of(name, trust=given.trust) for name in given.agent}
+    seats = Seats(agents)
+    if agents:
+        seats.sit([PERSON, next(iter(agents))])
+        session.noise[1] = given.noise
+    if given.position is not None:
+        read = _read(given.position)
+        if read.get("format") == "snooker-game":
+            session.load(read)
+        else:
+            session.set_up(position_of(read), scores=(0, 0), striker=0, free_ball=False)
+    return Service(session, seats)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    """The JSON object in a file."""
+    if path.stat().st_size > MOST_FILE:
+        raise refuse_what("position", f"a file of {path.stat().st_size} bytes", f"must be at most {MOST_FILE}")
+    try:
+        read = json.loads(path.read_text("utf-8"))
+    except ValueError as error:
+        raise refuse_what("position", str(path), f"must be a file of JSON ({error})") from None
+    if not isinstance(read, dict):
+        raise refuse_what("position", str(path), "must hold a JSON object")
+    return read
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Serve until Ctrl-C.
+
+    Parameters
+    ----------
+    argv : list of str, optional
+        The command line; None: that of the process.
+
+    Returns
+    -------
+    int
+        0, or 2 if something on the command line cannot be.
+    """
+    given = _arguments(argv)
+    from .server import PlayServer
+
+    try:
+        service = service_of(given)
+        server = PlayServer(service, given.port)
+    except (ValueError, OSError, OverflowError) as error:
+        print(f"snooker_env.play: {error}", file=sys.stderr)
+        return 2
+    try:
+        print(f"Snooker is played at\n\n    {server.address}\n\nPrograms play at its api/ (docs/protocol.md). Ctrl-C ends it.", flush=True)
+        if not given.no_browser:
+            webbrowser.open(server.address)
+        server.serve_forever(poll_interval=0.2)
+    except KeyboardInterrupt:
+        print()
+    finally:
+        service.close()
+        server.server_close()
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,123 @@
+"""Which ways to the pockets are open, and what is in the way of the others? Straight lines to each pocket for every ball that is on."""
+
+from dataclasses import dataclass
+from math import acos, atan2, degrees, erf, hypot, radians, sqrt
+from typing import Any
+
+import numpy as np
+
+from .._types import Floats
+from ..game.balls import CUE, NAMES, ids_of, mask_of_present
+from ..geometry import BALL_RADIUS, POCKET_AIMS, POCKETS
+from ..planning.geometry import obstructions, pots
+from ..planning.positions import Positions
+from ..tasks.noise import LEVELS
+
+MOST = 126
+"""Lines from 21 balls to 6 pockets."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Line:
+    """From the cue ball through a ball to a pocket.
+
+    Attributes
+    ----------
+    ball, pocket : int
+    open : bool
+        Whether the ball can be potted straight, by the geometry of straight lines.
+    blocked_by : tuple of str
+        Names of the balls that are in the way: of the ball on its way to the pocket, or of the cue ball on its way to the ball.
+    why : str
+        What else is wrong with a line that is not open: "cut too thin", "pocket too narrow from there"; else "".
+    cut : float
+        Angle between the cue ball's way and the ball's [rad].
+    to_ball, to_pocket : float
+        How far the cue ball runs to the contact, and the ball to the pocket [m].
+    aim : float
+        Direction of the cue ball's way, without throw or swerve [rad].
+    tolerance : float
+        By how much the aim may err [rad]; 0 unless it is open.
+    chance : float, or None
+        About how often a player with the seat's noise keeps within the tolerance; None without noise.
+    """
+
+    ball: int
+    pocket: int
+    open: bool
+    blocked_by: tuple[str, ...]
+    why: str
+    cut: float
+    to_ball: float
+    to_pocket: float
+    aim: float
+    tolerance: float
+    chance: float | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON types; lengths in metres, angles in radians."""
+        return {
+            "ball": NAMES[self.ball], "pocket": POCKETS[self.pocket], "open": self.open, "blocked_by": list(self.blocked_by),
+            "why": self.why, "cut": self.cut, "to_ball": self.to_ball, "to_pocket": self.to_pocket, "aim": self.aim,
+            "tolerance": self.tolerance, "chance": self.chance,
+        }  # fmt: skip
+
+    @property
+    def words(self) -> str:
+        """The line in words, without the ball's name."""
+        way = f"{POCKETS[self.pocket]}: "
+        if not self.open:
+            return way + (", ".join(self.blocked_by) + " in the way" if self.blocked_by else self.why)
+        cut = "straight" if self.cut < radians(1.0) else f"cut {degrees(self.cut):.0f} deg"
+        likely = "" if self.chance is None else f", chance {100 * self.chance:.0f} %"
+        return (
+            f"{way}open, {cut}, cue ball {self.to_ball:.2f} m, ball {self.to_pocket:.2f} m, aim {self.aim:.4f} rad, "
+            f"may err {degrees(self.tolerance):.2f} deg{likely}"
+        )
+
+
+def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
+    """All lines to pockets for the balls of the mask ``on``, ball by ball; ``positions``: the same table, on it being on what is.
+
+    With a free ball there are two: what is on stands in the one, the colours in the other.
+    """
+    errors = LEVELS[noise]
+    sigma = 0.0 if errors.silent else radians(errors.direction_deg())
+    found = {}
+    for position in positions:
+        some = pots(position, most=MOST)
+        for ball, pocket, tolerance in zip(some.ball[0].tolist(), some.pocket[0].tolist(), some.tolerance[0].tolist(), strict=True):
+            if ball >= 0:
+                found[ball, pocket] = tolerance
+    at = positions[0]
+    places, ids = at.positions[0], ids_of(on & mask_of_present(at.on_table[0]))
+    ways = [(ball, pocket) for ball in ids for pocket in range(len(POCKETS))]
+    if not ways:
+        return []
+    balls, pockets = (np.array(column) for column in zip(*ways, strict=True))
+    aims = POCKET_AIMS[pockets, :2]
+    ghosts = places[balls] - 2.0 * BALL_RADIUS * _unit(aims - places[balls])
+    rows = np.zeros(len(ways), np.int64)
+    skip = np.column_stack([np.full(len(ways), CUE), balls])
+    barred = obstructions(at, rows, places[balls], aims, ignore=skip)
+    barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, ignore=skip)
+    return [_line(*way, places, ghosts[k], aims[k], barred[k], found, sigma) for k, way in enumerate(ways)]
+
+
+def _line(ball, pocket, places, ghost, aim, barred, found, sigma):
+    run, way = ghost - places[CUE], aim - places[ball]
+    far, on = hypot(*run), hypot(*way)
+    cos_cut = float(run @ way / max(far * on, 1e-12))
+    cut = acos(min(1.0, max(-1.0, cos_cut)))
+    tolerance = found.get((ball, pocket), 0.0)
+    blocked = tuple(NAMES[i] for i in np.flatnonzero(barred))
+    why = "" if tolerance or blocked else "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
+    chance = erf(tolerance / (sigma * sqrt(2.0))) if sigma else None
+    return Line(
+        ball=ball, pocket=pocket, open=tolerance > 0.0, blocked_by=() if tolerance else blocked, why=why, cut=cut, to_ball=far,
+        to_pocket=on, aim=atan2(run[1], run[0]), tolerance=tolerance, chance=chance if tolerance else None,
+    )  # fmt: skip
+
+
+def _unit(v: Floats) -> Floats:
+    return v / np.maximum(np.hypot(*v.T), 1e-12)[:, None]

@@ -1,0 +1,89 @@
+"""What would be played, and where would the balls stop? Questions about the stroke to come, answered on copies of the table."""
+
+from typing import Any
+
+import numpy as np
+
+from .._check import choice, refuse
+from .._types import NoiseName
+from ..advice import CueStroke, Suggestion, advise, destinations
+from ..game.balls import CUE, NAMES
+from ..geometry import POCKET_AIMS, POCKETS
+from ..physics.engine import EventKind
+from ..planning import pot_aim
+from ..render.scene import ball_paths
+from ..replays.encode import packed
+from ..shot import Shot
+from .seats import Seats
+from .session import Session
+from .wishes import ball_named, pocket_named
+
+MOST_SAMPLES = 2000
+"""Of one question: 40 ms of shots."""
+MOST_SUGGESTIONS = 10
+
+
+def aim_at(session: Session, given: Any, stroke: CueStroke) -> float:
+    """The direction in which the cue ball must leave to pot a ball, throw and swerve included; ``given``: {"pot": [ball, pocket]}."""
+    pair = given.get("pot") if isinstance(given, dict) and set(given) == {"pot"} else None
+    if not isinstance(pair, list) or len(pair) != 2:
+        raise refuse("aim_at", given, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
+    ball, pocket = ball_named("aim_at.pot[0]", pair[0]), pocket_named("aim_at.pot[1]", pair[1])
+    if not session.tables.on_table[0, ball]:
+        raise refuse("aim_at.pot[0]", NAMES[ball], "must be on the table")
+    target = POCKET_AIMS[[pocket], :2]
+    tip = {"side": stroke.side, "top": stroke.top, "elevation": stroke.elevation}
+    return float(pot_aim(session.planned(), [0], [ball], target, stroke.speed, **tip)[0])
+
+
+def exact(session: Session, stroke: CueStroke) -> Shot:
+    """The stroke as it runs without errors of execution."""
+    twin = session.twin()
+    twin.noise = ["none", "none"]
+    played = twin.play(stroke).played
+    assert played is not None
+    return played.shot
+
+
+def paths(shot: Shot) -> dict[str, Any]:
+    """Where the balls of a shot run: lines through places [m], rounded to a tenth of a millimetre, and the ball that is struck first."""
+    events = shot.events
+    hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
+    lines = ball_paths(shot, range(len(shot.positions)), step=0.04)
+    return {
+        "paths": {str(ball): np.round(points, 4).tolist() for ball, points in lines.items()},
+        "first": NAMES[hits["j"][0]] if len(hits) else None,
+        "pots": [[NAMES[ball], POCKETS[shot.potted[ball]]] for ball in np.flatnonzero(shot.potted >= 0)],
+        "duration": shot.duration,
+    }
+
+
+def scatter(session: Session, stroke: CueStroke, *, noise: NoiseName, samples: int, seed: int) -> dict[str, Any]:
+    """Where cue ball and object ball stop when the stroke is played many times with a player's errors; and its path without them."""
+    shot = exact(session, stroke)
+    found = destinations(session.planned(), stroke, noise=noise, samples=samples, seed=seed)
+    return paths(shot) | {
+        "cue": packed(found.cue, "f4"), "ball": packed(found.ball, "f4"), "samples": found.samples, "potted": found.potted,
+        "in_off": found.in_off, "foul": found.foul, "points": found.points,
+    }  # fmt: skip
+
+
+def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int) -> list[dict[str, Any]]:
+    """The agent's best strokes, ranked, in words and data, each with its path without errors."""
+    choice("agent", agent, seats.agents)
+    advice = advise(session.planned(), agent=seats.player(agent), noise=noise, n=n, samples=samples, seed=seed)
+    out = []
+    for one in advice:
+        twin = session.twin()
+        if one.place is not None:
+            twin.place(*one.place)
+        out.append(one.to_dict() | _named(one) | paths(exact(twin, one.stroke)))
+    return out
+
+
+def _named(one: Suggestion) -> dict[str, Any]:
+    """Ball and pocket of a suggestion by their names; None where there is none."""
+    return {
+        "ball": NAMES[one.ball] if one.ball >= 0 else None, "pocket": POCKETS[one.pocket] if one.pocket >= 0 else None,
+        "first": NAMES[one.first] if one.first >= 0 else None,
+    }  # fmt: skip

@@ -1,0 +1,286 @@
+"""What may be asked of the server, and what is the answer? Each route of the protocol: its fields, checked, and what it does.
+
+A handler gets the fields of one request as plain JSON types and gives JSON types back; a ValueError says what was wrong with a field.
+``docs/protocol.md`` documents every route.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from .._check import choice, integer, number, refuse, truth
+from ..advice import CueStroke
+from ..game.frame import MOST_BREAK
+from ..game.ruling import AUTO
+from ..planning.position import Position
+from ..replays.encode import encoded_stroke
+from ..replays import Replay
+from ..tasks.noise import LEVELS
+from ..tasks.states import MOST
+from . import questions
+from .report import report, scene
+from .service import Service
+from .session import Act, Session
+from .wishes import colour_named, place_of_request, stroke_in
+
+STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")
+"""Fields that say what a stroke is."""
+Handler = Callable[[Service, dict[str, Any]], Any]
+
+
+@dataclass(frozen=True)
+class Route:
+    """One thing that may be asked.
+
+    Attributes
+    ----------
+    handler : callable
+        ``handler(service, fields)``: JSON types, or a ``str``: an HTML page.
+    fields : tuple of str
+        Those that a request may have.
+    """
+
+    handler: Handler
+    fields: tuple[str, ...] = field(default=())
+
+
+def _state(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    if "after" in given:
+        service.wait(integer("after", given["after"], 0, MOST), number("wait", given.get("wait", 0.0), 0.0, 60.0))
+    with service.looking():
+        return report(service)
+
+
+def _strokes(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    with service.looking() as session:
+        first = integer("from", given.get("from", 0), 0, MOST)
+        return {"revision": service.revision, "strokes": [_encoded(service, session.acts[k]) for k in session.strokes[first:]]}
+
+
+def _encoded(service: Service, act: Act) -> dict[str, Any]:
+    assert act.played is not None
+    return encoded_stroke(act.played, (service.seats.label(0), service.seats.label(1)))
+
+
+def _asked(session: Session, given: dict[str, Any]) -> CueStroke:
+    """The stroke asked for, its aim solved if it is given by a pot; the cue ball is placed first."""
+    if "place" in given:
+        session.place(*place_of_request("place", given["place"]))
+    if "aim_at" not in given:
+        return stroke_in(given)
+    if "aim" in given:
+        raise refuse("aim", given["aim"], "must be left out with aim_at")
+    stroke = stroke_in(given, 0.0)
+    return replace(stroke, aim=questions.aim_at(session, given["aim_at"], stroke))
+
+
+def _stroke(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    strikes = any(name in given for name in STROKE)
+    if not strikes and "choice" not in given:
+        raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
+    nominated = colour_named("nominate", given["nominate"]) if "nominate" in given else AUTO
+    act = stroke = None
+    with service.acting() as session:
+        twin = session.twin()  # whatever is wrong shows there first, so that a request that is refused has changed nothing
+        if "choice" in given:
+            if strikes and given["choice"] != "play":
+                raise refuse("choice", given["choice"], 'must be "play" in a request that holds a stroke too')
+            twin.choose(given["choice"])
+        if strikes:
+            stroke = _asked(twin, given)
+            twin.check_stroke(nominated)
+        if "choice" in given:
+            session.choose(given["choice"])
+        if stroke is not None:
+            if "place" in given:
+                session.place(*given["place"])
+            act = session.play(stroke, nominated=nominated)
+    with service.looking():
+        return {"stroke": None if act is None else _encoded(service, act), "state": report(service)}
+
+
+def _place(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    with service.acting() as session:
+        place = session.place(*place_of_request("place", given.get("place")))
+    with service.looking():
+        return {"place": list(place), "state": report(service)}
+
+
+def _set_up(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    check = truth("check", given.get("check", False))
+    try:
+        return _put(service, given, check)
+    except ValueError as error:
+        if not check:
+            raise
+        return {"sound": False, "error": parts_of(error)}
+
+
+def _put(service: Service, given: dict[str, Any], check: bool) -> dict[str, Any]:
+    scores = given.get("scores", [0, 0])
+    if not isinstance(scores, list) or len(scores) != 2:
+        raise refuse("scores", scores, "must be two integers")
+    points = (integer("scores[0]", scores[0], 0, MOST), integer("scores[1]", scores[1], 0, MOST))
+    striker, free = integer("striker", given.get("striker", 0), 0, 1), truth("free_ball", given.get("free_ball", False))
+    position = position_of(given.get("position"))
+    if check:
+        with service.asking() as session:
+            session.set_up(position, scores=points, striker=striker, free_ball=free, check=True)
+        return {"sound": True, "error": None}
+    with service.acting(pause=True, any_turn=True) as session:
+        session.set_up(position, scores=points, striker=striker, free_ball=free)
+    return _state(service, {})
+
+
+def position_of(given: Any) -> Position:
+    """A ``Position`` from what JSON holds; ValueError for anything else, by the name of the ball or field."""
+    names = tuple(Position.__dataclass_fields__)
+    if not isinstance(given, dict):
+        raise refuse("position", given, 'must be an object: {"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}')
+    for name in given:
+        choice("field of position", name, [n for n in names if n not in ("table", "over")])
+    points = {"points": integer("points", given.get("points", 0), 0, MOST_BREAK)}
+    if not isinstance(given.get("reds", []), list):
+        raise refuse("reds", given["reds"], "must be a list of places [x, y]")
+    return Position(**given | points)
+
+
+def _undo(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    """Back to where a person had to do something; with ``all`` False one act alone."""
+    return _moved(service, Session.undo)
+
+
+def _redo(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    return _moved(service, Session.redo)
+
+
+def _moved(service: Service, move: Callable[[Session], bool]) -> dict[str, Any]:
+    with service.acting(pause=True, any_turn=True) as session:
+        people = not all(map(service.seats.is_agent, (0, 1)))
+        while move(session) and people and service.agent_to_play():
+            pass
+    return _state(service, {})
+
+
+def _new(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    kinds = {"layout": str, "seed": int, "breaker": int}
+    for name, kind in kinds.items():
+        if name in given and type(given[name]) is not kind:
+            raise refuse(name, given[name], f"must be of type {kind.__name__}")
+    with service.acting(any_turn=True) as session:
+        session.new(**given)
+    return _state(service, {})
+
+
+def _players(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    noise, practice = given.get("noise"), given.get("practice")
+    if noise is not None:
+        if not isinstance(noise, list) or len(noise) != 2:
+            raise refuse("noise", noise, "must be two names")
+        for k, name in enumerate(noise):
+            choice(f"noise[{k}]", name, LEVELS)
+    if practice is not None:
+        truth("practice", practice)
+    with service.acting(any_turn=True) as session:
+        if "players" in given:
+            service.seats.sit(given["players"])
+        if noise is not None:
+            session.noise[:] = noise
+        session.practice = session.practice if practice is None else practice
+    return _state(service, {})
+
+
+def _go(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    service.go_on()
+    return _state(service, {})
+
+
+def _concede(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    with service.acting() as session:
+        session.concede()
+    return _state(service, {})
+
+
+def _save(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    with service.looking() as session:
+        return session.save()
+
+
+def _load(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    with service.acting(pause=True, any_turn=True) as session:
+        session.load(given.get("saved"))
+    return _state(service, {})
+
+
+def _advise(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    agent = choice("agent", given.get("agent", service.seats.agents[0]), service.seats.agents)
+    n = integer("n", given.get("n", 5), 1, questions.MOST_SUGGESTIONS)
+    noise, samples, seed = _errors(given, 200, "professional")
+    with service.asking() as session:
+        return {"suggestions": questions.suggestions(session, service.seats, agent=agent, noise=noise, n=n, samples=samples, seed=seed)}
+
+
+def _destinations(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    noise, samples, seed = _errors(given, 500, "professional")
+    with service.asking() as session:
+        return questions.scatter(session, _asked(session, given), noise=noise, samples=samples, seed=seed)
+
+
+def _errors(given, samples: int, noise: str) -> tuple[Any, int, int]:
+    """Noise, samples and seed of a question."""
+    return (
+        choice("noise", given.get("noise", noise), LEVELS), integer("samples", given.get("samples", samples), 1, questions.MOST_SAMPLES),
+        integer("seed", given.get("seed", 0), 0, MOST),
+    )  # fmt: skip
+
+
+def _replay(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    return _replay_of(service).to_dict()
+
+
+def _replay_page(service: Service, given: dict[str, Any]) -> str:
+    return _replay_of(service).html()
+
+
+def _replay_of(service: Service) -> Replay:
+    with service.looking() as session:
+        strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
+        labels = (service.seats.label(0), service.seats.label(1))
+    if not strokes:
+        raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
+    return Replay(strokes, title=f"{labels[0]} - {labels[1]}", players=labels)
+
+
+def _scene(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+    with service.looking():
+        return scene(service)
+
+
+ERRORS = ("noise", "samples", "seed")
+GET: dict[str, Route] = {
+    "scene": Route(_scene), "state": Route(_state, ("after", "wait")), "strokes": Route(_strokes, ("from",)), "replay": Route(_replay),
+    "replay.html": Route(_replay_page),
+}  # fmt: skip
+POST: dict[str, Route] = {
+    "stroke": Route(_stroke, (*STROKE, "choice", "nominate")), "place": Route(_place, ("place",)),
+    "advise": Route(_advise, ("agent", "n", *ERRORS)), "destinations": Route(_destinations, (*STROKE, *ERRORS)),
+    "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")), "undo": Route(_undo), "redo": Route(_redo),
+    "new": Route(_new, ("layout", "seed", "breaker")), "players": Route(_players, ("players", "noise", "practice")), "go": Route(_go),
+    "concede": Route(_concede), "save": Route(_save), "load": Route(_load, ("saved",)),
+}  # fmt: skip
+
+
+def parts_of(error: ValueError) -> dict[str, Any]:
+    """The error of a field, as ``_check.refuse`` words it, in its parts."""
+    text = str(error)
+    at = re.match(r"(?P<field>[\w\[\]., ]+?) = (?P<value>.*?): (?P<message>(must|overlaps|lies|ball).*)\Z", text, re.DOTALL)
+    return at.groupdict() if at else {"field": None, "value": None, "message": text}
+
+
+def answer(service: Service, route: Route, given: dict[str, Any]) -> Any:
+    """What a route answers; ValueError for a field that it does not have, or that is wrong."""
+    for name in given:
+        if name not in route.fields:
+            raise refuse("field", name, f"must be one of {list(route.fields)}" if route.fields else "must be left out: there are no fields")
+    return route.handler(service, given)

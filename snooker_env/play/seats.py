@@ -1,0 +1,70 @@
+"""Who sits at the table? Persons, and agents by name: those that came with the package, and those named when the page was started.
+
+An agent is asked for one stroke at a time, on a copy of the table, without errors of execution: those are drawn when the stroke is
+played. After a foul of the other every agent plays the table as it lies; it names no colour and takes no free ball for another ball.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from .._check import choice, refuse
+from ..advice import CueStroke, player_of, stroke_of
+from ..advice.players import BUILT_IN
+from .session import Session
+
+PERSON = "person"
+
+
+class Seats:
+    """The two seats, and the players that may take them.
+
+    Parameters
+    ----------
+    agents : mapping of str to a player of ``snooker_env.advice``
+        By name: those that may be chosen besides the built-in ones.
+    """
+
+    who: list[str]
+    """``PERSON`` or an agent's name, of each seat."""
+
+    def __init__(self, agents: Mapping[str, Any]):
+        self._players: dict[str, Any] = {**agents, **{name: None for name in BUILT_IN if name not in agents}}
+        self.who = [PERSON, PERSON]
+
+    @property
+    def names(self) -> list[str]:
+        """Who may sit down: persons and agents."""
+        return [PERSON, *self._players]
+
+    @property
+    def agents(self) -> list[str]:
+        """The agents' names."""
+        return list(self._players)
+
+    def sit(self, who: list[str]) -> None:
+        """Give both seats away; ValueError for an unknown name."""
+        if not isinstance(who, list) or len(who) != 2:
+            raise refuse("players", who, "must be two names")
+        self.who = [choice(f"players[{k}]", name, self.names) for k, name in enumerate(who)]
+
+    def is_agent(self, seat: int) -> bool:
+        """Does an agent sit there?"""
+        return self.who[seat] != PERSON
+
+    def label(self, seat: int) -> str:
+        """How a player is called."""
+        if self.is_agent(seat):
+            return self.who[seat] if self.who[0] != self.who[1] else f"{self.who[seat]} {seat + 1}"
+        return "You" if self.is_agent(1 - seat) else f"Player {seat + 1}"
+
+    def player(self, name: str) -> Any:
+        """The player of ``snooker_env.advice`` of that name."""
+        choice("agent", name, self.agents)
+        if self._players[name] is None:
+            self._players[name] = player_of(name)
+        return self._players[name]
+
+    def stroke(self, name: str, session: Session) -> CueStroke:
+        """What an agent plays at the table as it stands, and where it puts a cue ball in hand. ``session`` is left as it is."""
+        noise, seed = session.noise[session.frame.striker], len(session.acts)
+        return stroke_of(self.player(name), session.planned(), noise=noise, seed=seed)

@@ -1,0 +1,321 @@
+"""How does the game answer a browser or a program? One small HTTP server on this machine's own address, for those who know its token.
+
+Every request is checked before anything is done: the token in its path, in constant time; ``Host``, so that no other name leads here;
+``Origin`` and ``Sec-Fetch-Site``, so that no other page asks; method, path, length, type and form of what it carries. Requests have a limit
+on their head, their body, their time and their number at once. Whatever is wrong is answered by one JSON error.
+"""
+
+import hmac
+import json
+import re
+import secrets
+import socket
+import sys
+import threading
+import time
+from contextlib import suppress
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qsl, urlsplit
+
+from ..simulation import SimulationError
+from .routes import GET, POST, answer, parts_of
+from .service import BusyError, Service
+
+WEB = Path(__file__).resolve().parent.parent / "web"
+FILES = {
+    "": ("play.html", "text/html"), "play.css": ("play.css", "text/css"),
+    **{name: (name, "text/javascript") for name in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_setup.js", "play_parts.js")},
+}  # fmt: skip
+"""What is served besides the protocol: path -> file of ``WEB`` and its type. Nothing else is ever read."""
+MOST_HEAD = 16_384
+MOST_BODY = 65_536
+"""Bytes of a request's head and body; a saved game has about 3,000."""
+MOST_AT_ONCE = 32
+"""Connections; a browser keeps six."""
+IDLE, REQUEST = 60.0, 10.0
+"""How long a connection may wait for its next request, and a request for its end [s]."""
+HEADERS = {
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff", "X-Frame-Options": "DENY", "Referrer-Policy": "no-referrer", "Cache-Control": "no-store",
+    "Cross-Origin-Resource-Policy": "same-origin", "Cross-Origin-Opener-Policy": "same-origin",
+}  # fmt: skip
+
+
+class RefusedError(Exception):
+    """A request that is not answered; its status and what the JSON error says."""
+
+    def __init__(self, status: int, message: str, field: str | None = None, value: Any = None):
+        super().__init__(message)
+        self.status, self.body = status, {"field": field, "value": value, "message": message}
+
+
+class TimedReader:
+    """A connection as ``http.server`` reads it, with an end: no more bytes in a head, no longer than ``REQUEST`` from its first byte."""
+
+    def __init__(self, connection: socket.socket):
+        self._socket, self._held = connection, b""
+        self._until = 0.0
+        self._left = 0
+
+    def expect(self) -> None:
+        """A new request may begin."""
+        self._until, self._left = 0.0, MOST_HEAD
+
+    def readline(self, limit: int = -1) -> bytes:
+        """A line of the head; RefusedError if the head is too long."""
+        while b"\n" not in self._held:
+            if len(self._held) > self._left:
+                raise RefusedError(431, f"the head of a request must be at most {MOST_HEAD} bytes")
+            if not self._fill():
+                break
+        line, mark, self._held = self._held.partition(b"\n")
+        line += mark
+        self._left -= len(line)
+        if self._left < 0:
+            raise RefusedError(431, f"the head of a request must be at most {MOST_HEAD} bytes")
+        return line
+
+    def read(self, n: int) -> bytes:
+        """n bytes of a body, fewer at the end of the connection."""
+        while len(self._held) < n and self._fill():
+            pass
+        part, self._held = self._held[:n], self._held[n:]
+        return part
+
+    def close(self) -> None:
+        """Nothing: the socket is closed by its server."""
+
+    def _fill(self):
+        now = time.monotonic()
+        self._socket.settimeout(max(0.01, self._until - now) if self._until else IDLE)
+        part = self._socket.recv(65_536)
+        if part and not self._until:
+            self._until = time.monotonic() + REQUEST
+        self._held += part
+        return bool(part)
+
+
+class PlayHandler(BaseHTTPRequestHandler):
+    """One connection."""
+
+    server: "PlayServer"
+    protocol_version = default_request_version = "HTTP/1.1"
+    server_version, sys_version = "snooker_env", ""
+
+    def setup(self) -> None:
+        """Read with limits."""
+        super().setup()
+        self.connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.rfile: Any = TimedReader(self.connection)
+
+    def handle_one_request(self) -> None:
+        """One request, its head within the limits."""
+        self.rfile.expect()
+        self.path, self.command, self.requestline, self.request_version, self.close_connection = "", "", "", "HTTP/1.1", True
+        try:
+            super().handle_one_request()
+        except RefusedError as refused:
+            self._refuse(refused)
+            self.close_connection = True
+        except (TimeoutError, ConnectionError):
+            self.close_connection = True
+
+    def log_message(self, format: str, *args: Any) -> None:
+        """Nothing: a path holds the token."""
+
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
+        """What ``http.server`` itself finds wrong, as one JSON error."""
+        self.close_connection = True
+        self._refuse(RefusedError(405 if code == 501 else code, message or "not a request that can be answered"))
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("do_"):  # any method: it is refused by the same checks, after the token
+            return self._serve
+        raise AttributeError(name)
+
+    # one request ------------------------------------------------------------------------------------------------------------
+
+    def finish(self) -> None:
+        """Read what is left of a request that was refused: a connection closed on unread bytes would take the answer with it."""
+        with suppress(OSError):
+            self.connection.shutdown(socket.SHUT_WR)
+            self.connection.settimeout(0.2)
+            for _ in range(16):
+                if not self.connection.recv(65_536):
+                    break
+        super().finish()
+
+    def _serve(self):
+        try:
+            name, query = self._checked()
+            if not name.startswith("api/"):
+                self._file(name)
+                return
+            route = (GET if self.command == "GET" else POST)[name[4:]]
+            found = answer(self.server.service, route, query if self.command == "GET" else self._body())
+            if isinstance(found, str):
+                self._send(200, found.encode(), "text/html", {"Content-Disposition": 'attachment; filename="replay.html"'})
+            else:
+                self._send(200, json.dumps(found, allow_nan=False, separators=(",", ":")).encode(), "application/json")
+        except RefusedError as refused:
+            self._refuse(refused)
+        except ValueError as error:
+            self._refuse(RefusedError(422, **parts_of(error)))
+        except BusyError as error:
+            self._refuse(RefusedError(503, f"busy: {error}"))
+        except SimulationError as error:
+            self._refuse(RefusedError(500, f"this stroke cannot be computed: {error}"))
+
+    def _checked(self) -> tuple[str, dict[str, Any]]:
+        """The path behind the token and the query, of a request that may be answered."""
+        head = self.headers
+        host = head.get_all("Host") or []
+        if len(host) != 1 or host[0].lower() not in self.server.hosts:
+            raise self._last(403, "Host must be " + " or ".join(sorted(self.server.hosts)))
+        origin = head.get("Origin")
+        if origin is not None and origin.lower() not in {f"http://{name}" for name in self.server.hosts}:
+            raise self._last(403, "Origin must be this server's own")
+        if head.get("Sec-Fetch-Site", "none").lower() not in ("none", "same-origin"):
+            raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
+        parts = urlsplit(self.path)
+        token, _, name = parts.path.removeprefix("/").partition("/")
+        if not parts.path.startswith("/") or not hmac.compare_digest(token.encode(), self.server.token.encode()):
+            raise self._last(403, "the address must hold the token that was printed when the server started")
+        if self.command not in ("GET", "POST"):
+            raise self._last(405, "the method must be GET or POST", Allow="GET, POST")
+        known = {f"api/{key}" for key in (GET if self.command == "GET" else POST)} | (set(FILES) if self.command == "GET" else set())
+        if name not in known:
+            other = "GET" if self.command == "POST" else "POST"
+            if name in FILES or name.removeprefix("api/") in {"GET": GET, "POST": POST}[other]:
+                raise self._last(405, f"the method must be {other}", Allow=other)
+            raise self._last(404, "there is nothing of that name")
+        if "Transfer-Encoding" in head:
+            raise self._last(411, "a body must come with its Content-Length")
+        if self.command == "GET" and head.get("Content-Length", "0") != "0":
+            raise self._last(400, "GET must have no body")
+        return name, self._query(parts.query)
+
+    def _query(self, text: str) -> dict[str, Any]:
+        pairs = parse_qsl(text, keep_blank_values=True)
+        if text and self.command == "POST":
+            raise self._last(400, "POST must have its fields in its body, not in its address")
+        found: dict[str, Any] = {}
+        for name, value in pairs:
+            if name in found:
+                raise RefusedError(400, "must be given once", name, value)
+            found[name] = json.loads(value) if re.fullmatch(r"\d{1,15}(\.\d{1,9})?", value) else value
+        return found
+
+    def _body(self) -> dict[str, Any]:
+        length = self.headers.get_all("Content-Length") or []
+        if len(length) != 1 or not re.fullmatch(r"\d{1,12}", length[0]):
+            raise self._last(411, "must be one number of bytes", "Content-Length", ", ".join(length))
+        if int(length[0]) > MOST_BODY:
+            raise self._last(413, f"must be at most {MOST_BODY} bytes", "Content-Length", int(length[0]))
+        kind = self.headers.get("Content-Type", "").partition(";")[0].strip().lower()
+        if kind != "application/json":
+            raise self._last(415, "must be application/json", "Content-Type", kind)
+        raw = self.rfile.read(int(length[0]))
+        if len(raw) < int(length[0]):
+            raise self._last(400, "the body ended before its Content-Length")
+        return parsed(raw)
+
+    def _last(self, status: int, message: str, field: str | None = None, value: Any = None, **headers: str) -> RefusedError:
+        """A refusal after which the connection is closed: what follows on it may not have been read."""
+        self.close_connection = True
+        refused = RefusedError(status, message, field, value)
+        refused.headers = headers  # type: ignore[attr-defined]
+        return refused
+
+    # answers ----------------------------------------------------------------------------------------------------------------
+
+    def _file(self, name):
+        file, kind = FILES[name]
+        self._send(200, (WEB / file).read_bytes(), f"{kind}; charset=utf-8")
+
+    def _refuse(self, refused: RefusedError) -> None:
+        body = json.dumps({"error": refused.body}, allow_nan=False, default=str).encode()
+        try:
+            self._send(refused.status, body, "application/json", getattr(refused, "headers", {}))
+        except OSError:
+            self.close_connection = True
+
+    def _send(self, status: int, body: bytes, kind: str, more: dict[str, str] | None = None) -> None:
+        self.connection.settimeout(REQUEST)
+        self.send_response(status)
+        for name, value in {**HEADERS, **(more or {}), "Content-Type": kind, "Content-Length": str(len(body))}.items():
+            self.send_header(name, value)
+        if self.close_connection:
+            self.send_header("Connection", "close")
+        self.end_headers()
+        if self.command != "HEAD":
+            self.wfile.write(body)
+
+
+def parsed(raw: bytes) -> dict[str, Any]:
+    """The JSON object in a body; RefusedError for anything else, NaN, Infinity and a name that comes twice among it."""
+    try:
+        found = json.loads(raw.decode("utf-8"), parse_constant=_no_number, object_pairs_hook=_once) if raw else {}
+    except (ValueError, RecursionError) as error:
+        raise RefusedError(400, f"the body must be JSON in UTF-8 ({error})") from None
+    if not isinstance(found, dict):
+        raise RefusedError(400, "the body must be a JSON object")
+    return found
+
+
+def _no_number(name):
+    raise ValueError(f"{name} is no number of JSON")
+
+
+def _once(pairs):
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a name comes twice in one object")
+    return found
+
+
+class PlayServer(ThreadingHTTPServer):
+    """The server of one game, on 127.0.0.1.
+
+    Parameters
+    ----------
+    service : Service
+    port : int
+        0: any that is free.
+    """
+
+    daemon_threads = True
+    request_queue_size = MOST_AT_ONCE
+
+    def __init__(self, service: Service, port: int = 0):
+        super().__init__(("127.0.0.1", port), PlayHandler)
+        self.service, self.token = service, secrets.token_urlsafe(24)
+        self.hosts = frozenset(f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost", "[::1]"))
+        self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
+
+    @property
+    def address(self) -> str:
+        """Of the page; the protocol is at its ``api/``."""
+        return f"http://127.0.0.1:{self.server_port}/{self.token}/"
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Serve a connection in a thread of its own, unless there are too many."""
+        if not self._free.acquire(blocking=False):
+            self.shutdown_request(request)
+            return
+        super().process_request(request, client_address)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Serve it, and make room."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._free.release()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """A connection that was cut is no fault of this program; anything else is, and is told."""
+        if not isinstance(sys.exc_info()[1], OSError):
+            super().handle_error(request, client_address)

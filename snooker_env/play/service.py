@@ -1,0 +1,164 @@
+"""How do a page, a program and thinking agents share one game? Behind one lock: each act is whole, and agents think on copies.
+
+A number, the revision, grows with everything that changes; who waits for a change names the one that he knows. The agent's thread is told
+when it is its turn, and what it has thought out is dropped if the game has moved on meanwhile.
+"""
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from time import monotonic
+
+from ..replays.words import sentence
+from ..simulation import SimulationError
+from .seats import Seats
+from .session import Act, Session
+
+LONGEST_WAIT = 25.0
+"""How long a request may wait for a change [s]."""
+
+
+class BusyError(RuntimeError):
+    """Too much is being computed already; to be asked again a little later."""
+
+
+class Service:
+    """One game, its seats, and the thread in which agents think.
+
+    Parameters
+    ----------
+    session : Session
+    seats : Seats
+    """
+
+    paused: bool
+    """Whether an agent whose turn it is waits to be told to go on: after an undo, a load, a position set up, and between two agents."""
+    trouble: str
+    """Why the last agent that was asked did not play, or ""."""
+
+    def __init__(self, session: Session, seats: Seats):
+        self.session, self.seats = session, seats
+        self.revision, self.paused, self.trouble = 0, False, ""
+        self._thinking = False
+        self._changed = threading.Condition(threading.RLock())
+        self._asking = threading.BoundedSemaphore(2)
+        self._closed = False
+        self._thread = threading.Thread(target=self._think, name="snooker agents", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """No agent plays from now on."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify_all()
+
+    # for requests -----------------------------------------------------------------------------------------------------------
+
+    @contextmanager
+    def looking(self) -> Iterator[Session]:
+        """The game, while nobody changes it."""
+        with self._changed:
+            yield self.session
+
+    @contextmanager
+    def acting(self, *, pause: bool = False, any_turn: bool = False) -> Iterator[Session]:
+        """The game, to change it. ``pause``: an agent whose turn it is then waits; ``any_turn``: also while an agent is to play.
+
+        Raises ValueError if it is an agent's turn. What raises inside has changed nothing.
+        """
+        with self._changed:
+            if not any_turn and self.agent_to_play():
+                raise ValueError(f"turn = {self.seats.label(self.session.frame.striker)!r}: must be a person's: an agent is to play")
+            yield self.session
+            self.paused, self.trouble = pause, ""
+            self._moved()
+
+    @contextmanager
+    def asking(self) -> Iterator[Session]:
+        """A copy of the game to try strokes on; ``BusyError`` if too many ask at once."""
+        if not self._asking.acquire(timeout=10.0):
+            raise BusyError("other questions are being answered")
+        try:
+            with self._changed:
+                twin = self.session.twin()
+            yield twin
+        finally:
+            self._asking.release()
+
+    def wait(self, revision: int, seconds: float) -> None:
+        """Return when the revision is another one, or when the time is over."""
+        until = monotonic() + min(seconds, LONGEST_WAIT)
+        with self._changed:
+            while self.revision == revision and not self._closed and (left := until - monotonic()) > 0:
+                self._changed.wait(left)
+
+    def go_on(self) -> None:
+        """Let the agent play whose turn it is."""
+        with self._changed:
+            self.paused, self.trouble = False, ""
+            self._moved()
+
+    # agents -----------------------------------------------------------------------------------------------------------------
+
+    def agent_to_play(self) -> bool:
+        """Is it an agent's turn?"""
+        frame = self.session.frame
+        return frame.phase != "over" and self.seats.is_agent(frame.striker)
+
+    @property
+    def thinking(self) -> bool:
+        """Is an agent thinking about its stroke, or about to?"""
+        return self.agent_to_play() and not self.paused
+
+    def _moved(self):
+        self.revision += 1
+        self._changed.notify_all()
+
+    def _think(self):
+        while True:
+            with self._changed:
+                while not (self._closed or self.thinking):
+                    self._changed.wait()
+                if self._closed:
+                    return
+                session, revision = self.session, self.revision
+                if session.frame.phase == "choice":
+                    session.choose("play")
+                    self.revision = revision = revision + 1
+                seat = session.frame.striker
+                who, twin = self.seats.who[seat], session.twin()
+            stroke = None
+            trouble = ""
+            try:
+                stroke = self.seats.stroke(who, twin)
+            except Exception as error:  # it may be anybody's player: whatever it raises is told, and the game waits
+                trouble = f"{who} gave no stroke ({type(error).__name__}: {error})"
+            with self._changed:
+                if self.revision != revision or self._closed:
+                    continue
+                if stroke is not None:
+                    trouble = self._play(stroke)
+                self.trouble, self.paused = trouble, bool(trouble) or all(map(self.seats.is_agent, (0, 1)))
+                self._moved()
+
+    def _play(self, stroke):
+        """The agent's stroke; why it could not be played, or ""."""
+        try:
+            if stroke.place is not None and self.session.frame.in_hand:
+                self.session.place(*stroke.place)
+            self.session.play(stroke)
+        except (ValueError, SimulationError) as error:
+            return str(error)
+        return ""
+
+
+def last_words(act: Act, labels: tuple[str, str]) -> str:
+    """What was done last, in a sentence."""
+    who = "" if act.player is None else labels[act.player]
+    if act.played is not None:
+        said = f" ({act.said} nominated)" if act.said else ""
+        return f"{who}{said}: {sentence(act.played, labels)}"
+    return {
+        "choice": f"{who}: {act.said.replace('_', ' ')}.", "concede": f"{who} concede{'' if who == 'You' else 's'} the frame.",
+        "set_up": "Position set up.", "load": "Game loaded.", "new": "New frame.",
+    }[act.what]  # fmt: skip

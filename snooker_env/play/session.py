@@ -1,0 +1,318 @@
+"""What is the game on the page? One frame in memory, played by the project's own pipeline, with everything that was done and can be undone.
+
+``Session`` knows nobody: it plays the strokes and decisions that it is given, for whoever is the striker, with the noise of that seat.
+``seats.py`` says who sits there, ``service.py`` keeps threads apart. Each act is an ``Act`` in a list; undo and redo move in it. A state
+carries its random numbers, so a stroke that is undone and played again meets the same errors of execution.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from .._check import choice, integer, refuse, refuse_what, truth
+from .._types import NoiseName
+from ..advice.strokes import CueStroke
+from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present
+from ..game.frame import Frame
+from ..game.frame_columns import STROKES, write_frame
+from ..game.in_hand import place_cue
+from ..game.ruling import AUTO
+from ..planning.position import Position
+from ..planning.positions import Positions
+from ..simulation import SimulationError
+from ..tasks import frame_kernels
+from ..tasks.frame import Frames
+from ..tasks.noise import LEVELS
+from ..tasks.options import Options, Rules
+from ..tasks.played import Played
+from ..tasks.states import FrameState
+from ..tasks.stroke import ShotBuffers
+from ..tasks.tables import Crew
+from .wishes import DECISIONS, action_of
+
+STATE = ("positions", "on_table", "frame", "strokes", "stream")
+"""What a saved game holds of the table."""
+
+
+@dataclass(frozen=True, eq=False)
+class Act:
+    """Something that was done.
+
+    Attributes
+    ----------
+    what : str
+        "new", "stroke", "choice", "set_up", "load" or "concede".
+    state : dict
+        The table after it, of JSON types.
+    player : int, or None
+        Who did it.
+    played : Played, or None
+        Of a stroke: as it was struck, simulated and judged.
+    said : str
+        Of a choice: which; of a stroke: the colour that was nominated.
+    """
+
+    what: str
+    state: dict[str, Any]
+    player: int | None = None
+    played: Played | None = None
+    said: str = ""
+
+
+class Session:
+    """A frame that can be played, set up, undone, saved and loaded.
+
+    Parameters
+    ----------
+    layout : str
+        How the table is dealt: a layout's name.
+    seed : int
+        Of all random numbers.
+    """
+
+    noise: list[NoiseName]
+    """Errors of execution of each seat: names of ``snooker_env.tasks.LEVELS``."""
+    practice: bool
+    """Alone at the table: it always comes back to player 0, and after a foul the balls stay as they lie."""
+    acts: list[Act]
+    at: int
+    """How many of the acts count: those behind were undone."""
+
+    def __init__(self, *, layout: str = "break_off", seed: int = 0):
+        self._options = Options(
+            task="frame", placement=True, decision=True, elevation=True, miss="clear_path", max_strokes=None, layout=layout
+        )
+        self.noise, self.practice = ["none", "none"], False
+        self._generator = np.random.default_rng(0)  # a state holds one; no stroke draws from it
+        self._buffers = ShotBuffers(1, path=True)
+        self._played: Played | None = None
+        self._rules: dict[str, Rules] = {}
+        self.tables = Frames(self._options.rules, 1)
+        self.new(layout=layout, seed=seed)
+
+    # what is ----------------------------------------------------------------------------------------------------------------
+
+    @property
+    def frame(self) -> Frame:
+        """The frame as it stands."""
+        return self.tables.frame(0)
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The table as JSON types: what ``STATE`` names."""
+        return self.tables.get_state(0)
+
+    @property
+    def strokes(self) -> list[int]:
+        """Which of the acts are strokes, in order."""
+        return [k for k, act in enumerate(self.acts[: self.at]) if act.played is not None]
+
+    def nominations(self) -> tuple[int, ...]:
+        """The colours that the striker may name before his stroke: after a red, and as a free ball."""
+        frame = self.frame
+        if frame.phase != "stroke":
+            return ()
+        if frame.ball_on == BallOn.ANY_COLOUR:
+            return tuple(i for i in ids_of(frame.on_table) if i > 15)
+        on = frame.ball_on + 14 if frame.ball_on > BallOn.RED else 0
+        return tuple(i for i in ids_of(frame.on_table) if i > 15 and i != on) if frame.free_ball else ()
+
+    def planned(self, *, free_ball: bool = False) -> Positions:
+        """The stroke to come as planning takes it, as one of a visit; with ``free_ball`` every colour is on instead of the ball on."""
+        frame, tables = self.frame, self.tables
+        if frame.phase == "over":
+            raise refuse("phase", "over", "must not be over: there is no stroke to play")
+        on = BallOn.ANY_COLOUR if free_ball else frame.ball_on
+        return Positions(tables.positions.copy(), tables.on_table.copy(), [[int(on), int(frame.in_hand), frame.break_points, 0, 0]])
+
+    def rules_with(self, noise: NoiseName) -> Rules:
+        """How this frame is played by somebody with these errors of execution."""
+        if noise not in self._rules:
+            self._rules[noise] = self._options.but(noise=noise).rules
+        return self._rules[noise]
+
+    def copy_to(self, tables: Frames) -> None:
+        """Put another table into the state of this one."""
+        tables.set_state(0, self._checked(self.state))
+
+    def twin(self) -> "Session":
+        """A session of its own that stands as this one does, for another thread; of its acts it knows the last."""
+        other = object.__new__(Session)
+        other.__dict__.update(self.__dict__)
+        other._buffers, other.noise = ShotBuffers(1, path=True), list(self.noise)
+        other.tables = Frames(self._options.rules, 1)
+        self.copy_to(other.tables)
+        other.acts, other.at = [self.acts[self.at - 1]], 1
+        return other
+
+    # what is done -----------------------------------------------------------------------------------------------------------
+
+    def new(self, *, layout: str | None = None, seed: int = 0, breaker: int = 0) -> None:
+        """A new frame; what was done before is forgotten. ValueError for an unknown layout."""
+        options = self._options if layout is None else self._options.but(layout=layout)
+        integer("seed", seed, 0, 2**63 - 1)
+        integer("breaker", breaker, 0, 1)
+        self._options, self._rules = options, {}
+        self.tables.rules = options.rules
+        self.tables.seed(0, np.random.default_rng(seed))
+        self.tables.deal(np.zeros(1, np.int64), drawn=False)
+        self._write(replace(self.frame, striker=breaker, breaker=breaker), 0)
+        self.acts, self.at = [Act("new", self.state)], 1
+
+    def check_stroke(self, nominated: int = AUTO) -> None:
+        """ValueError unless a stroke may be played now, and that colour be named."""
+        frame = self.frame
+        if frame.phase != "stroke":
+            allowed = 'must be "stroke": choose first (play, play_again or replace)' if frame.phase == "choice" else "must not be over"
+            raise refuse("phase", frame.phase, allowed)
+        if nominated != AUTO and nominated not in self.nominations():
+            names = [NAMES[i] for i in self.nominations()]
+            allowed = f"must be one of {names}" if names else "must be left out: no colour is to be named now"
+            raise refuse("nominate", NAMES[nominated], allowed)
+
+    def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
+        """The striker's stroke, from where the cue ball lies; ``nominated``: the colour that he names, AUTO: the one first struck."""
+        self.check_stroke(nominated)
+        before, tables = self.state, self.tables
+        striker = self.frame.striker
+        tables.rules = self.rules_with(self.noise[striker])
+        tables.packed = tables.rules.packed()
+        actions = action_of(stroke, tuple(tables.positions[0, CUE].tolist()))[None]
+        tables.nominated[0] = nominated
+        self._played = None
+        try:
+            crew = Crew(self._buffers, (), self._watch)
+            tables.turn(lambda which, b: tables.prepare(which, actions, b), tables.output(), crew)
+        except SimulationError:
+            self._set(before)
+            raise
+        finally:
+            tables.nominated[0] = AUTO
+        if self.practice:
+            self._hand_back()
+        said = "" if nominated == AUTO else NAMES[nominated]
+        return self._did(Act("stroke", self.state, striker, self._played, said))
+
+    def _watch(self, k, buffers, j, own):
+        self._played = self.tables.played(k, buffers, j)
+
+    def _hand_back(self):
+        frame = self.frame
+        if frame.phase == "over" or frame.striker == 0:
+            return
+        if frame.phase == "choice":
+            frame = frame.choose("play_again")
+        self._write(replace(frame, striker=0), int(self.tables.game[0, STROKES]))
+
+    def choose(self, what: str) -> Act:
+        """The decision after a foul of the other: "play", "play_again", or after a miss "replace"."""
+        frame = self.frame
+        if frame.phase != "choice":
+            raise refuse("choice", what, "must be left out: the other player has not just fouled")
+        choice("choice", what, frame.choices)
+        actions, plays = np.zeros((1, 8)), np.empty(1, np.bool_)
+        actions[0, -1] = DECISIONS[what]
+        t = self.tables
+        frame_kernels.decide(np.zeros(1, np.int64), actions, True, t.positions, t.on_table, t.game, t.saved, plays)
+        return self._did(Act("choice", self.state, frame.striker, said=what))
+
+    def concede(self) -> Act:
+        """The striker gives the frame up."""
+        frame = self.frame
+        if frame.phase == "over":
+            raise refuse("phase", frame.phase, "must not be over")
+        self._write(frame.concede(frame.striker), int(self.tables.game[0, STROKES]))
+        return self._did(Act("concede", self.state, frame.striker))
+
+    def place(self, x: float, y: float) -> tuple[float, float]:
+        """Put the cue ball in hand on the free place of the D nearest to (x, y), and say where that is. It may be moved again."""
+        frame = self.frame
+        if not frame.in_hand or frame.phase != "stroke":
+            raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
+        self.tables.positions[0, CUE] = place_cue(self.tables.positions[0], self.tables.on_table[0], x, y)
+        self.acts[self.at - 1] = replace(self.acts[self.at - 1], state=self.state)
+        px, py = self.tables.positions[0, CUE].tolist()
+        return px, py
+
+    def set_up(self, position: Position, *, scores: tuple[int, int], striker: int, free_ball: bool, check: bool = False) -> None:
+        """Put the balls as a position says. ``check``: only say what is wrong with it. ValueError names the ball or the field."""
+        positions, on_table, _ = position.arrays()
+        mask = mask_of_present(on_table) & ~1
+        for i in np.flatnonzero(~on_table):
+            positions[i] = 0.0
+        frame = Frame(
+            scores=scores, striker=striker, breaker=striker, break_points=position.points, on_table=mask, in_hand=position.in_hand,
+            ball_on=BallOn[str(position.on).upper()], free_ball=free_ball, miss="clear_path",
+        )  # fmt: skip
+        sound = self._checked({
+            "positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict(), "strokes": 0,
+            "stream": self.tables.streams[0].tolist(),
+        })  # fmt: skip
+        if not check:
+            self.tables.set_state(0, sound)
+            self._did(Act("set_up", self.state))
+
+    def undo(self) -> bool:
+        """Take the last act back, if there is one."""
+        return self._go(self.at - 1)
+
+    def redo(self) -> bool:
+        """Do again what was taken back, if there is something."""
+        return self._go(self.at + 1)
+
+    # files ------------------------------------------------------------------------------------------------------------------
+
+    def save(self) -> dict[str, Any]:
+        """The game as it stands, as JSON types."""
+        return {"format": "snooker-game", "version": 1, "practice": self.practice, "noise": list(self.noise), "state": self.state}
+
+    def load(self, saved: Any) -> None:
+        """Take over what ``save`` gave; ValueError says what is wrong with it, and then nothing has changed."""
+        fields = ("format", "version", "practice", "noise", "state")
+        if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
+            raise refuse_what("saved", "something else", 'must be a saved game, with "format": "snooker-game"')
+        if set(saved) != set(fields) or saved["version"] != 1:
+            raise refuse_what("saved", f"version {saved.get('version')!r} with {sorted(saved)}", f"must be version 1 with {list(fields)}")
+        noise = saved["noise"]
+        if not isinstance(noise, list) or len(noise) != 2:
+            raise refuse("saved.noise", noise, "must be two names")
+        noise = [choice(f"saved.noise[{k}]", name, LEVELS) for k, name in enumerate(noise)]
+        practice = truth("saved.practice", saved["practice"])
+        state = saved["state"]
+        if not isinstance(state, dict) or set(state) != set(STATE):
+            raise refuse_what("saved.state", "something else", f"must be a dict with {list(STATE)}")
+        self.tables.set_state(0, self._checked(state))
+        self.practice = practice
+        self.noise[:] = noise
+        self.acts, self.at = [Act("load", self.state)], 1
+
+    # inside -----------------------------------------------------------------------------------------------------------------
+
+    def _did(self, act: Act) -> Act:
+        del self.acts[self.at :]
+        self.acts.append(act)
+        self.at += 1
+        return act
+
+    def _go(self, at):
+        if not 1 <= at <= len(self.acts):
+            return False
+        self.at = at
+        self._set(self.acts[at - 1].state)
+        return True
+
+    def _set(self, state):
+        self.tables.set_state(0, self._checked(state))
+
+    def _checked(self, state: dict[str, Any]) -> FrameState:
+        try:
+            return self.tables.checked(state | {"rng": self._generator.bit_generator.state}, self._generator, either=True)
+        except ValueError as error:
+            text = str(error)
+            for prefix in ("state.frame.", "state."):
+                text = text.replace(prefix, "")
+            raise ValueError(text) from None
+
+    def _write(self, frame: Frame, strokes: int) -> None:
+        write_frame(frame, strokes, self.tables.game[0], self.tables.saved, 0)

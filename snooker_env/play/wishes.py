@@ -1,0 +1,64 @@
+"""Which stroke does a request ask for? Its fields checked, in SI units and names, and as a row of the box action space.
+
+Nothing is repaired on the way: a tip beyond the miscue limit or a speed out of range is refused, and the message says what is allowed.
+"""
+
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from .._check import choice, number, refuse
+from .._types import Floats
+from ..advice.strokes import CueStroke, actions_of_strokes
+from ..game.balls import COLOUR_NAMES, NAMES, colour
+from ..geometry import BAULK_Y, D_RADIUS, POCKETS
+
+DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0}
+"""The last number of an action, for each choice after a foul."""
+
+
+def action_of(stroke: CueStroke, place: tuple[float, float]) -> Floats:
+    """The row of ``Actions("absolute", elevation=True, placement=True, decision=True)`` that means this stroke, in all its digits.
+
+    ``place``: where the cue ball is to lie if it is in hand, in the D [m].
+    """
+    across = min(1.0, max(-1.0, place[0] / D_RADIUS))
+    depth = D_RADIUS * sqrt(max(0.0, 1.0 - across * across))
+    back = min(1.0, max(0.0, (BAULK_Y - place[1]) / depth)) if depth > 1e-9 else 0.0
+    return np.concatenate([actions_of_strokes(stroke.numbers()[None])[0], (across, 2.0 * back - 1.0, DECISIONS["play"])])
+
+
+def stroke_in(given: dict[str, Any], aim: float | None = None) -> CueStroke:
+    """The stroke in a request: "speed", "aim" unless it is given otherwise, "side", "top", "elevation"; ValueError for a wrong number."""
+    for name in ("speed",) if aim is not None else ("speed", "aim"):
+        if name not in given:
+            raise refuse(name, None, 'must be given: {"speed": m/s, "aim": rad, "side": 0, "top": 0, "elevation": 0}')
+    parts = {name: given[name] for name in ("speed", "side", "top", "elevation") if name in given}
+    return CueStroke(aim=number("aim", given["aim"], -1e6, 1e6) if aim is None else aim, **parts)
+
+
+def place_of_request(field: str, value: Any) -> tuple[float, float]:
+    """Two numbers [m]; ValueError for anything else."""
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise refuse(field, value, "must be [x, y] in metres")
+    return number(f"{field}[0]", value[0], -10, 10), number(f"{field}[1]", value[1], -10, 10)
+
+
+def ball_named(field: str, value: Any) -> int:
+    """The id of an object ball by its name ("red 3", "blue")."""
+    return NAMES.index(choice(field, value, NAMES[1:]))
+
+
+def colour_named(field: str, value: Any) -> int:
+    """The id of a colour by its name."""
+    return colour(choice(field, value, COLOUR_NAMES))
+
+
+def pocket_named(field: str, value: Any) -> int:
+    """The index of a pocket by its name; "right middle" is "middle right"."""
+    if isinstance(value, str):
+        for k, name in enumerate(POCKETS):
+            if sorted(value.lower().split()) == sorted(name.split()):
+                return k
+    raise refuse(field, value, "must be one of " + ", ".join(map(repr, POCKETS)))

@@ -1,0 +1,79 @@
+"""What does a blind player need to know? The table in plain words: every ball's place, what is on, lines to pockets, scores, what is asked.
+
+Left and right are as seen from the baulk end: right is the yellow's side, +x; the black end is +y.
+"""
+
+from math import hypot
+
+import numpy as np
+
+from ..game.balls import CUE, NAMES, SPOTS, YELLOW, BallOn
+from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, HALF_LENGTH, HALF_WIDTH
+from .lines import Line
+
+_ALONG = (
+    (BAULK_Y, "in baulk"), (-0.35, "between baulk and the middle"), (0.35, "about the middle of the table"),
+    (COLOUR_SPOTS[4, 1], "between the middle and the pink spot"), (COLOUR_SPOTS[5, 1], "between the pink and the black spot"),
+    (np.inf, "behind the black spot"),
+)  # fmt: skip
+
+
+def on_words(ball_on: BallOn, free_ball: bool = False) -> str:
+    """What is on, as one says it."""
+    words = ball_on.name.lower().replace("_", " ")
+    return f"{words}, and a free ball" if free_ball else words
+
+
+def where(ball: int, x: float, y: float) -> str:
+    """A place in words."""
+    for k, spot in enumerate(COLOUR_SPOTS):
+        if hypot(x - spot[0], y - spot[1]) < 1e-3:
+            return "on its spot" if ball == YELLOW + k else f"on the {NAMES[YELLOW + k]} spot"
+    along = next(words for limit, words in _ALONG if y <= limit)
+    across = "on the centre line" if abs(x) < 0.03 else f"{'far ' if abs(x) > 0.5 else ''}{'right' if x > 0 else 'left'}"
+    gaps = {
+        "left cushion": x + HALF_WIDTH, "right cushion": HALF_WIDTH - x, "baulk cushion": y + HALF_LENGTH, "top cushion": HALF_LENGTH - y,
+    }  # fmt: skip
+    near, gap = min(gaps.items(), key=lambda item: item[1])
+    gap -= BALL_RADIUS
+    tight = f", tight on the {near}" if gap < 0.003 else f", {100 * gap:.0f} cm from the {near}" if gap < 0.12 else ""
+    return f"{along}, {across}{tight}"
+
+
+def table_text(places: dict[int, tuple[float, float]], on: int, lines: list[Line], facts: list[str]) -> str:
+    """The whole description; ``places``: of the balls on the table, ``on``: mask of those that may be struck first."""
+    said = [*facts, ""]
+    said.append("Balls (x to the right, y to the black end, metres from the middle of the table; * may be struck first):")
+    for ball, (x, y) in places.items():
+        racked = 0 < ball < YELLOW and hypot(x - SPOTS[ball, 0], y - SPOTS[ball, 1]) < 1e-6
+        place = "in the rack" if racked else where(ball, x, y)
+        said.append(f"  {'*' if on >> ball & 1 else ' '} {NAMES[ball]}: ({x:+.3f}, {y:+.3f}), {place}")
+    if lines:
+        said += ["", "Lines to pockets (straight lines; throw and swerve are not in them):"]
+        for ball in dict.fromkeys(line.ball for line in lines):
+            mine = [line for line in lines if line.ball == ball]
+            shown = [line for line in mine if line.open] or sorted(mine, key=_how_shut)[:1]
+            said += [f"  {NAMES[ball]}, {line.words}" for line in sorted(shown, key=lambda line: -line.tolerance)]
+    return "\n".join(said)
+
+
+def _how_shut(line):
+    """The line that comes nearest to being open comes first."""
+    return len(line.blocked_by) or 9, line.cut
+
+
+def freedom(places: dict[int, tuple[float, float]]) -> list[str]:
+    """What is about the cue ball: touching balls, balls and cushions that hamper it."""
+    if CUE not in places:
+        return []
+    x, y = places[CUE]
+    said = []
+    near = sorted((hypot(px - x, py - y) - 2.0 * BALL_RADIUS, ball) for ball, (px, py) in places.items() if ball != CUE)
+    touching = [NAMES[ball] for gap, ball in near if gap < 1e-6]
+    if touching:
+        said.append("Touching ball: " + ", ".join(touching) + ".")
+    elif near and near[0][0] < 0.2:
+        said.append(f"The ball nearest to the cue ball is {NAMES[near[0][1]]}, {100 * near[0][0]:.1f} cm away.")
+    place = where(CUE, x, y)
+    said.append(f"The cue ball lies {place}.")
+    return said

@@ -1,0 +1,391 @@
+/**
+ * How does the page play? It shows the server's game, moves the balls of each stroke, and sends what the player decides.
+ *
+ * The server has the game: every answer holds its state, and one request always waits for the next change, whoever makes it. Strokes come as
+ * in a replay and are moved by `table.js`; what is shown between strokes is the state.
+ */
+
+import { decode, TableView } from "./table.js";
+import { Aim } from "./play_aim.js";
+import { Advisor } from "./play_ask.js";
+import { ask, by, fill, firstContact, keep, Latest, make } from "./play_parts.js";
+import { SetUp } from "./play_setup.js";
+
+const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
+const CHOICES = { play: "Play the table as it lies", play_again: "Let the offender play again", replace: "Replace the balls: play again from before" };
+
+class Page {
+  constructor(facts) {
+    Object.assign(this, facts);
+    this.names = this.scene.balls.map(ball => ball.name);
+    this.state = null;
+    this.balls = { x: new Float64Array(22), y: new Float64Array(22), on: new Uint8Array(22) };
+    this.played = 0;
+    this.known = new Map();
+    this.moving = null;
+    this.last = null;
+    this.drawn = [];
+    this.kind = "play";
+    for (const [name, rgb] of Object.entries(this.scene.palette)) document.documentElement.style.setProperty(`--${name}`, `rgb(${rgb})`);
+    this.view = new TableView(by("table"), this.scene);
+    this.placing = new Latest("place", ({ state }, event) => { this.take(state); this.advisor.changed(event); }, error => this.trouble(error));
+    this.aim = new Aim(this, event => { this.advisor.changed(event); this.redraw(); }, (x, y, event) => this.placing.ask({ place: [x, y] }, event));
+    this.advisor = new Advisor(this);
+    this.advisor.offer(facts);
+    this.setup = new SetUp(this);
+    new ResizeObserver(() => { this.view.resize(); this.redraw(); }).observe(by("stage"));
+    this.wire();
+  }
+
+  wire() {
+    const act = (id, what) => { by(id).onclick = () => this.try(what); };
+    by("play").onclick = event => this.play(event);
+    by("skip").onclick = () => this.skip();
+    by("fold").onclick = () => {
+      const folded = by("panel").classList.toggle("folded");
+      by("fold").setAttribute("aria-expanded", String(!folded));
+    };
+    act("go", () => ask("go", {}));
+    act("undo", () => ask("undo", {}));
+    act("redo", () => ask("redo", {}));
+    act("concede", () => ask("concede", {}));
+    act("new", () => ask("new", { layout: by("layout").value, seed: Math.floor(Math.random() * 2 ** 48) }));
+    by("again").onclick = () => this.again();
+    by("save").onclick = () => this.try(async () => { keep("snooker-game.json", JSON.stringify(await ask("save", {})), "application/json"); });
+    by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
+    by("load").onclick = () => by("file").click();
+    by("file").onchange = () => this.try(() => this.load());
+    by("labels").onchange = () => this.redraw();
+    fill(by("layout"), LAYOUTS);
+    for (const k of [0, 1]) {
+      fill(by(`who-${k}`), this.players);
+      fill(by(`noise-${k}`), this.noise);
+      by(`who-${k}`).onchange = () => this.seats(k);
+      by(`noise-${k}`).onchange = () => this.seats();
+    }
+    by("practice").onchange = () => this.seats();
+    document.addEventListener("keydown", event => this.key(event));
+  }
+
+  // ------------------------------------------------------------------------------------------------------- what the server says
+
+  /** Do something that gives the next state, and say so if it is refused. */
+  async try(what) {
+    try {
+      const found = await what();
+      if (found?.revision !== undefined) this.take(found);
+    } catch (error) { this.trouble(error); }
+  }
+
+  trouble(error) {
+    by("last").textContent = error.message;
+    by("last").className = "trouble";
+  }
+
+  /** Always wait for the next change. */
+  async watch() {
+    for (;;) {
+      try {
+        this.take(await ask("state", undefined, this.state ? `?after=${this.state.revision}&wait=20` : ""));
+      } catch (error) {
+        by("asked").textContent = "The server does not answer; is it still running?";
+        await new Promise(done => setTimeout(done, 1000));
+      }
+    }
+  }
+
+  /** A state, if it is newer than what is known. */
+  take(state) {
+    if (this.state && state.revision <= this.state.revision) return;
+    const before = this.state;
+    this.state = state;
+    if (before === null || state.strokes < this.played) this.still();
+    by("last").className = "";
+    this.show(before);
+    this.catchUp();
+  }
+
+  /** Move the balls of all strokes that have not been shown yet, one after the other. */
+  async catchUp() {
+    if (this.busy) return;
+    this.busy = true;
+    try { await this.showAll(); } catch (error) { this.played = this.state.strokes; this.trouble(error); }
+    this.busy = false;
+    this.show();
+    this.settle();
+  }
+
+  async showAll() {
+    while (this.played < this.state.strokes) {
+      if (!this.known.has(this.played)) {
+        const { strokes } = await ask("strokes", undefined, `?from=${this.played}`);
+        strokes.forEach((stroke, k) => this.known.set(this.played + k, stroke));
+      }
+      const stroke = this.known.get(this.played);
+      this.known.delete(this.played);
+      this.played++;
+      if (!stroke) { this.played = this.state.strokes; break; }
+      await this.move(stroke);
+      if (this.played < this.state.strokes) await new Promise(done => setTimeout(done, 500));
+      if (this.state.paused && this.agents()) this.try(() => ask("go", {}));
+    }
+  }
+
+  agents() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
+
+  /** The balls as the state has them, and a first aim. */
+  settle() {
+    if (this.moving || this.busy) return;
+    const { state } = this;
+    this.balls.on.fill(0);
+    for (const [name, [x, y]] of Object.entries(state.positions)) {
+      const i = this.names.indexOf(name);
+      this.balls.x[i] = x; this.balls.y[i] = y; this.balls.on[i] = 1;
+    }
+    if (this.settled !== state.revision) {
+      const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes]);
+      if (moved !== this.lay) this.firstAim(state);
+      this.lay = moved;
+      this.settled = state.revision;
+      this.show();
+    }
+    this.redraw();
+  }
+
+  /** Aim at the widest pot, or full at the nearest ball on; not while the player places the ball. */
+  firstAim(state) {
+    const key = JSON.stringify([state.ball_on, state.striker, state.strokes, Object.entries(state.positions).filter(([name]) => name !== "cue")]);
+    this.advisor.clear();
+    if (key === this.aimed || state.phase !== "stroke") return;
+    this.aimed = key;
+    const open = state.lines.filter(line => line.open).sort((a, b) => b.tolerance - a.tolerance)[0], [cx, cy] = state.positions.cue;
+    const ways = state.balls_on.map(name => [...state.positions[name], this.names.indexOf(name)]).map(([x, y, ball]) => {
+      const aim = Math.atan2(y - cy, x - cx);
+      return { aim, far: Math.hypot(x - cx, y - cy) + (firstContact(this.balls, 0, aim, this.scene.extent, this.view.R).ball === ball ? 0 : 9) };
+    }).sort((a, b) => a.far - b.far);
+    const { aim } = open ?? ways[0] ?? this.aim.wish;
+    this.aim.set({ aim, side: 0, top: 0, elevation: 0 });
+  }
+
+  // --------------------------------------------------------------------------------------------------------------------- motion
+
+  /** Move the balls of a stroke; resolves when they rest or are skipped. */
+  move(data) {
+    this.last = data;
+    this.told = { ...this.told, player: data.player, on: data.ball_on };
+    const stroke = decode({ format: "snooker-replay", version: 1, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
+    this.show();
+    return new Promise(done => {
+      this.moving = { stroke, start: null, done };
+      by("skip").hidden = false;
+      this.redraw();
+    });
+  }
+
+  skip() {
+    if (!this.moving) return;
+    const { done } = this.moving, { score, words, player } = this.last;
+    this.moving = null;
+    by("skip").hidden = true;
+    this.told = { ...this.told, scores: score, break: this.last.break, last: `${this.state.labels[player]}: ${words}` };
+    this.show();
+    done();
+  }
+
+  /** Show no more motion of what has been played. */
+  still() {
+    this.played = this.state.strokes;
+    this.known.clear();
+    this.skip();
+  }
+
+  async again() {
+    if (!this.last || this.moving || this.busy || this.setup.open) return;
+    this.busy = true;
+    await this.move(this.last);
+    this.busy = false;
+    this.catchUp();
+  }
+
+  // ----------------------------------------------------------------------------------------------------------------- the player
+
+  /** May this person play a stroke now? */
+  get aiming() {
+    const { state } = this;
+    return Boolean(state) && !this.moving && !this.busy && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";
+  }
+
+  async play() {
+    if (!this.aiming) return;
+    const { speed, side, top, aim, elevation } = this.aim.wish, body = { speed, side, top, aim, elevation };
+    if (this.state.in_hand) body.place = [this.balls.x[0], this.balls.y[0]];
+    if (by("nominate").value && this.state.nominations.includes(by("nominate").value)) body.nominate = by("nominate").value;
+    by("play").disabled = true;
+    this.placing.drop();
+    await this.send(body);
+  }
+
+  async send(body) {
+    try {
+      const { stroke, state } = await ask("stroke", body);
+      if (stroke) this.known.set(state.strokes - 1, stroke);
+      this.take(state);
+    } catch (error) { this.trouble(error); }
+    this.show();
+  }
+
+  async load() {
+    const [file] = by("file").files;
+    by("file").value = "";
+    if (!file) return undefined;
+    let saved;
+    try { saved = JSON.parse(await file.text()); } catch { throw new Error(`${file.name} is not JSON`); }
+    return saved.format === undefined ? ask("position", { position: saved }) : ask("load", { saved });
+  }
+
+  /** Who sits where; an agent that sits down gets the advisor's errors, a person none. */
+  seats(changed = -1) {
+    if (changed >= 0) by(`noise-${changed}`).value = by(`who-${changed}`).value === "person" ? "none" : by("errors").value;
+    const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
+    this.try(() => ask("players", { players, noise, practice: by("practice").checked }));
+  }
+
+  mode(kind) {
+    this.kind = kind;
+    this.advisor.clear();
+    this.show();
+    this.settle();
+  }
+
+  key(event) {
+    const tag = event.target.tagName, key = event.key.length === 1 ? event.key.toLowerCase() : event.key, { aim } = this;
+    if (event.ctrlKey || event.metaKey || tag === "SELECT" || tag === "INPUT" && event.target.type !== "checkbox") {
+      if (!(key === "Enter" && event.target.type === "range")) return;
+    }
+    if ((key === "Enter" || key === " ") && ["BUTTON", "SUMMARY"].includes(tag)) return;
+    const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, { side, top } = aim.wish;
+    const acts = this.setup.open ? { Escape: () => this.setup.end() } : {
+      " ": () => this.skip(), Escape: () => this.skip(), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(),
+      "?": () => { by("help").open = !by("help").open; by("help").scrollIntoView({ block: "nearest" }); },
+      ...this.aiming && {
+        ArrowLeft: () => aim.turn(turn, event), ArrowRight: () => aim.turn(-turn, event), ArrowUp: () => aim.faster(push, event),
+        ArrowDown: () => aim.faster(-push, event), w: () => aim.tip(side, top + 0.05, event), s: () => aim.tip(side, top - 0.05, event),
+        a: () => aim.tip(side - 0.05, top, event), d: () => aim.tip(side + 0.05, top, event), c: () => aim.set({ side: 0, top: 0 }, event),
+        e: () => aim.raise(1, event), q: () => aim.raise(-1, event), Enter: () => this.play(),
+      },
+    };
+    if (!acts[key]) return;
+    acts[key]();
+    event.preventDefault();
+  }
+
+  // ---------------------------------------------------------------------------------------------------------------- what is seen
+
+  /** Words, score and controls. */
+  show(before) {
+    const { state } = this, busy = Boolean(this.moving || this.busy), mine = this.aiming, setup = this.setup.open;
+    for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
+    if (!busy) this.told = { scores: state.scores, break: state.break, player: state.striker, last: state.last };
+    const { told } = this, who = state.labels[told.player];
+    by("asked").textContent = setup ? "Set up a position" : busy ? `${who} ${who === "You" ? "play" : "plays"}: ${told.on}` : state.words;
+    if (by("last").className !== "trouble") by("last").textContent = told.last;
+    const choosing = state.phase === "choice" && !busy && !setup && state.players[state.striker] === "person";
+    by("choices").hidden = !choosing;
+    if (choosing && by("choices").dataset.for !== String(state.revision)) {
+      by("choices").dataset.for = state.revision;
+      by("choices").replaceChildren(...state.choices.map(choice => {
+        const button = make("button", { type: "button", textContent: choice === "play" && state.free_ball ? "Play, with a free ball" : CHOICES[choice] });
+        button.dataset.choice = choice;
+        button.onclick = () => this.send({ choice });
+        return button;
+      }));
+    }
+    by("go").hidden = busy || setup || !state.paused;
+    by("play").disabled = !mine;
+    by("advise").disabled = !mine;
+    by("undo").disabled = !state.undo;
+    by("redo").disabled = !state.redo;
+    by("again").disabled = !this.last || busy;
+    by("concede").disabled = !mine && !choosing;
+    by("nominate-row").hidden = !state.nominations.length;
+    if (state.nominations.length) fill(by("nominate"), ["", ...state.nominations], by("nominate").value, value => value || "colour first struck");
+    for (const k of [0, 1]) {
+      if (before !== undefined) { by(`who-${k}`).value = state.players[k]; by(`noise-${k}`).value = state.noise[k]; by("practice").checked = state.practice; }
+      const side = by(`side-${k}`);
+      side.querySelector(".name").textContent = state.labels[k];
+      side.querySelector("b").textContent = told.scores[k];
+      side.classList.toggle("turn", told.player === k && (busy || state.phase !== "over"));
+    }
+    this.score(busy);
+  }
+
+  score(busy) {
+    const { state, told } = this, dot = name => { const one = make("i"); one.style.background = `rgb(${this.scene.balls[this.names.indexOf(name)].rgb})`; return one; };
+    const put = (id, ...parts) => by(id).replaceChildren(...parts), on = busy ? told.on : state.phase === "over" ? null : state.ball_on.replace("_", " ");
+    put("n-break", "break ", make("b", { textContent: told.break }));
+    if (!on) put("n-on", "frame over");
+    else {
+      const dots = on === "red" ? ["red 1"] : this.names.includes(on) ? [on] : this.names.slice(16);
+      put("n-on", "on", ...dots.map(dot), make("b", { textContent: on + (!busy && state.free_ball ? " + free ball" : "") }));
+    }
+    if (busy) return;
+    put("n-reds", "reds ", make("b", { textContent: state.reds }));
+    put("n-left", "left ", make("b", { textContent: state.available }));
+  }
+
+  /** What is wrong, beside a place on the table. */
+  bubble(text, x, y) {
+    const bubble = by("bubble");
+    bubble.hidden = !text;
+    if (!text) return;
+    bubble.textContent = text;
+    const [px, py] = this.view.toScreen(x, y), box = by("stage").getBoundingClientRect();
+    bubble.style.left = `${Math.max(4, Math.min(box.width - 290, px + 18))}px`;
+    bubble.style.top = `${Math.max(4, Math.min(box.height - 70, py + 18))}px`;
+  }
+
+  /** Draw at the next frame; then call `seen`. */
+  redraw(seen) {
+    if (seen) this.drawn.push(seen);
+    this.asked ??= requestAnimationFrame(now => { this.asked = null; this.draw(now); });
+  }
+
+  draw(now) {
+    const { moving } = this, labels = by("labels").checked;
+    if (moving) {
+      moving.start ??= now;
+      const t = Math.max(0, (now - moving.start) / 1000 - 0.4), { stroke } = moving, frame = stroke.at(t);
+      frame.labels = labels;
+      frame.turns = Array.from({ length: stroke.n }, (_, ball) => (frame.on[ball] ? stroke.turn(ball, t) : undefined));
+      if (t < 0.3 && stroke.cue) {
+        const lead = Math.min(1, (now - moving.start) / 400), { cue } = stroke;
+        const pull = t > 0 ? -Math.min(0.16, t * cue.speed * 0.4) : 0.02 + (0.02 + 0.02 * cue.speed) * Math.sin(Math.PI * lead);
+        frame.cue = { x: stroke.first[0], y: stroke.first[1], aim: cue.aim, pull, elevation: cue.elevation, alpha: t > 0 ? 1 - t / 0.3 : 1 };
+      }
+      this.view.draw(frame);
+      if (t >= stroke.duration + 0.3) this.skip();
+      else this.redraw();
+    } else if (this.setup.open) {
+      const { balls, wrong } = this.setup, rings = wrong >= 0 && balls.on[wrong] ? [wrong] : [];
+      this.view.draw({ x: balls.x, y: balls.y, on: balls.on, labels, highlight: rings });
+    } else if (this.state) {
+      const frame = { x: this.balls.x, y: this.balls.y, on: this.balls.on, labels, lines: [], rings: [], heat: [] };
+      if (this.aiming) {
+        const own = this.aim.overlay(), asked = this.advisor.overlay();
+        frame.heat = asked.heat;
+        frame.lines = [...asked.lines, ...this.advisor.hover ? [] : own.lines];
+        frame.rings = [...asked.rings, ...this.advisor.hover ? [] : own.rings];
+        frame.cue = own.cue;
+      }
+      this.view.draw(frame);
+    }
+    for (const seen of this.drawn.splice(0)) seen();
+  }
+}
+
+try {
+  window.page = new Page(await ask("scene"));
+  window.page.watch();
+} catch (error) {
+  by("asked").textContent = error.message;
+}

@@ -1,0 +1,147 @@
+/**
+ * How is a stroke aimed? By pointer, wheel, keys and controls; `Aim` keeps what is asked for and tells of every change.
+ *
+ * `wish`: {speed [m/s], side, top (tip offset over R, right and up), aim [rad], elevation [rad]}.
+ */
+
+import { by, firstContact, intoD } from "./play_parts.js";
+
+const DEGREE = Math.PI / 180;
+const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
+
+export class Aim {
+  /** app: `view`, `balls` (as shown), `state`, `aiming` (may this person play now?), `scene`, `limits`; changed(event): tell of a change. */
+  constructor(app, changed, place) {
+    Object.assign(this, { app, changed, place });
+    this.wish = { speed: 2.5, side: 0, top: 0, aim: Math.PI / 2, elevation: 0 };
+    this.held = null;
+    this.wire();
+  }
+
+  wire() {
+    const { limits } = this.app, speed = by("speed"), elevation = by("elevation"), canvas = by("table"), dial = by("dial");
+    [speed.min, speed.max] = limits.speed;
+    elevation.max = Math.round(limits.elevation[1] / DEGREE);
+    speed.oninput = event => this.set({ speed: Number(speed.value) }, event);
+    elevation.oninput = event => this.set({ elevation: Math.min(limits.elevation[1], Number(elevation.value) * DEGREE) }, event);
+    by("centre").onclick = event => this.set({ side: 0, top: 0 }, event);
+    by("left").onclick = event => this.turn(0.05, event);
+    by("right").onclick = event => this.turn(-0.05, event);
+    by("nominate").onchange = event => this.set({}, event);
+    canvas.addEventListener("pointerdown", event => this.down(event));
+    canvas.addEventListener("pointermove", event => this.move(event));
+    for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, () => { this.held = null; });
+    canvas.addEventListener("wheel", event => {
+      if (!this.app.aiming) return;
+      event.preventDefault();
+      this.turn(event.deltaY < 0 ? 0.05 : -0.05, event);
+    }, { passive: false });
+    const tip = event => {
+      const box = dial.getBoundingClientRect(), half = box.width / 2 / 1.08;
+      this.tip((event.clientX - box.left - box.width / 2) / half, (box.top + box.height / 2 - event.clientY) / half, event);
+    };
+    dial.addEventListener("pointerdown", event => { dial.setPointerCapture(event.pointerId); tip(event); });
+    dial.addEventListener("pointermove", event => dial.hasPointerCapture(event.pointerId) && tip(event));
+    this.show();
+  }
+
+  /** Change some of the wish, and tell. */
+  set(part, event) {
+    Object.assign(this.wish, part);
+    this.show();
+    this.changed(event);
+  }
+
+  /** Turn the aim by so many degrees; more is anticlockwise on screen, too. */
+  turn(degrees, event) { this.set({ aim: this.wish.aim + degrees * DEGREE }, event); }
+
+  tip(side, top, event) {
+    const { offset } = this.app.limits, far = Math.hypot(side, top), k = far > offset ? offset / far : 1;
+    this.set({ side: Math.abs(side * k) < 0.02 ? 0 : side * k, top: Math.abs(top * k) < 0.02 ? 0 : top * k }, event);
+  }
+
+  faster(by_, event) { this.set({ speed: clamp(this.wish.speed + by_, ...this.app.limits.speed) }, event); }
+  raise(degrees, event) { this.set({ elevation: clamp(this.wish.elevation + degrees * DEGREE, ...this.app.limits.elevation) }, event); }
+
+  // -------------------------------------------------------------------------------------------------------------- the pointer
+
+  at(event) {
+    const box = by("table").getBoundingClientRect();
+    return this.app.view.toTable(event.clientX - box.left, event.clientY - box.top);
+  }
+
+  down(event) {
+    const { app } = this;
+    if (!app.aiming || event.button > 0) return;
+    const [x, y] = this.at(event), near = Math.hypot(x - app.balls.x[0], y - app.balls.y[0]), reach = event.pointerType === "touch" ? 3.5 : 2;
+    this.held = app.state.in_hand && near < reach * app.view.R ? "ball" : "aim";
+    by("table").setPointerCapture(event.pointerId);
+    this.move(event);
+  }
+
+  move(event) {
+    const { app } = this;
+    if (!this.held || !app.aiming) return;
+    const [x, y] = this.at(event);
+    if (this.held === "ball") {
+      [app.balls.x[0], app.balls.y[0]] = intoD(x, y, app.scene.lines);
+      this.place(app.balls.x[0], app.balls.y[0], event);
+      this.changed(event);
+    } else if (Math.hypot(x - app.balls.x[0], y - app.balls.y[0]) > app.view.R) {
+      this.set({ aim: Math.atan2(y - app.balls.y[0], x - app.balls.x[0]) }, event);
+    }
+  }
+
+  // ------------------------------------------------------------------------------------------------------------- what is seen
+
+  show() {
+    const { wish } = this, around = ((90 - wish.aim / DEGREE) % 360 + 360) % 360;
+    by("speed").value = wish.speed;
+    by("speed-out").textContent = `${wish.speed.toFixed(2)} m/s`;
+    by("elevation").value = wish.elevation / DEGREE;
+    by("elevation-out").textContent = `${(wish.elevation / DEGREE).toFixed(1)}°`;
+    by("aim-out").textContent = `${around.toFixed(2)}°`;
+    const words = [];
+    if (wish.top) words.push(`${wish.top > 0 ? "top" : "screw"} ${Math.abs(wish.top).toFixed(2)}`);
+    if (wish.side) words.push(`${wish.side > 0 ? "right" : "left"} ${Math.abs(wish.side).toFixed(2)}`);
+    by("tip-words").textContent = words.join(", ") || "centre ball";
+    this.drawDial();
+  }
+
+  /** The cue ball as the player sees it; the dashed circle is the miscue limit. */
+  drawDial() {
+    const dial = by("dial"), ratio = Math.min(window.devicePixelRatio || 1, 3), size = Math.round((dial.clientWidth || 112) * ratio);
+    if (dial.width !== size) dial.width = dial.height = size;
+    const pen = dial.getContext("2d"), c = size / 2, R = c / 1.08, { wish, app } = this, disc = (x, y, r, style) => {
+      pen.fillStyle = style;
+      pen.beginPath(); pen.arc(x, y, r, 0, 2 * Math.PI); pen.fill();
+    };
+    pen.clearRect(0, 0, size, size);
+    const look = pen.createRadialGradient(c - 0.3 * R, c - 0.35 * R, 0.1 * R, c, c, R);
+    look.addColorStop(0, "#fffdf2"); look.addColorStop(0.7, "#efe9d6"); look.addColorStop(1, "#a49d89");
+    disc(c, c, R, look);
+    pen.strokeStyle = "#0003"; pen.lineWidth = ratio;
+    pen.beginPath(); pen.moveTo(c - R, c); pen.lineTo(c + R, c); pen.moveTo(c, c - R); pen.lineTo(c, c + R); pen.stroke();
+    pen.setLineDash([3 * ratio, 3 * ratio]); pen.strokeStyle = "#0006";
+    pen.beginPath(); pen.arc(c, c, app.limits.offset * R, 0, 2 * Math.PI); pen.stroke();
+    pen.setLineDash([]);
+    const x = c + wish.side * R, y = c - wish.top * R;
+    disc(x, y, 0.15 * R, "#2c5f93"); disc(x, y, 0.06 * R, "#9cc4ea");
+  }
+
+  /** What is drawn of the aim: straight line, ring at first contact, where the ball struck would go, the cue. */
+  overlay() {
+    const { app, wish } = this, { balls, scene: { extent }, view: { R } } = app, met = firstContact(balls, 0, wish.aim, extent, R);
+    const lines = [{ points: [[balls.x[0], balls.y[0]], [met.x, met.y]], colour: [255, 255, 255], width: 0.003 }];
+    if (met.ball >= 0) {
+      const x = balls.x[met.ball], y = balls.y[met.ball], way = Math.atan2(y - met.y, x - met.x);
+      const far = Math.min(0.12 + 0.7 * Math.cos(wish.aim - way), firstContact({ ...balls, on: balls.on.with(0, 0) }, met.ball, way, extent, R).run);
+      const to = [x + Math.cos(way) * far, y + Math.sin(way) * far];
+      lines.push({ points: [[x, y], to], colour: [255, 226, 110], width: 0.003, dash: [0.02, 0.02] });
+    }
+    return {
+      lines, rings: [{ x: met.x, y: met.y, ball: met.ball >= 0 ? 0 : undefined, alpha: 0.35 }],
+      cue: { x: balls.x[0], y: balls.y[0], aim: wish.aim, pull: 0.02 + 0.012 * wish.speed, elevation: wish.elevation },
+    };
+  }
+}

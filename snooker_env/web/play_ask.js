@@ -1,0 +1,168 @@
+/**
+ * What does the advisor say, and where would the balls stop? Its list of strokes, and the clouds of where cue ball and object ball rest.
+ *
+ * While a stroke is dragged one question is under way at a time, and the latest waits. `times` keeps how long it took from an input to the
+ * picture that shows its clouds [ms].
+ */
+
+import { ask, by, fill, Latest, make, pairs } from "./play_parts.js";
+
+const CUE_CLOUD = [255, 255, 255], BALL_CLOUD = [255, 196, 60];
+const CELL = 0.02;
+
+/** Places as a smooth map: counts in cells, each spread over its neighbours. */
+export function cloud(places, extent, rgb) {
+  const [[x0, x1], [y0, y1]] = extent, nx = Math.ceil((x1 - x0) / CELL), ny = Math.ceil((y1 - y0) / CELL);
+  let values = new Float32Array(nx * ny);
+  for (let k = 0; k < places.length; k += 2) {
+    const i = Math.floor((places[k] - x0) / CELL), j = Math.floor((places[k + 1] - y0) / CELL);
+    if (i >= 0 && i < nx && j >= 0 && j < ny) values[j * nx + i]++;
+  }
+  for (const step of [1, nx, 1, nx]) {
+    const spread = new Float32Array(nx * ny);
+    for (let k = step; k < values.length - step; k++) spread[k] = 0.25 * (values[k - step] + values[k + step]) + 0.5 * values[k];
+    values = spread;
+  }
+  return { x0, y0, cell: CELL, nx, ny, values, rgb };
+}
+
+export class Advisor {
+  /** app: as for `Aim`, and `aim`, `redraw()`. */
+  constructor(app) {
+    this.app = app;
+    this.list = [];
+    this.hover = null;
+    this.found = null;
+    this.times = [];
+    this.wait = new Latest("destinations", (found, input, more) => this.take(found, input, more), error => this.wrong(error));
+    by("map").onchange = event => this.changed(event);
+    by("errors").onchange = event => this.changed(event);
+    by("advise").onclick = () => this.advise();
+  }
+
+  /** The choices that the server has. */
+  offer(facts) {
+    fill(by("agent"), facts.agents);
+    fill(by("errors"), facts.noise, by("errors").value || "professional");
+  }
+
+  /** The table is another one: what was said is no longer about it. */
+  clear() {
+    this.list = [];
+    this.hover = this.found = null;
+    this.wait.drop();
+    by("advice").replaceChildren();
+    by("odds").textContent = "";
+  }
+
+  /** The stroke has changed, or who is to play it. */
+  changed(event) {
+    const { app } = this;
+    if (!app.aiming || !by("map").checked) { this.found = null; this.wait.drop(); this.say(); app.redraw(); return; }
+    this.question(app.aim.wish, event, true);
+  }
+
+  question(wish, event, own) {
+    const { state } = this.app, body = { speed: wish.speed, side: wish.side, top: wish.top, aim: wish.aim, elevation: wish.elevation, noise: by("errors").value };
+    if (state.in_hand && wish.place) body.place = wish.place;
+    else if (state.in_hand) body.place = [this.app.balls.x[0], this.app.balls.y[0]];
+    this.wait.ask(body, { at: event?.timeStamp ?? performance.now(), revision: state.revision, own });
+  }
+
+  take(found, input) {
+    const { app } = this;
+    if (!app.aiming || input.own && this.hover) return;
+    found.heat = [cloud(pairs(found.ball), app.scene.extent, BALL_CLOUD), cloud(pairs(found.cue), app.scene.extent, CUE_CLOUD)];
+    this.found = found;
+    this.say();
+    app.redraw(() => { this.times.push(performance.now() - input.at); });
+  }
+
+  wrong(error) {
+    this.found = null;
+    by("odds").textContent = error.message;
+  }
+
+  say() {
+    const odds = by("odds"), { found } = this;
+    odds.replaceChildren();
+    if (!found) return;
+    const dot = rgb => { const one = make("i"); one.style.background = `rgb(${rgb})`; return one; };
+    odds.append(dot(CUE_CLOUD), "cue ball");
+    if (found.first) {
+      odds.append(" ", dot(BALL_CLOUD), `${found.first.replace(/ \d+$/, "")}: potted ${Math.round(100 * found.potted)} %`);
+      if (found.in_off > 0.004) odds.append(`, in-off ${Math.round(100 * found.in_off)} %`);
+    } else odds.append(": strikes no ball");
+  }
+
+  async advise() {
+    const button = by("advise"), { app } = this, { revision } = app.state;
+    button.disabled = true;
+    button.textContent = "Looking …";
+    try {
+      const { suggestions } = await ask("advise", { agent: by("agent").value, noise: by("errors").value, n: 5 });
+      if (revision === app.state.revision) this.show(suggestions);
+    } catch (error) {
+      by("advice").replaceChildren(make("li", { className: "trouble", textContent: error.message }));
+    }
+    button.disabled = false;
+    button.textContent = "What would you play?";
+  }
+
+  show(suggestions) {
+    this.list = suggestions;
+    const items = suggestions.map((one, k) => {
+      const button = make("button", { type: "button", textContent: one.words });
+      button.setAttribute("aria-pressed", "false");
+      button.onpointerenter = event => event.pointerType === "mouse" && this.look(k, event);
+      button.onfocus = event => this.look(k, event);
+      button.onpointerleave = event => event.pointerType === "mouse" && this.look(-1, event);
+      button.onblur = event => this.look(-1, event);
+      button.onclick = event => this.adopt(k, event);
+      return make("li", {}, button);
+    });
+    by("advice").replaceChildren(...items);
+    this.app.redraw();
+  }
+
+  /** Show a suggestion and its clouds; -1: the own stroke again. */
+  look(k, event) {
+    const one = this.list[k] ?? null;
+    if (one === this.hover) return;
+    this.hover = one;
+    this.found = null;
+    if (one && this.app.aiming) this.question(one, event, false);
+    else this.changed(event);
+    this.app.redraw();
+  }
+
+  /** Take a suggestion's stroke as one's own. */
+  adopt(k, event) {
+    const one = this.list[k], { app } = this;
+    by("advice").querySelectorAll("button").forEach((button, j) => button.setAttribute("aria-pressed", String(j === k)));
+    this.hover = null;
+    if (one.place && app.state.in_hand) {
+      [app.balls.x[0], app.balls.y[0]] = one.place;
+      app.aim.place(...one.place, event);
+    }
+    by("play").focus();
+    app.aim.set({ speed: one.speed, side: one.side, top: one.top, aim: one.aim, elevation: one.elevation }, event);
+  }
+
+  /** What is drawn of it: the clouds, paths without errors, all suggestions' lines while none is looked at. */
+  overlay() {
+    const out = { heat: this.found?.heat ?? [], lines: [], rings: [] }, { balls } = this.app.scene;
+    const tint = ball => balls[ball].rgb.map(value => Math.round(value + (255 - value) / 3));
+    const draw = (paths, width, alpha) => {
+      for (const [ball, points] of Object.entries(paths ?? {})) out.lines.push({ points, colour: `rgba(${tint(Number(ball))},${alpha})`, width });
+    };
+    if (this.hover) {
+      draw(this.hover.paths, 0.006, 1);
+      for (const [ball, points] of Object.entries(this.hover.paths)) out.rings.push({ x: points.at(-1)[0], y: points.at(-1)[1], ball: Number(ball), alpha: 0.35 });
+    } else {
+      for (const one of this.list) draw(one.paths, 0.0025, 0.4);
+      draw(this.found?.paths, 0.004, 0.9);
+    }
+    return out;
+  }
+}

@@ -1,0 +1,102 @@
+/**
+ * What do the parts of the page share? Asking the server, elements by their id, and the straight lines of an aim.
+ *
+ * Frame as in `table.js`: metres, origin at the table's centre, +x to the yellow side, +y to the black end; directions anticlockwise from +x.
+ */
+
+export const by = id => document.getElementById(id);
+
+/** An element of its own. */
+export function make(tag, properties = {}, ...inside) {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...inside);
+  return made;
+}
+
+/** Fill a list of choices, and keep what is chosen where it is still there. */
+export function fill(select, values, chosen = select.value, words = value => value.replaceAll("_", " ")) {
+  const wanted = values.join("\n");
+  if (select.dataset.values !== wanted) {
+    select.replaceChildren(...values.map(value => make("option", { value, textContent: words(value) })));
+    select.dataset.values = wanted;
+  }
+  if (values.includes(chosen)) select.value = chosen;
+}
+
+/** What the server said was wrong. */
+export class ServerError extends Error {
+  constructor(error) {
+    super(error.field ? `${error.field}${error.value === null || String(error.value).length > 60 ? "" : ` = ${error.value}`}: ${error.message}` : error.message);
+    this.field = error.field;
+  }
+}
+
+/** Ask the server: with a body a POST, else a GET. */
+export async function ask(name, body, query = "") {
+  const options = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
+  const reply = await fetch(`api/${name}${query}`, options);
+  if (name === "replay.html" && reply.ok) return reply.text();
+  const found = await reply.json();
+  if (!reply.ok) throw new ServerError(found.error);
+  return found;
+}
+
+/** Asks one thing at a time: of what is asked meanwhile only the latest is asked next. `then(answer, about)`, `wrong(error, about)`. */
+export class Latest {
+  constructor(name, then, wrong = () => {}) {
+    Object.assign(this, { name, then, wrong, busy: false, next: null });
+  }
+
+  /** Ask with this body; `about` is handed back with the answer. */
+  async ask(body, about) {
+    if (this.busy) { this.next = [body, about]; return; }
+    this.busy = true;
+    try {
+      this.then(await ask(this.name, body), about, this.next !== null);
+    } catch (error) {
+      if (!this.next) this.wrong(error, about);
+    }
+    this.busy = false;
+    if (this.next) { const next = this.next; this.next = null; this.ask(...next); }
+  }
+
+  /** Forget what waits. */
+  drop() { this.next = null; }
+}
+
+/** Numbers of 32 bits in base64, in pairs. */
+export const pairs = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
+
+/** How far a point at c runs along (ux, uy) until it is R from the noses of a bed. */
+export function toCushion(cx, cy, ux, uy, [[x0, x1], [y0, y1]], R) {
+  const along = (from, way, low, high) => (way > 1e-12 ? (high - R - from) / way : way < -1e-12 ? (low + R - from) / way : Infinity);
+  return Math.max(0, Math.min(along(cx, ux, x0, x1), along(cy, uy, y0, y1)));
+}
+
+/** Where ball `which`, sent from its place at `aim`, first is when it meets a ball or a cushion: {x, y, ball (-1: cushion), run}. */
+export function firstContact(balls, which, aim, extent, R) {
+  const ux = Math.cos(aim), uy = Math.sin(aim), cx = balls.x[which], cy = balls.y[which];
+  let run = toCushion(cx, cy, ux, uy, extent, R), ball = -1;
+  for (let i = 0; i < balls.x.length; i++) {
+    if (!balls.on[i] || i === which) continue;
+    const bx = balls.x[i] - cx, by_ = balls.y[i] - cy, along = bx * ux + by_ * uy, across = bx * uy - by_ * ux;
+    if (along <= 0 || Math.abs(across) >= 2 * R) continue;
+    const until = Math.max(0, along - Math.sqrt(4 * R * R - across * across));
+    if (until < run) { run = until; ball = i; }
+  }
+  return { x: cx + run * ux, y: cy + run * uy, ball, run };
+}
+
+/** The nearest place [x, y] of the D: circle and baulk line as the scene draws them. */
+export function intoD(x, y, lines) {
+  const [[ax, ay], [bx]] = [lines.d[0], lines.d[lines.d.length - 1]], radius = Math.abs(ax - bx) / 2, depth = Math.max(0, ay - y);
+  const far = Math.hypot(x, depth);
+  return far <= radius ? [x, ay - depth] : depth === 0 ? [Math.max(-radius, Math.min(radius, x)), ay] : [x * radius / far, ay - depth * radius / far];
+}
+
+/** A file for the user to keep. */
+export function keep(name, text, type) {
+  const link = make("a", { href: URL.createObjectURL(new Blob([text], { type })), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 5000);
+}

@@ -1,0 +1,151 @@
+/**
+ * How is a position set up? Balls are dragged on the table and off it, and the server says at once what cannot be.
+ */
+
+import { ask, by, fill, Latest, make, ServerError } from "./play_parts.js";
+
+const ON = ["as the balls say", "red", "any_colour", "yellow", "green", "brown", "blue", "pink", "black"];
+
+export class SetUp {
+  /** app: `view`, `state`, `scene`, `take(state)`, `redraw()`, `bubble(text, x, y)`. */
+  constructor(app) {
+    this.app = app;
+    this.open = false;
+    this.held = null;
+    this.picked = -1;
+    this.wrong = -1;
+    this.check = new Latest("position", found => this.complain(found.error && new ServerError(found.error)), error => this.complain(error));
+    const canvas = by("table");
+    canvas.addEventListener("pointerdown", event => this.open && this.down(event));
+    document.addEventListener("pointermove", event => this.held && this.move(event));
+    for (const kind of ["pointerup", "pointercancel"]) document.addEventListener(kind, event => this.held && this.up(event));
+    by("set").onclick = () => this.begin();
+    by("set-cancel").onclick = () => this.end();
+    by("set-done").onclick = () => this.done();
+    by("set-clear").onclick = () => { for (let i = 1; i < 16; i++) this.balls.on[i] = 0; this.changed(); };
+    for (const id of ["set-on", "set-striker", "set-score-0", "set-score-1", "set-hand", "set-free"]) by(id).onchange = () => this.changed();
+  }
+
+  begin() {
+    const { app } = this, { state, scene } = app;
+    app.still();
+    this.names = scene.balls.map(ball => ball.name);
+    this.balls = { x: new Float64Array(22), y: new Float64Array(22), on: new Uint8Array(22) };
+    for (const [name, [x, y]] of Object.entries(state.positions)) {
+      const i = this.names.indexOf(name);
+      this.balls.x[i] = x; this.balls.y[i] = y; this.balls.on[i] = 1;
+    }
+    this.open = true;
+    fill(by("set-on"), ON, state.ball_on ?? ON[0]);
+    fill(by("set-striker"), ["0", "1"], String(state.striker), value => state.labels[Number(value)]);
+    for (const k of [0, 1]) { by(`set-name-${k}`).textContent = state.labels[k]; by(`set-score-${k}`).value = state.scores[k]; }
+    by("set-hand").checked = state.in_hand;
+    by("set-free").checked = state.free_ball;
+    app.mode("setup");
+    this.changed();
+  }
+
+  end() {
+    this.open = false;
+    this.app.bubble("");
+    this.app.mode("play");
+  }
+
+  /** The position as the protocol takes it, and which ball each red in it is. */
+  request() {
+    const { x, y, on } = this.balls, position = { reds: [] };
+    this.reds = [];
+    for (let i = 0; i < on.length; i++) {
+      if (!on[i]) continue;
+      if (i > 0 && i < 16) { position.reds.push([x[i], y[i]]); this.reds.push(i); } else position[this.names[i]] = [x[i], y[i]];
+    }
+    if (by("set-on").value !== ON[0]) position.on = by("set-on").value;
+    position.in_hand = by("set-hand").checked;
+    const scores = [0, 1].map(k => Math.trunc(Number(by(`set-score-${k}`).value) || 0));
+    return { position, scores, striker: Number(by("set-striker").value), free_ball: by("set-free").checked };
+  }
+
+  changed() {
+    this.tray();
+    this.check.ask({ ...this.request(), check: true });
+    this.app.redraw();
+  }
+
+  async done() {
+    try {
+      const state = await ask("position", this.request());
+      this.end();
+      this.app.take(state);
+    } catch (error) { this.complain(error); }
+  }
+
+  /** Say what is wrong, beside the ball that it is about. */
+  complain(error) {
+    if (!this.open) return;
+    const red = /^reds\[(\d+)\]/.exec(error?.field ?? ""), named = this.names.indexOf((error?.field ?? "").replace(/\[.*/, ""));
+    this.wrong = red ? this.reds[Number(red[1])] ?? -1 : named;
+    const words = error?.message.replace(/reds\[\d+\]/g, "red") ?? "";
+    by("set-wrong").textContent = words;
+    by("set-done").disabled = Boolean(error);
+    if (error && this.wrong >= 0 && this.balls.on[this.wrong]) this.app.bubble(words, this.balls.x[this.wrong], this.balls.y[this.wrong]);
+    else this.app.bubble("");
+    this.app.redraw();
+  }
+
+  /** The balls off the table. */
+  tray() {
+    const { balls } = this.app.scene;
+    by("tray").replaceChildren(...balls.flatMap((ball, i) => {
+      if (this.balls.on[i] || i > 0 && i < 16 && this.balls.on.slice(1, i).some(on => !on)) return [];
+      const many = i > 0 && i < 16 ? this.balls.on.slice(1, 16).filter(on => !on).length : 1;
+      const made = make("button", { type: "button", textContent: many > 1 ? many : "", title: i && i < 16 ? `red (${many} off the table)` : ball.name });
+      made.setAttribute("aria-label", made.title);
+      made.setAttribute("aria-pressed", String(this.picked === i));
+      made.style.background = `rgb(${ball.rgb})`;
+      made.onpointerdown = event => { this.picked = i; this.held = { ball: i }; made.releasePointerCapture?.(event.pointerId); };
+      made.onclick = () => { this.picked = i; this.tray(); };
+      return [made];
+    }));
+    if (!by("tray").children.length) by("tray").textContent = "Every ball is on the table.";
+  }
+
+  at(event) {
+    const box = by("table").getBoundingClientRect();
+    return this.app.view.toTable(event.clientX - box.left, event.clientY - box.top);
+  }
+
+  inside(x, y) {
+    const [[x0, x1], [y0, y1]] = this.app.scene.extent, out = 0.06;
+    return x > x0 - out && x < x1 + out && y > y0 - out && y < y1 + out;
+  }
+
+  down(event) {
+    const [x, y] = this.at(event), { balls } = this, reach = event.pointerType === "touch" ? 2.5 : 1.3;
+    let best = reach * this.app.view.R, ball = -1;
+    for (let i = 0; i < balls.x.length; i++) {
+      const far = Math.hypot(balls.x[i] - x, balls.y[i] - y);
+      if (balls.on[i] && far < best) { best = far; ball = i; }
+    }
+    if (ball >= 0) this.held = { ball };
+    else if (this.picked >= 0 && this.inside(x, y)) { this.held = { ball: this.picked }; this.move(event); }
+    this.picked = -1;
+    event.preventDefault();
+  }
+
+  move(event) {
+    const { ball } = this.held, [x, y] = this.at(event), over = document.elementFromPoint(event.clientX, event.clientY) === by("table");
+    this.balls.on[ball] = Number(over && this.inside(x, y));
+    if (this.balls.on[ball]) {
+      const { lines } = this.app.scene, spot = lines?.spots.find(([sx, sy]) => Math.hypot(sx - x, sy - y) < 0.4 * this.app.view.R);
+      [this.balls.x[ball], this.balls.y[ball]] = spot ?? [x, y].map(value => Math.round(value * 1e4) / 1e4);
+      this.picked = -1;
+      this.check.ask({ ...this.request(), check: true });
+    }
+    this.app.redraw();
+  }
+
+  up() {
+    this.held = null;
+    this.changed();
+  }
+}

@@ -1,0 +1,278 @@
+"""Does the protocol tell a program what it needs, and does it refuse what cannot be? Each route, as a request calls it."""
+
+import base64
+import json
+import re
+import time
+
+import numpy as np
+import pytest
+
+from snooker_env.geometry import POCKETS
+from snooker_env.planning import Position, Positions
+from snooker_env.play import routes
+from snooker_env.play.lines import lines_of
+from snooker_env.play.words import where
+from tests.playing import COVERED, EASY, STRAIGHT
+from tests.processes import ROOT
+
+
+def waited(game, until, seconds=60.0):
+    """The state, once something holds of it."""
+    end, state = time.monotonic() + seconds, game.get("state")
+    while not until(state):
+        assert time.monotonic() < end, state["words"]
+        state = game.get("state", after=state["revision"], wait=1.0)
+    return state
+
+
+def test_a_state_says_where_everything_is_and_what_may_be_done(game):
+    game("position", position=EASY, scores=[10, 20])
+    state = game.get("state")
+    assert state["positions"] == {
+        "cue": EASY["cue"],
+        "red 1": EASY["reds"][0],
+        "red 2": EASY["reds"][1],
+        "pink": EASY["pink"],
+        "black": EASY["black"],
+    }
+    assert (state["ball_on"], state["balls_on"], state["phase"], state["striker"]) == ("red", ["red 1", "red 2"], "stroke", 0)
+    assert (state["scores"], state["reds"], state["available"], state["snookered"]) == ([10, 20], 2, 29, False)
+    assert state["nominations"] == state["choices"] == [] and state["undo"] and not state["redo"]
+    assert state["words"] == "Player 1's stroke: red is on."
+
+
+def test_the_text_tells_a_blind_player_places_lines_and_what_is_in_the_way(game):
+    game("players", noise=["club", "none"])
+    text = game("position", position=EASY | {"blue": [0.75, 1.602]})["text"]
+    for words in (
+        "Player 1's stroke: red is on.", "Score: Player 1 0, Player 2 0; break 0.", "* red 1: (+0.600, +1.400)",
+        "pink: (+0.000, +0.892), on its spot", "black: (+0.000, +1.460), on its spot", "34 points are left",
+    ):  # fmt: skip
+        assert words in text, words
+    line = game.get("state")["lines"]
+    mine = next(one for one in line if one["ball"] == "red 1" and one["pocket"] == "top right")
+    assert not mine["open"] and mine["blocked_by"] == ["blue"]
+    open_text = game("position", position=EASY)["text"]
+    assert re.search(
+        r"red 1, top right: open, straight, cue ball 0\.\d\d m, ball 0\.\d\d m, aim 0\.93\d\d rad, may err \d\.\d\d deg, chance \d+ %",
+        open_text,
+    )
+
+
+def test_lines_agree_with_geometry():
+    at = Positions.of(Position(**EASY))
+    lines = {(line.ball, POCKETS[line.pocket]): line for line in lines_of([at], 0b110, "none")}
+    assert len(lines) == 12
+    straight = lines[1, "top right"]
+    assert straight.open and straight.cut < 0.01 and straight.aim == pytest.approx(STRAIGHT, abs=1e-3) and straight.chance is None
+    assert straight.to_pocket == pytest.approx(np.hypot(0.87376 - 0.6, 1.76926 - 1.4), abs=1e-6)
+    away = lines[1, "bottom left"]
+    assert not away.open and away.why == "cut too thin"
+
+
+@pytest.mark.parametrize(
+    ("ball", "place", "words"),
+    [
+        (19, (0.0, 0.0), "on its spot"), (18, (0.0, 0.0), "on the blue spot"), (1, (0.86, 0.0), "tight on the right cushion"),
+        (1, (-0.86, 0.0), "tight on the left cushion"), (1, (0.3, 1.74), "2 cm from the top cushion"),
+        (1, (0.0, -1.5), "in baulk, on the centre line"),
+    ],
+)  # fmt: skip
+def test_places_in_words(ball, place, words):
+    assert words in where(ball, *place)
+
+
+def test_a_stroke_is_played_and_told_as_a_replay_tells_it(game):
+    game("position", position=EASY)
+    told = game("stroke", speed=2.0, aim=STRAIGHT)
+    assert told["stroke"]["points"] == 1 and told["stroke"]["pots"] == [1] and told["stroke"]["cue"]["speed"] == 2.0
+    assert (
+        told["state"]["scores"] == [1, 0] and told["state"]["ball_on"] == "any_colour" and told["state"]["nominations"] == ["pink", "black"]
+    )
+    assert "Red potted, 1" in told["state"]["last"]
+    assert game.get("strokes")["strokes"] == [told["stroke"]] and game.get("strokes", **{"from": 1})["strokes"] == []
+
+
+def test_an_aim_may_be_given_by_a_pot_and_is_solved(game):
+    game("position", position=EASY | {"cue": [0.1, 1.1]})
+    assert game("stroke", speed=2.3, top=0.2, aim_at={"pot": ["red 1", "right top"]})["stroke"]["pots"] == [1]
+    for given, words in (
+        ({"pot": ["red 1"]}, "aim_at = "), ({"pot": ["cue", "top right"]}, r"aim_at.pot\[0\] = 'cue'"), ("pink", "aim_at = 'pink'"),
+        ({"pot": ["blue", "top right"]}, "must be on the table"), ({"pot": ["pink", "corner"]}, r"aim_at.pot\[1\] = 'corner'"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=words):
+            game("stroke", speed=2.3, aim_at=given)
+
+
+def test_a_foul_asks_for_a_choice_and_a_nomination_counts(game):
+    game("position", position=COVERED)
+    state = game("stroke", speed=0.6, aim=0.0, nominate="black")["state"]
+    assert state["words"] == "Foul and a miss by Player 1: Player 2 chooses." and state["scores"] == [0, 7]
+    assert "(black nominated)" in state["last"] and state["choices"] == ["play", "play_again", "replace"]
+    with pytest.raises(ValueError, match="choose first"):
+        game("stroke", speed=1.0, aim=0.0)
+    with pytest.raises(ValueError, match='must be "play" in a request that holds a stroke'):
+        game("stroke", speed=1.0, aim=0.0, choice="replace")
+    back = game("stroke", choice="replace")
+    assert back["stroke"] is None and back["state"]["striker"] == 0 and back["state"]["positions"]["cue"] == COVERED["cue"]
+    both = game("undo") and game("stroke", choice="play", speed=1.0, aim=1.0)
+    assert both["stroke"]["player"] == 1
+
+
+def test_a_request_that_is_refused_has_changed_nothing(game):
+    before = game.get("state")
+    for fields, words in (
+        ({"speed": 9.0, "aim": 1.0, "place": [0.1, -1.2]}, "speed = 9.0"), ({"speed": 1.0, "place": [0.1, -1.2]}, "aim = None"),
+        ({"speed": 1.0, "aim": 0.0, "side": 0.4, "top": 0.4}, "side, top"), ({"speed": 1.0, "aim": "0"}, "aim = '0'"),
+        ({"speed": 1.0, "aim": 0.0, "elevation": 1.0}, "elevation"), ({"speed": True, "aim": 0.0}, "speed = True"),
+        ({"speed": 1.0, "aim": 0.0, "nominate": "blue"}, "nominate = 'blue'"),
+        ({"speed": 1.0, "aim": 0.0, "nominate": "white"}, "nominate = 'white'"),
+        ({"speed": 1.0, "aim": 0.0, "place": [0.1]}, "place = "), ({"choice": "play"}, "choice = 'play'"), ({}, "speed = None"),
+        ({"speed": 1.0, "aim": 0.0, "power": 3}, "field = 'power'"),
+    ):  # fmt: skip
+        with pytest.raises(ValueError, match=words):
+            game("stroke", **fields)
+    assert game.get("state") == before
+
+
+def test_a_position_that_cannot_be_is_told_by_the_ball(game):
+    for change, field in (
+        ({"blue": [0.33, 1.031]}, "blue"), ({"pink": [2.0, 0.0]}, "pink"), ({"reds": [[0.6, 1.4], [0.61, 1.4]]}, "reds[1]"),
+        ({"on": "blue"}, "on"), ({"in_hand": True}, "in_hand"), ({"colour": [0, 0]}, "field of position"), ({"reds": "x"}, "reds"),
+        ({"points": 1.5}, "points"),
+    ):  # fmt: skip
+        found = game("position", position=EASY | change, check=True)
+        assert found["sound"] is False and found["error"]["field"] == field and found["error"]["message"], change
+        with pytest.raises(ValueError, match=f"^{re.escape(field)} = "):
+            game("position", position=EASY | change)
+    assert game("position", position=EASY, check=True) == {"sound": True, "error": None}
+
+
+def test_an_agent_plays_by_itself_and_waits_after_an_undo(game):
+    game("position", position=EASY)
+    game("players", players=["person", "ghost_ball"], noise=["none", "professional"])
+    state = game("stroke", speed=0.4, aim=1.0)["state"]
+    assert state["striker"] == 0 or state["thinking"]
+    state = waited(game, lambda s: not s["thinking"])
+    assert (state["striker"] == 0 or state["phase"] != "stroke") and state["strokes"] >= 2
+    strokes = game.get("strokes")["strokes"]
+    assert {stroke["player"] for stroke in strokes} == {0, 1}
+    back = game("undo")
+    assert back["striker"] == 0 and back["strokes"] == 0  # to where the person had to play
+    again = game("redo")
+    assert not again["thinking"] and again["strokes"] == len(strokes)
+    game("position", position=EASY, striker=1)
+    state = game.get("state")
+    assert state["paused"] and "Continue" in state["words"]
+    with pytest.raises(ValueError, match="turn = 'ghost_ball'"):
+        game("stroke", speed=1.0, aim=0.0)
+    game("go")
+    assert waited(game, lambda s: not s["thinking"])["strokes"] >= 1
+
+
+def test_two_agents_play_a_stroke_at_a_time(game):
+    game("position", position=EASY)
+    game("players", players=["ghost_ball", "random"])
+    state = waited(game, lambda s: not s["thinking"])
+    assert state["strokes"] == 1 and state["paused"]
+    game("go")
+    assert waited(game, lambda s: not s["thinking"])["strokes"] == 2
+
+
+def test_an_agent_that_fails_is_told_and_the_game_waits(game):
+    class Broken:
+        def act(self, *given):
+            raise AssertionError
+
+    game.service.seats._players["broken"] = Broken()
+    game("position", position=EASY)
+    game("players", players=["broken", "person"])
+    state = waited(game, lambda s: not s["thinking"])
+    assert state["trouble"].startswith("broken gave no stroke") and state["words"] == state["trouble"] and state["strokes"] == 0
+    game("players", players=["person", "person"])
+    assert game.get("state")["trouble"] == ""
+
+
+def test_only_agents_of_the_start_may_be_named(game):
+    """No path, no module, no file: a name that is not in the list is refused before anything is read."""
+    for name in ("/tmp/model.zip", "os:system", "../agents/pretrained/ppo_mask", "ppo_mask"):
+        with pytest.raises(ValueError, match=r"players\[1\]"):
+            game("players", players=["person", name])
+        with pytest.raises(ValueError, match="agent = "):
+            game("advise", agent=name)
+
+
+def test_advice_is_ranked_named_and_drawn(game):
+    game("position", position=EASY)
+    found = game("advise", agent="lookahead", n=10, samples=40)["suggestions"]
+    assert 1 <= len(found) <= 10
+    assert all("points expected" in one["words"] for one in found)
+    best = next(one for one in found if (one["ball"], one["pocket"]) == ("red 1", "top right"))
+    assert best["chance"] > 0.8
+    assert (
+        np.allclose(best["paths"]["0"][0], EASY["cue"], atol=1e-4)
+        and np.hypot(*np.subtract(best["paths"]["1"][-1], (0.87376, 1.76926))) < 0.15
+    )
+    played = game("stroke", **{name: best[name] for name in ("speed", "side", "top", "aim", "elevation")})
+    assert played["stroke"]["pots"] == [1]
+
+
+def test_destinations_spread_with_the_errors(game):
+    game("position", position=EASY)
+    unpacked = lambda text: np.frombuffer(base64.b64decode(text), "<f4").reshape(-1, 2)  # noqa: E731
+    sure = game("destinations", speed=1.5, aim=STRAIGHT, noise="none")
+    loose = game("destinations", speed=1.5, aim=STRAIGHT, noise="club", samples=300)
+    assert sure["first"] == loose["first"] == "red 1" and sure["pots"] == [["red 1", "top right"]] and sure["potted"] == 1.0
+    assert len(unpacked(loose["cue"])) + round(300 * loose["in_off"]) == 300 and unpacked(loose["cue"]).std(axis=0).max() > 0.01
+    assert np.allclose(unpacked(sure["cue"])[0], sure["paths"]["0"][-1], atol=1e-3)
+    assert game("destinations", speed=1.5, aim=STRAIGHT, noise="club", samples=300) == loose
+    assert game.get("state")["strokes"] == 0
+
+
+def test_undo_redo_new_save_load_and_replay(game):
+    with pytest.raises(ValueError, match="nothing has been played"):
+        game.get("replay")
+    game("position", position=EASY)
+    game("stroke", speed=2.0, aim=STRAIGHT)
+    replay = game.get("replay")
+    assert replay["format"] == "snooker-replay" and len(replay["strokes"]) == 1 and replay["players"] == ["Player 1", "Player 2"]
+    assert json.loads(json.dumps(replay))["strokes"][0]["words"] in game.get("replay.html")
+    saved = game("save")
+    assert game("undo")["scores"] == [0, 0] and game("redo")["scores"] == [1, 0]
+    fresh = game("new", layout="colours", seed=4)
+    assert fresh["reds"] == 0 and fresh["ball_on"] == "yellow" and not fresh["undo"] and fresh["strokes"] == 0
+    assert game("new", layout="colours", seed=4)["positions"] == fresh["positions"] != game("new", layout="colours", seed=5)["positions"]
+    assert game("load", saved=saved)["scores"] == [1, 0]
+    for fields, words in (
+        ({"layout": "x"}, "layout = 'x'"),
+        ({"seed": -1}, "seed = -1"),
+        ({"breaker": 2}, "breaker = 2"),
+        ({"seed": "1"}, "seed = '1'"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            game("new", **fields)
+
+
+def test_who_waits_hears_of_a_change_and_not_of_none(game):
+    revision = game.get("state")["revision"]
+    start = time.monotonic()
+    assert game.get("state", after=revision, wait=0.2)["revision"] == revision and time.monotonic() - start >= 0.2
+    game("place", place=[0.0, -1.2])
+    start = time.monotonic()
+    assert game.get("state", after=revision, wait=20.0)["revision"] > revision and time.monotonic() - start < 5
+
+
+def test_every_route_and_field_is_documented():
+    page = (ROOT / "docs/protocol.md").read_text(encoding="utf-8")
+    for method, table in (("GET", routes.GET), ("POST", routes.POST)):
+        for name, route in table.items():
+            assert f"`{method} api/{name}`" in page, name
+            part = page.partition(f"`{method} api/{name}`")[2].partition("\n### ")[0]
+            for field in route.fields:
+                assert f"`{field}`" in part or ("of a stroke" in part and field in routes.STROKE), (name, field)
+
+
+def test_every_part_of_a_state_is_documented(game):
+    page = (ROOT / "docs/protocol.md").read_text(encoding="utf-8")
+    assert not [name for name in game.get("state") if f"`{name}`" not in page]

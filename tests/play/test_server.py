@@ -1,0 +1,260 @@
+"""Does the server answer those alone who know its address, and stay within its bounds? Hosts, origins, tokens, sizes, forms, time."""
+
+import json
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+
+from snooker_env.play import server as module
+from snooker_env.play.__main__ import main
+from snooker_env.play.routes import GET, POST
+from tests.processes import ROOT
+
+
+def refused(found, status, words):
+    """Is that an error of this status, as one JSON object, that says these words?"""
+    code, body, headers = found
+    assert code == status and set(body) == {"error"} and set(body["error"]) == {"field", "value", "message"}, found[:2]
+    assert words in body["error"]["message"] and headers["Content-Type"] == "application/json"
+    return body["error"]
+
+
+def test_it_listens_on_this_machine_alone(line):
+    assert line.server.server_address[0] == "127.0.0.1" and len(line.server.token) >= 32
+    assert line.server.address == f"http://127.0.0.1:{line.server.server_port}/{line.server.token}/"
+
+
+def test_the_page_and_the_protocol_are_served_with_headers_that_keep_others_out(line):
+    for name, kind in (
+        ("", "text/html"),
+        ("play.js", "text/javascript"),
+        ("table.js", "text/javascript"),
+        ("play.css", "text/css"),
+        ("api/state", "application/json"),
+    ):
+        status, body, headers = line(name)
+        assert status == 200 and body and headers["Content-Type"].startswith(kind)
+        assert "default-src 'none'" in headers["Content-Security-Policy"] and "unsafe" not in headers["Content-Security-Policy"]
+        assert (headers["X-Content-Type-Options"], headers["X-Frame-Options"], headers["Cache-Control"]) == ("nosniff", "DENY", "no-store")
+        assert headers["Referrer-Policy"] == "no-referrer" and "Python" not in headers["Server"]
+    assert all((module.WEB / file).is_file() for file, _ in module.FILES.values())
+
+
+@pytest.mark.parametrize("token", ["", "x", "TOKEN", "%2e%2e"])
+@pytest.mark.parametrize("name", ["", "play.js", "api/state"])
+def test_without_the_token_nothing_is_served(line, token, name):
+    refused(line(name, token=token), 403, "token")
+
+
+@pytest.mark.parametrize(
+    "host", ["evil.example", "evil.example:80", "127.0.0.1", "127.0.0.1:1", "localhost:0", "", "127.0.0.1.nip.io:PORT"]
+)
+def test_another_host_is_refused(line, host):
+    host = host.replace("PORT", str(line.server.server_port))
+    refused(line("api/state", host=host or None, headers=None if host else {"Host": None}), 403, "Host")
+
+
+@pytest.mark.parametrize("name", ["127.0.0.1", "localhost", "[::1]", "LOCALHOST"])
+def test_this_machines_names_are_served(line, name):
+    assert line("api/state", host=f"{name}:{line.server.server_port}")[0] == 200
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Origin": "http://evil.example"},
+        {"Origin": "null"},
+        {"Origin": "https://127.0.0.1"},
+        {"Sec-Fetch-Site": "cross-site"},
+        {"Sec-Fetch-Site": "same-site"},
+    ],
+)
+def test_other_pages_are_refused(line, headers):
+    refused(line("api/undo", {}, headers=headers), 403, "must be")
+    refused(line("api/state", headers=headers), 403, "must be")
+
+
+def test_the_own_page_is_served(line):
+    own = {"Origin": f"http://127.0.0.1:{line.server.server_port}", "Sec-Fetch-Site": "same-origin"}
+    assert line("api/undo", {}, headers=own)[0] == 200
+    assert line("", headers={"Sec-Fetch-Site": "none"})[0] == 200
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "api/none",
+        "etc/passwd",
+        "../pyproject.toml",
+        "..%2f..%2fpyproject.toml",
+        "play.html",
+        "replay.html",
+        "api/",
+        "api",
+        "//play.js",
+        "./play.js",
+    ],
+)
+def test_only_known_names_are_served(line, name):
+    refused(line(name), 404, "nothing of that name")
+
+
+def test_only_known_methods_are_answered(line):
+    for method in ("PUT", "DELETE", "OPTIONS", "PATCH", "TRACE", "FOO"):
+        found = line("api/state", method=method)
+        refused(found, 405, "GET or POST")
+        assert found[2]["Allow"] == "GET, POST"
+    for name in POST:
+        assert refused(line(f"api/{name}"), 405, "must be POST") and name not in GET
+    for name in [*(f"api/{one}" for one in GET), "play.js", ""]:
+        refused(line(name, {}), 405, "must be GET")
+    refused(line("api/state", method="PUT", token="x"), 403, "token")
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        (b"{", "JSON"), (b"[]", "object"), (b"3", "object"), (b"\xff\xfe", "JSON"), (b'{"place": [NaN, 0]}', "NaN"),
+        (b'{"place": [Infinity, 0]}', "Infinity"), (b'{"place": [0, 0], "place": [1, 1]}', "twice"), (b"[" * 30_000, "JSON"),
+        (b'{"place": ' + b"9" * 5000 + b"}", "JSON"), (b'{"a": 1} x', "JSON"),
+    ],
+)  # fmt: skip
+def test_what_is_no_json_object_is_refused(line, body, words):
+    refused(line("api/place", body), 400, words)
+
+
+def test_wrong_fields_are_named(line):
+    error = refused(line("api/stroke", {"speed": 99, "aim": 0}), 422, "must be a finite number in [0.2, 7]")
+    assert (error["field"], error["value"]) == ("speed", "99")
+    assert refused(line("api/stroke", {"speed": 1, "aim": "nan"}), 422, "finite")["field"] == "aim"
+    assert refused(line("api/stroke", b'{"speed": 1e999, "aim": 0}'), 422, "finite")["field"] == "speed"
+    assert refused(line("api/undo", {"steps": 2}), 422, "no fields")["value"] == "'steps'"
+    assert refused(line("api/state?x=1"), 422, "must be one of")["value"] == "'x'"
+    assert refused(line("api/state?after=1&after=2"), 400, "once")["field"] == "after"
+    assert refused(line("api/state?after=-1"), 422, "integer")["field"] == "after"
+    refused(line("api/undo?x=1", {}), 400, "in its body")
+
+
+def test_bodies_are_bounded_and_typed(line):
+    refused(line("api/load", b" " * (module.MOST_BODY + 1)), 413, "at most")
+    refused(line("api/load", b"", headers={"Content-Length": "999999999999"}), 413, "at most")
+    refused(line("api/undo", {}, headers={"Content-Type": "text/plain"}), 415, "application/json")
+    refused(line("api/undo", {}, headers={"Content-Type": None}), 415, "application/json")
+    for wrong in ("x", "-1", "1e3", "", "+2", "0x2"):
+        refused(line("api/undo", {}, headers={"Content-Length": wrong}), 411, "bytes")
+    refused(line("api/undo", {}, headers={"Content-Length": None, "Transfer-Encoding": "chunked"}), 411, "Content-Length")
+    refused(line("api/state", b"{}", method="GET"), 400, "no body")
+
+
+def test_heads_are_bounded(line):
+    refused(line("api/state", headers={"X-Long": "x" * module.MOST_HEAD}), 431, "head")
+    refused(line("api/state", headers={f"X-{k}": "x" * 100 for k in range(200)}), 431, "")
+    assert line("api/state", path=f"/{line.server.token}/api/state?" + "x" * 20_000)[0] == 431
+
+
+def raw(line, *parts, wait=0.0):
+    """Bytes on a connection, one part after the other, and what comes back until it is closed."""
+    with socket.create_connection(("127.0.0.1", line.server.server_port), timeout=20) as connection:
+        for part in parts:
+            connection.sendall(part)
+            time.sleep(wait)
+        connection.settimeout(20)
+        found = b""
+        while part := connection.recv(65_536):
+            found += part
+        return found
+
+
+def test_what_is_no_http_is_refused_and_told_in_json(line):
+    for request in (b"hello\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"GET  /  x HTTP/1.1\r\n\r\n"):
+        found = raw(line, request)
+        assert (b'{"error"' in found and b"HTTP/1.1 4" in found) or b"HTTP/1.1 505" in found
+
+
+def test_a_request_that_does_not_end_is_cut_off(line, monkeypatch):
+    monkeypatch.setattr(module, "REQUEST", 0.4)
+    start = time.monotonic()
+    assert raw(line, b"GET /x HTTP/1.1\r\n", b"Host: x\r\n", wait=0.1) == b"" and time.monotonic() - start < 5
+    start = time.monotonic()
+    with socket.create_connection(("127.0.0.1", line.server.server_port)) as slow:  # a byte now and then does not help
+        slow.settimeout(5)
+        with pytest.raises(OSError):
+            for _ in range(40):
+                slow.sendall(b"x")
+                time.sleep(0.05)
+            assert slow.recv(1) == b"x"
+    assert time.monotonic() - start < 5
+
+
+def closed(connection):
+    """Has the other side closed it?"""
+    connection.settimeout(0.5)
+    try:
+        return connection.recv(1) == b""
+    except TimeoutError:
+        return False
+    except OSError:
+        return True
+
+
+def test_connections_at_once_are_bounded(line):
+    held = [socket.create_connection(("127.0.0.1", line.server.server_port)) for _ in range(module.MOST_AT_ONCE + 4)]
+    try:
+        time.sleep(0.3)
+        assert closed(held[-1]) and not closed(held[0])
+    finally:
+        for one in held:
+            one.close()
+    for _ in range(50):
+        time.sleep(0.05)
+        try:
+            assert line("api/state")[0] == 200
+            break
+        except OSError:
+            continue
+    else:
+        raise AssertionError("the server did not come back")
+
+
+def test_one_connection_serves_many_requests(line):
+    request = f"GET /{line.server.token}/api/state HTTP/1.1\r\nHost: localhost:{line.server.server_port}\r\n".encode()
+    found = raw(line, (request + b"\r\n") * 2 + request + b"Connection: close\r\n\r\n")
+    assert found.count(b"HTTP/1.1 200 OK") == 3
+
+
+def test_the_replay_is_a_file_to_keep(line):
+    assert line("api/position", {"position": {"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}})[0] == 200
+    assert line("api/stroke", {"speed": 1, "aim": 0.5})[0] == 200
+    status, body, headers = line("api/replay.html")
+    assert status == 200 and body.startswith(b"<!DOCTYPE html>") and headers["Content-Disposition"].startswith("attachment")
+
+
+def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
+    start = tmp_path / "position.json"
+    start.write_text(json.dumps({"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}))
+    command = [sys.executable, "-m", "snooker_env.play", "--no-browser", "--position", str(start), "--seed", "1"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT)
+    assert process.stdout is not None
+    lines = [process.stdout.readline() for _ in range(3)]
+    assert lines[2].strip().startswith("http://127.0.0.1:") and len(lines[2].strip()) > 50
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=20)
+    assert process.returncode == 0 and err == "" and "Traceback" not in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--position", "nowhere.json"], "nowhere.json"), (["--layout", "x"], "layout = 'x'"), (["--agent", "nobody"], "agent = 'nobody'"),
+        (["--position", str(ROOT / "pyproject.toml")], "must be a file of JSON"), (["--port", "99999"], "port"),
+        (["--seed", "-1"], "seed = -1"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_said_in_one_line(arguments, words, capsys):
+    assert main(["--no-browser", *arguments]) == 2
+    out, err = capsys.readouterr()
+    assert words in err and err.count("\n") == 1 and "Traceback" not in err and out == ""

@@ -1,0 +1,233 @@
+"""Is the game in memory the game by the rules? Strokes, choices, nominations, hands, undo, files; against MatchEnv, stroke for stroke."""
+
+import json
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+from snooker_env.advice import CueStroke
+
+from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, BallOn
+from snooker_env.game.ruling import AUTO, Foul
+from snooker_env.planning import Position
+from snooker_env.play.session import Session
+from snooker_env.tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
+from tests.playing import COVERED, EASY, STRAIGHT
+
+ALONG_X = CueStroke(speed=0.6, aim=0.0)
+AT_NOTHING = CueStroke(speed=0.2, aim=0.5 * pi)
+
+
+def standing(position, *, scores=(0, 0), striker=0, free_ball=False):
+    session = Session(seed=1)
+    session.set_up(Position(**position), scores=scores, striker=striker, free_ball=free_ball)
+    return session
+
+
+def test_strokes_are_those_of_the_match_environment():
+    """The same strokes, with noise, in both: the same balls, the same frame, the same random numbers, to the last bit."""
+    pytest.importorskip("pettingzoo")
+    from snooker_env.envs.match import MatchEnv
+
+    env = MatchEnv(task="frame", placement=True, decision=True, elevation=True, miss="clear_path", noise="club", max_strokes=None)
+    env.reset(seed=3)
+    session = Session(seed=3)
+    session.noise[:] = ["club", "club"]
+    session.load(session.save() | {"state": {k: v for k, v in env.get_state().items() if k != "rng"}})
+    rng = np.random.default_rng(0)
+    for _ in range(12):
+        stroke = CueStroke(
+            speed=rng.uniform(0.5, 6), aim=rng.uniform(-3, 3), side=rng.uniform(-0.3, 0.3), top=rng.uniform(-0.3, 0.3),
+            elevation=rng.uniform(0, 0.3),
+        )  # fmt: skip
+        if session.frame.in_hand and session.frame.phase == "stroke":
+            session.place(0.1, -1.2)
+        x, y = session.tables.positions[0, CUE]
+        action = [
+            2 * (stroke.speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1, 2 * stroke.side, 2 * stroke.top, stroke.aim / pi,
+            2 * stroke.elevation / MAX_ELEVATION - 1, x / 0.292, 2 * (-1.0475 - y) / np.sqrt(0.292**2 - min(x**2, 0.0852)) - 1, 0.0,
+        ]  # fmt: skip
+        if session.frame.phase == "choice":
+            session.choose("play")
+            if session.frame.in_hand:
+                session.place(0.1, -1.2)
+                action[5:7] = 0.1 / 0.292, 2 * 0.1525 / np.sqrt(0.292**2 - 0.01) - 1
+        session.play(stroke)
+        env.step(np.clip(action, -1, 1))
+        assert replace(session.frame, saved=None) == replace(env.frame, saved=None)
+        assert np.allclose(session.tables.positions[0], env.positions, rtol=0, atol=1e-9)
+        session._set({k: v for k, v in env.get_state().items() if k != "rng"})  # rounding of a place would grow
+    assert session.tables.game[0, -1] == 12
+
+
+def test_a_pot_scores_and_the_same_player_stays():
+    session = standing(EASY)
+    act = session.play(CueStroke(speed=2.0, aim=STRAIGHT))
+    assert (act.played.points, session.frame.scores, session.frame.striker) == (1, (1, 0), 0)
+    assert session.frame.ball_on == BallOn.ANY_COLOUR and set(session.nominations()) == {PINK, BLACK}
+
+
+def test_a_colour_that_was_named_must_be_struck_first():
+    for named, penalty in ((AUTO, 0), (BLUE, 0), (PINK, 6), (BLACK, 7)):
+        session = standing(COVERED)
+        session.play(ALONG_X, nominated=named)
+        assert session.frame.scores == (0, penalty) and (session.frame.phase == "choice") == bool(penalty)
+        assert session.tables.nominated[0] == AUTO
+        assert session.acts[-1].said == ("" if named == AUTO else {BLUE: "blue", PINK: "pink", BLACK: "black"}[named])
+
+
+def test_a_miss_is_called_by_the_colour_that_was_named():
+    """The stroke strikes nothing; the pink is hidden behind the blue, so naming it leaves no path that was missed."""
+    for named, called in ((AUTO, True), (BLACK, True), (PINK, False)):
+        session = standing(COVERED | {"blue": [0.08, -0.5], "pink": [0.6, -0.5]})
+        session.play(AT_NOTHING, nominated=named)
+        assert session.frame.phase == "choice" and session.frame.miss_called is called, named
+        assert session.frame.choices == (("play", "play_again", "replace") if called else ("play", "play_again"))
+
+
+def test_only_what_is_open_may_be_named():
+    for position, named, words in ((EASY, BLUE, "no colour is to be named"), (COVERED, 17, "must be one of")):
+        session = standing(position)
+        before = session.state
+        with pytest.raises(ValueError, match=words):
+            session.play(ALONG_X, nominated=named)
+        assert session.state == before and len(session.acts) == 2
+
+
+def test_the_choices_after_a_foul():
+    """Play: the other plays on. Play again: the offender. Replace, after a miss: the offender from where the balls were."""
+    for what, striker, back in (("play", 1, False), ("play_again", 0, False), ("replace", 0, True)):
+        session = standing(COVERED)
+        before = session.tables.positions[0].copy()
+        session.play(CueStroke(speed=1.0, aim=0.5 * pi))
+        assert session.frame.phase == "choice" and session.frame.striker == 1 and session.frame.scores == (0, 7)
+        with pytest.raises(ValueError, match="choose first"):
+            session.play(ALONG_X)
+        session.choose(what)
+        assert (session.frame.phase, session.frame.striker) == ("stroke", striker)
+        assert np.array_equal(session.tables.positions[0, CUE], before[CUE]) is back
+    with pytest.raises(ValueError, match="must be left out"):
+        session.choose("play")
+
+
+def test_a_free_ball_may_be_named_and_counts_as_the_ball_on():
+    session = standing({"cue": [0.0, -0.5], "reds": [[0.6, 1.4]], "blue": [0.3, -0.5], "black": [-0.6, -0.9]}, free_ball=True)
+    assert session.nominations() == (BLUE, BLACK)
+    session.play(ALONG_X, nominated=BLUE)
+    assert session.acts[-1].played.fouls == Foul(0)
+    other = standing({"cue": [0.0, -0.5], "reds": [[0.6, 1.4]], "blue": [0.3, -0.5], "black": [-0.6, -0.9]}, free_ball=True)
+    other.play(ALONG_X, nominated=BLACK)
+    assert other.acts[-1].played.fouls & Foul.WRONG_FIRST
+
+
+def test_a_cue_ball_in_hand_goes_to_the_nearest_free_place_of_the_d():
+    session = Session(seed=1)
+    assert session.place(5.0, 5.0) == pytest.approx((0.292, -1.0475), abs=0.06)
+    assert session.place(0.1, -1.2) == (0.1, -1.2)
+    assert session.at == 1  # a place is no act of its own
+    session.play(CueStroke(speed=1.0, aim=-0.5 * pi))
+    assert np.allclose(session.acts[-1].played.shot.at(0.0)[0][CUE], (0.1, -1.2), atol=1e-12)
+    assert session.undo() and session.tables.positions[0, CUE].tolist() == [0.1, -1.2]
+    with pytest.raises(ValueError, match="not in hand"):
+        standing(EASY).place(0.0, -1.2)
+
+
+def test_undo_and_redo_give_every_state_back_and_a_new_act_ends_redo():
+    session = standing(EASY)
+    session.noise[:] = ["club", "club"]
+    states = [session.state]
+    for k in range(3):
+        if session.frame.phase == "choice":
+            session.choose("play")
+        session.play(CueStroke(speed=1.0 + k, aim=0.7))
+        states.append(session.state)
+    steps = session.at
+    seen = []
+    while session.undo():
+        seen.append(session.state)
+    assert states[0] in seen and states[1] in seen and not session.undo()
+    for _ in range(steps - 1):
+        assert session.redo()
+    assert session.state == states[-1] and not session.redo()
+    session.undo()
+    again = session.play(CueStroke(speed=3.0, aim=0.7)) if session.frame.phase == "stroke" else None
+    assert again is None or session.state == states[-1]  # the same stroke meets the same errors
+    assert again is None or not session.redo()
+
+
+def test_noise_is_that_of_the_seat():
+    """Only the second seat errs: its aim is not what was asked for, the first one's is."""
+    session = standing(EASY)
+    session.noise[:] = ["none", "olympiad"]
+    first = session.play(CueStroke(speed=1.0, aim=3.0)).played
+    if session.frame.phase == "choice":
+        session.choose("play")
+    assert session.frame.striker == 1
+    second = session.play(CueStroke(speed=1.0, aim=3.0)).played
+    assert first.cue["aim"] == pytest.approx(3.0, abs=1e-12) and abs(second.cue["aim"] - 3.0) > 1e-6
+
+
+def test_practice_gives_the_table_back():
+    session = standing(COVERED)
+    session.practice = True
+    session.play(CueStroke(speed=1.0, aim=0.5 * pi))
+    assert (session.frame.phase, session.frame.striker, session.frame.scores) == ("stroke", 0, (0, 7))
+
+
+def test_a_saved_game_plays_on_identically():
+    session = standing(EASY, scores=(12, 30), striker=1)
+    session.noise[:] = ["club", "amateur"]
+    saved = json.loads(json.dumps(session.save()))
+    assert len(json.dumps(saved)) < 5000
+    other = Session(seed=9)
+    other.load(saved)
+    assert other.state == session.state and other.noise == session.noise
+    stroke = CueStroke(speed=3.0, aim=0.7, top=0.2)
+    session.play(stroke), other.play(stroke)
+    assert other.state == session.state
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda s: s.pop("noise"), "saved = version 1"),
+        (lambda s: s.update(format="x"), "must be a saved game"),
+        (lambda s: s.update(noise=["none", "perfect"]), r"saved.noise\[1\]"),
+        (lambda s: s.update(more=1), "must be version 1"),
+        (lambda s: s["state"].update(rng={}), "must be a dict with"),
+        (lambda s: s["state"]["positions"][1].__setitem__(0, 5.0), r"positions\[1\]"),
+        (lambda s: s["state"]["positions"][1].__setitem__(0, float("nan")), r"positions\[1"),
+        (lambda s: s["state"]["frame"].update(scores=[-1, 0]), r"scores\[0\]"),
+        (lambda s: s["state"]["frame"].update(striker=2), "striker"),
+        (lambda s: s["state"].update(stream=[1]), "stream"),
+    ],
+)
+def test_a_file_that_is_not_sound_is_refused_and_changes_nothing(change, words):
+    session = standing(EASY)
+    before, saved = session.save(), json.loads(json.dumps(session.save()))
+    change(saved)
+    with pytest.raises(ValueError, match=words):
+        session.load(saved)
+    assert session.save() == before
+
+
+def test_a_position_that_cannot_be_is_refused_by_its_field():
+    session = standing(EASY)
+    before = session.state
+    for more, free, words in (({}, True, "free_ball"), ({"points": 150}, False, "break_points")):
+        position = Position(**EASY | {"on": "any_colour"} | more)
+        with pytest.raises(ValueError, match=f"^{words}"):
+            session.set_up(position, scores=(0, 0), striker=0, free_ball=free)
+    session.set_up(Position(**COVERED), scores=(0, 0), striker=0, free_ball=False, check=True)
+    assert session.state == before
+
+
+def test_a_frame_that_was_conceded_is_over():
+    session = standing(EASY, striker=1)
+    session.concede()
+    assert session.frame.winner == 0 and session.frame.phase == "over"
+    with pytest.raises(ValueError, match="over"):
+        session.play(ALONG_X)
+    session.undo()
+    assert session.frame.phase == "stroke"

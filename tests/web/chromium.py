@@ -1,0 +1,36 @@
+"""How do the tests get a browser? Debian's Chromium, headless, driven by playwright; without either, its tests are skipped and say so."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+import snooker_env as sn
+
+WEB = Path(sn.__file__).parent / "web"
+FLAGS = [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+    "--disable-sync",
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    """A running browser."""
+    found = shutil.which("chromium") or shutil.which("chromium-browser")
+    if found is None:
+        pytest.skip("no chromium here; on Debian: apt-get install chromium")
+    sync_api = pytest.importorskip("playwright.sync_api", reason="no playwright here: pip install playwright")
+    with sync_api.sync_playwright() as player:
+        browser = player.chromium.launch(executable_path=found, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+def module_page(browser, **options):
+    """An empty page in which ``window.table`` is what ``table.js`` exports."""
+    page = browser.new_page(**options)
+    source = (WEB / "table.js").read_text(encoding="utf-8")
+    page.set_content(f"<!DOCTYPE html><body><script type=module>{source}\nwindow.table = {{decode, TableView, Player, mount}};</script>")
+    page.wait_for_function("window.table")
+    return page

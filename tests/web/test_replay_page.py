@@ -1,0 +1,313 @@
+"""Does a replay's page play? Opened from disk in a real headless Chromium: by its clock, its bar, its keys and buttons, at all sizes."""
+
+import time
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from tests.web.chromium import chromium, module_page  # noqa: F401
+from tests.web.replay_data import break_off, page_of, visit
+
+SIZES = [(320, 568), (360, 640), (800, 600), (1280, 720), (1920, 1080), (3840, 2160)]
+OVERLAPS = """() => {
+  const isText = one => [...one.childNodes].some(node => node.nodeType === 3 && node.data.trim());
+  const words = [...document.querySelectorAll(".sn *")].filter(one => !one.closest("style, svg, [hidden]") && isText(one));
+  const boxes = words.map(one => { // of the text, cut off where its element ends
+    const range = document.createRange();
+    range.selectNodeContents(one);
+    const a = range.getBoundingClientRect(), b = one.getBoundingClientRect(), {max, min} = Math;
+    const left = max(a.left, b.left), top = max(a.top, b.top), right = min(a.right, b.right), bottom = min(a.bottom, b.bottom);
+    return {text: one.textContent, left, top, right, bottom};
+  });
+  const stage = document.querySelector(".sn-stage").getBoundingClientRect(), found = [];
+  boxes.forEach((a, k) => {
+    if (a.left < -0.5 || a.top < -0.5 || a.right > innerWidth + 0.5 || a.bottom > innerHeight + 0.5) found.push([a.text, "outside"]);
+    if (a.top < stage.bottom - 0.5) found.push([a.text, "on the table"]);
+    for (const b of boxes.slice(k + 1))
+      if (a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1) found.push([a.text, b.text]);
+  });
+  return found;
+}"""
+
+
+class Watched:
+    """A page of a replay, and what went wrong in it."""
+
+    def __init__(self, browser, file, **options):
+        self.page = browser.new_page(**{"viewport": {"width": 1280, "height": 720}, "reduced_motion": "reduce", **options})
+        self.errors, self.asked = [], []
+        self.page.on("console", lambda message: self.errors.append(message.text))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on("request", lambda request: self.asked.append(request.url))
+        self.page.goto(file.as_uri())
+        self.until("p")
+
+    def until(self, code, argument=None, seconds=20):
+        """Wait for it from here: the page's policy allows no code from a string."""
+        end = time.monotonic() + seconds
+        while not self(f"Boolean({code})", argument):
+            assert time.monotonic() < end, code
+            time.sleep(0.02)
+
+    def __call__(self, code, argument=None):
+        return self.page.evaluate(f"argument => {{ const p = window.player; return {code}; }}", argument)
+
+    def close(self):
+        assert not self.errors
+        assert {url.split(":")[0] for url in self.asked} <= {"file", "data"} and len(
+            [url for url in self.asked if url.startswith("file")]
+        ) == 1
+        self.page.close()
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory):
+    """The data of a visit, its shots, the places after its second stroke, and its page."""
+    data, shots, places = visit()
+    file = tmp_path_factory.mktemp("replay") / "visit.html"
+    file.write_text(page_of(data), encoding="utf-8")
+    return data, shots, places, file
+
+
+@pytest.fixture
+def open_page(chromium, shown):  # noqa: F811
+    """Opens the page, and at the end asserts that it said nothing and asked for nothing."""
+    opened = []
+
+    def watched(**options):
+        opened.append(Watched(chromium, shown[3], **options))
+        return opened[-1]
+
+    yield watched
+    for one in opened:
+        one.close()
+
+
+def test_it_plays_by_itself_and_ends_where_the_simulation_ends(open_page, shown):
+    _, shots, _, _ = shown
+    p = open_page(reduced_motion="no-preference")
+    assert p("p.playing")
+    before = p("[p.stroke, p.time]")
+    p.until("p.stroke > argument[0] || p.time > argument[1] + 0.3", before)
+    p("(p.options.onend = () => { window.ended = true; }, p.speed = 8, p.seek(2, p.strokes[2].duration - 2))")
+    p.until("window.ended")
+    assert not p("p.playing") and p("p.stroke") == 2 and p("p.time") == shots[2].duration
+    assert np.array_equal(p("p.positions()"), shots[2].positions)
+    assert np.array_equal(p("Array.from(p.strokes[2].end.x)"), shots[2].positions[:, 0])
+    p("p.play()")  # again from the start
+    assert p("p.playing && p.stroke === 0 && p.time < 0.5")
+
+
+def test_it_goes_on_from_stroke_to_stroke_by_the_placed_balls(open_page, shown):
+    _, shots, places, _ = shown
+    p = open_page()
+    p("(p.seen = [], p.options.onstroke = k => p.seen.push(k), p.options.ontime = (t, k) => { p.last = [t, k]; })")
+    p("p.seek(1, Infinity)")
+    assert p("p.time") > shots[1].duration  # the pause between strokes
+    assert np.array_equal(p("p.positions()"), places) and p("p.shown.on[21]") == 1
+    p("p.seek(1, p.strokes[1].duration)")
+    assert np.array_equal(p("p.positions()"), shots[1].positions)
+    p("(p.seek(1, Infinity), p.play())")
+    p.until("p.stroke === 2 && p.time > -0.5")
+    p("p.pause()")
+    assert p("p.seen") == [1, 2] and p("p.last[1]") == 2
+
+
+def test_reduced_motion_is_respected(open_page):
+    p = open_page(reduced_motion="reduce")
+    p.page.wait_for_timeout(200)
+    assert not p("p.playing") and p("p.time") == p("-p.leads[0]")
+
+
+def test_the_bar_scrubs(open_page, shown):
+    _, shots, _, _ = shown
+    p = open_page()
+    box = p.page.locator(".sn-bar").bounding_box()
+    y = box["y"] + box["height"] / 2
+    p.page.mouse.move(box["x"] + 0.2 * box["width"], y)
+    p.page.mouse.down()
+    assert p("(p.starts[p.stroke] + p.time) / p.total") == pytest.approx(0.2, abs=0.01)
+    p.page.mouse.move(box["x"] + box["width"] - 1, y, steps=3)
+    p.page.mouse.up()
+    assert p("p.stroke") == 2 and p("p.time") > 0.9 * shots[2].duration
+    p.page.mouse.move(box["x"] + 5, y)
+    assert p("p.stroke") == 2  # the button is up
+    assert p.page.locator(".sn-bar u").count() == 3
+
+
+def test_it_steps_by_event(open_page, shown):
+    _, shots, _, _ = shown
+    p = open_page()
+    p("p.seek(0, 0)")
+    events = shots[0].events
+    stops = np.unique(np.round(events["time"][events["kind"] != sn.EventKind.BEND], 9))
+    for expected in stops[stops > 0][:12]:
+        p("p.step(1)")
+        assert p("p.time") == expected
+    assert np.allclose(p("p.positions()"), shots[0].at(stops[stops > 0][11])[0], rtol=0, atol=1e-9)
+    words = p.page.locator(".sn-words").inner_text()
+    assert words.startswith(f"{stops[stops > 0][11]:.3f} s: ")
+    p("p.step(-1)")
+    assert p("p.time") == stops[stops > 0][10]
+    p("(p.seek(0, p.strokes[0].duration), p.step(1))")
+    assert p("[p.stroke, p.time]") == [1, 0]
+    p("(p.step(-1), p.step(-1))")
+    assert p("p.stroke") == 0
+    p("p.seek(1, p.strokes[1].duration)")
+    assert p.page.locator(".sn-words").inner_text() == "The referee's words after stroke 2."
+
+
+def test_keys(open_page, shown):
+    _, shots, _, _ = shown
+    p = open_page()
+
+    def press(key):
+        p.page.keyboard.press(key)
+
+    press("Space")
+    assert p("p.playing")
+    press("Space")
+    assert not p("p.playing")
+    press("Home")
+    assert p("[p.stroke, p.time]") == [0, p("-p.leads[0]")]
+    press("ArrowRight")
+    press("ArrowRight")
+    assert p("p.time") > 0
+    press("ArrowLeft")
+    assert p("p.time") == 0
+    press("Shift+ArrowRight")
+    assert p("p.stroke") == 1
+    press("Shift+ArrowLeft")
+    assert p("p.stroke") == 0
+    press("End")
+    assert p("[p.stroke, p.time]") == [2, shots[2].duration]
+    assert p("p.speed") == 1
+    for expected in (2, 4, 8, 8):
+        press("ArrowUp")
+        assert p("p.speed") == expected
+    for expected in (4, 2, 1, 0.5, 0.25, 0.1, 0.1):
+        press("ArrowDown")
+        assert p("p.speed") == expected
+    assert p.page.locator(".sn output").inner_text() == "0.1×"
+    for key, name, states in (("p", "paths", 2), ("g", "ghosts", 2), ("l", "labels", 2), ("s", "spin", 3)):
+        first, seen = p(f"p.show.{name}"), []
+        for _ in range(states):
+            press(key)
+            seen.append(p(f"p.show.{name}"))
+        assert seen[-1] == first and len({str(one) for one in seen}) == states
+    press("?")
+    assert p.page.locator(".sn-help").is_visible()
+    press("?")
+    assert not p.page.locator(".sn-help").is_visible()
+    before = p("[p.stroke, p.time]")
+    press("Control+p")
+    press("x")
+    assert p("[p.stroke, p.time]") == before
+
+
+def test_buttons_and_the_table(open_page):
+    p = open_page()
+    p("p.seek(0, 0)")
+    for label, after in (("next event", "p.time > 0"), ("next stroke", "p.stroke === 1"), ("previous stroke", "p.stroke === 0")):
+        p.page.get_by_label(label, exact=True).click()
+        assert p(after), label
+    p.page.get_by_label("faster").click()
+    p.page.get_by_label("slower").click()
+    assert p("p.speed") == 1
+    p.page.get_by_label("play or pause").or_(p.page.get_by_label("play", exact=True)).click()
+    assert p("p.playing")
+    p.page.locator(".sn-stage canvas").click()
+    assert not p("p.playing")
+    for name in ("paths", "labels"):
+        button = p.page.locator(".sn-keys button", has_text=name)
+        before = button.get_attribute("aria-pressed")
+        image = p("p.canvas.toDataURL()")
+        p("p.seek(0, 3)")
+        image = p("p.canvas.toDataURL()")
+        button.click()
+        assert button.get_attribute("aria-pressed") != before and p("p.canvas.toDataURL()") != image
+    for button in p.page.locator(".sn-keys button").all():
+        assert button.get_attribute("aria-label")
+        box = button.bounding_box()
+        assert box["width"] >= 40 and box["height"] >= 40
+    p.page.keyboard.press("Tab")
+    assert p.page.evaluate("getComputedStyle(document.activeElement).outlineStyle") == "solid"
+
+
+def test_touch(open_page):
+    p = open_page(viewport={"width": 360, "height": 640}, has_touch=True, is_mobile=True)
+    for playing in (True, False):
+        p.page.locator(".sn-stage canvas").tap()
+        assert p("p.playing") == playing
+    box = p.page.locator(".sn-bar").bounding_box()
+    p.page.touchscreen.tap(box["x"] + 0.7 * box["width"], box["y"] + box["height"] / 2)
+    assert p("(p.starts[p.stroke] + p.time) / p.total") == pytest.approx(0.7, abs=0.01)
+    p.page.get_by_label("next stroke").tap()
+    assert p("p.stroke") == 2
+
+
+def test_the_score_bar_says_what_the_referee_says(open_page, shown):
+    data = shown[0]
+    p = open_page()
+
+    def bar():
+        return [p.page.locator(".sn-who b").nth(k).inner_text() for k in (0, 1)], " ".join(p.page.locator(".sn-now").inner_text().split())
+
+    p("p.seek(0, 1)")
+    scores, now = bar()
+    assert scores == ["0", "0"] and "break 0" in now and "on red" in now
+    p("p.seek(1, 0)")
+    scores, now = bar()
+    assert scores == ["1", "0"] and "break 1" in now and p.page.locator(".sn-now span").first.locator("i").count() == 1
+    p("p.seek(1, p.strokes[1].duration)")
+    scores, now = bar()
+    assert scores == ["8", "0"] and "break 8" in now and p.page.locator(".sn-now span").first.locator("i").count() == 2
+    assert p.page.locator(".sn-words").inner_text() == data["strokes"][1]["words"]
+    p("p.seek(2, 0)")
+    assert "break 0" in bar()[1] and "sn-turn" in p.page.locator(".sn-who").nth(1).get_attribute("class")
+    assert p.page.locator(".sn-who span").first.inner_text() == "Ada <b>Lovelace</b>"  # words are words, not HTML
+    assert "3.00 m/s" in p.page.locator(".sn-about").inner_text()
+
+
+def test_nothing_overlaps_or_overflows_at_any_size(open_page):
+    p = open_page()
+    for width, height in SIZES:
+        p.page.set_viewport_size({"width": width, "height": height})
+        p.until("p.canvas.width === argument", width)
+        for moment in ("p.seek(1, 0.5)", "p.seek(1, p.strokes[1].duration)", "(p.seek(0, 0), p.step(1))"):
+            p(moment)
+            assert p("document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight"), (
+                width,
+                height,
+            )
+            assert p.page.evaluate(OVERLAPS) == [], (width, height, moment)
+        wide, high = p(
+            "[p.view.toScreen(0, p.replay.scene.extent[1][1])[0] - p.view.toScreen(0, p.replay.scene.extent[1][0])[0], innerHeight]"
+        )
+        assert wide > 0.85 * width or wide > 1.3 * high, (
+            width,
+            height,
+            wide,
+        )  # the table fills the width, or what the bars leave of the height
+
+
+def test_a_player_in_another_page_leaves_it_as_it_was(chromium):  # noqa: F811
+    page = module_page(chromium, reduced_motion="reduce")
+    data = sn.replay(break_off()).to_dict()
+    found = page.evaluate(
+        """data => {
+        document.body.innerHTML = "<div id=a style='width:600px'></div><input id=b>";
+        const host = document.getElementById("a"), player = table.mount(host, data, {speed: 2, labels: true, spin: "off", autoplay: false});
+        const box = player.canvas.getBoundingClientRect(), bars = host.querySelectorAll(".sn-score").length;
+        document.getElementById("b").dispatchEvent(new KeyboardEvent("keydown", {key: " ", bubbles: true}));
+        const deaf = !player.playing, set = [player.speed, player.show];
+        player.destroy();
+        return {box: [box.width, box.height], bars, deaf, set, left: host.childNodes.length};
+        }""",
+        data,
+    )
+    assert found["box"][0] == 600 and found["box"][1] == pytest.approx(600 / (3.919 / 2.128), rel=0.01)
+    assert found["bars"] == 0 and found["deaf"] and found["left"] == 0
+    assert found["set"] == [2, {"paths": True, "ghosts": True, "spin": "off", "labels": True}]
+    page.close()
