@@ -6,7 +6,7 @@ from cases import ENDGAME, OPEN
 
 from snooker_env.advice import seeds
 from snooker_env.advice.practice import practice_of
-from snooker_env.advice.visits import PICKS, played_on
+from snooker_env.advice.visits import BEST, EVEN_SAMPLES, PICKS, played_on
 from snooker_env.planning import Planner, Positions, action_masks, as_actions, prospects_of, spread_of
 from snooker_env.tasks import LEVELS, SPEEDS, STROKES, TOPS
 
@@ -23,11 +23,14 @@ def by_hand(position, visit, visits, seed, noise):
     at, exact, noisy = Positions.of(position), Planner({}), Planner({"noise": noise})
     spread, total, strokes = spread_of(LEVELS[noise]), 0.0, 0
     while True:
-        best, chosen = -1.0, -1
-        chances = prospects_of(at, spread)[1][0]
+        chances, tried = prospects_of(at, spread)[1][0], []
         for pick in PICKS[action_masks(at)[0, PICKS]].tolist():
             points, goes_on, left, _ = exact.play(at, [0], action(at, pick))
-            worth = chances[pick // STROKES] * (points[0] + goes_on[0] * prospects_of(left, spread)[0][0])
+            tried.append((-chances[pick // STROKES] * (points[0] + goes_on[0] * prospects_of(left, spread)[0][0]), pick))
+        best, chosen = -1.0, -1
+        for _, pick in sorted(tried)[:BEST]:
+            five = [noisy.play(at, [0], action(at, pick), [key]) for key in EVEN_SAMPLES]
+            worth = np.mean([points[0] + goes_on[0] * prospects_of(left, spread)[0][0] for points, goes_on, left, _ in five])
             if worth > best:
                 best, chosen = worth, pick
         key = np.random.default_rng((seed, seeds.GOING_ON, strokes)).integers(0, 2**64 - 1, visits, dtype=np.uint64)[visit]
