@@ -20,6 +20,7 @@ NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
 BASE = {"_jit", "_check", "_files", "_types", "geometry"}
+PRIVATE = {"_warmup", "_registration"}
 ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
@@ -48,23 +49,7 @@ ALLOWED = {
     "widget": {"_check", "replays"},
     "play": BASE | {"physics", "shot", "simulation", "game", "tasks", "planning", "advice", "render", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": set(
-        [
-            "geometry",
-            "physics",
-            "impacts",
-            "shot",
-            "simulation",
-            "tasks",
-            "planning",
-            "advice",
-            "envs",
-            "match",
-            "replays",
-            "_warmup",
-            "_registration",
-        ]
-    ),
+    "__init__": set("geometry physics impacts shot simulation tasks planning advice envs match replays".split()) | PRIVATE,
 }
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
