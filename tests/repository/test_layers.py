@@ -49,7 +49,8 @@ ALLOWED = {
     "widget": {"_check", "replays"},
     "play": BASE | {"physics", "shot", "simulation", "game", "tasks", "planning", "advice", "render", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": set("geometry physics impacts shot simulation tasks planning advice envs match replays".split()) | PRIVATE,
+    "__init__": PRIVATE
+    | {"geometry", "physics", "impacts", "shot", "simulation", "tasks", "planning", "advice", "envs", "match", "replays"},
 }
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
