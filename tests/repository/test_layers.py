@@ -20,7 +20,6 @@ NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
 BASE = {"_jit", "_check", "_files", "_types", "geometry"}
-PRIVATE = {"_warmup", "_registration"}
 ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
