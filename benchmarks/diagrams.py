@@ -62,7 +62,7 @@ def main():
     figures = {"noise": options.noise, "shots": options.shots, "potted": potted, "spread_m": spread, "mean_m": there.mean(axis=0).tolist()}
     save_json(options.json, figures)
     if options.pictures:
-        said = f"Where it stops: {options.shots:,} strokes of a player ({options.noise})"
+        said = f"Where it stops: {options.shots:,} strokes, {options.noise}"
         drawn = {
             SHOT: played.shot.plot(title="A red, and on to the blue"),
             COMPARE: compare([played.shot, other.shot], ["A: follow with right side", "B: screw"])[0],

@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from ._check import choice, number, truth
 from .replays import replay
-from .replays.replay import WEB
+from .replays.document import WEB
 
 __all__ = ["replay_widget"]
 

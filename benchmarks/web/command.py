@@ -119,10 +119,9 @@ def main():
         figures["looks"] = {name: measured(page, look, options.seconds) for name, look in LOOKS.items()}
         browser.close()
     print(figures["machine"])
-    print(
-        f"Chromium {figures['chromium']} without a graphics card, page {options.width} x {options.height}, table {figures['canvas'][0]} x {figures['canvas'][1]}"
-    )
-    print(f"the page of the break-off: {figures['page_bytes']} bytes\n")
+    print(f"Chromium {figures['chromium']} without a graphics card")
+    sizes = f"page {options.width} x {options.height}, table {' x '.join(map(str, figures['canvas']))} pixels"
+    print(f"{sizes}; the file has {figures['page_bytes']} bytes\n")
     print(f"{'':12s}{'pictures/s':>11s}{'late':>12s}{'one picture [ms]: median':>27s}{'95 %':>8s}")
     for name, one in figures["looks"].items():
         late = f"{one['late']} of {one['pictures']}"

@@ -19,7 +19,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--noise", default="professional", help=f"{', '.join(LEVELS)} (default: professional)")
     parser.add_argument("--n", type=int, default=5, help="strokes at most (default: 5)")
     parser.add_argument("--samples", type=int, default=200, help="how often each is played (default: 200)")
-    parser.add_argument("--visits", type=int, default=60, help="visits of each that are played on (default: 60)")
+    parser.add_argument("--visits", type=int, default=40, help="visits of each that are played on (default: 40)")
     parser.add_argument("--seed", type=int, default=0, help="of the noise samples (default: 0)")
     parser.add_argument("--json", action="store_true", help="all figures as JSON")
     parser.add_argument("--trust", action="store_true", help="whether code in a model's file may run")

@@ -18,13 +18,14 @@ LOOKED_AT = 8
 
 def advise(
     position: PositionsLike, *, agent: Any = "lookahead", noise: NoiseLike = "professional", n: int = 5, samples: int = 200,
-    visits: int = 60, seed: int = 0, options: Any = None, distinct: bool = True, trust: bool = False,
+    visits: int = 40, seed: int = 0, options: Any = None, distinct: bool = True, trust: bool = False,
 ) -> Advice:  # fmt: skip
     """The strokes that a player would play at a position, best first, and what comes of each under errors of execution.
 
     The order is the player's own. What comes of a stroke is found in the same way for every player: the stroke is played ``samples``
     times, all strokes under the same errors, and judged as one of a visit. Then ``visits`` of the visits that go on are played to their
-    end by a quick player (``snooker_env.advice.visits``), who looks one stroke ahead: a better one would make more of them.
+    end by a quick player (``snooker_env.advice.visits``), who looks one stroke ahead, but less well than the built-in lookahead: the points
+    are what a good player makes of the position, and those of different agents' strokes can be compared.
 
     A state carries its noise stream: a state that is restored and played again meets the same errors again. Advice never uses it. The
     errors are drawn from ``seed`` alone: the same seed gives the same advice, another one other samples.

@@ -1,6 +1,6 @@
 """Where do the balls of a stroke stop? ``destinations``: cue ball and object ball under many errors, as a cloud and as a map."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -44,8 +44,8 @@ class Destinations:
 
     samples: int
     object_ball: int
-    cue: NDArray[np.float64]
-    ball: NDArray[np.float64]
+    cue: NDArray[np.float64] = field(repr=False)
+    ball: NDArray[np.float64] = field(repr=False)
     potted: float
     in_off: float
     foul: float

@@ -67,7 +67,8 @@ class Looked(NamedTuple):
 def looked_at(practice: Practice, at: Positions, strokes: list[CueStroke]) -> tuple[Positions, list[Looked]]:
     """What strokes at the one position ``at`` do without errors, and the positions that they are played from, a row each."""
     there = [played_from(at, stroke) for stroke in strokes]
-    starts = Positions(*(np.concatenate([getattr(one, name) for one in there]) for name in ("positions", "on_table", "game")))
+    places, on_table, game = (np.concatenate([getattr(one, name) for one in there]) for name in ("positions", "on_table", "game"))
+    starts = Positions(places, on_table, game)
     look = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
     hidden = ~clear_paths(starts).any_part
     return starts, [_looked(practice, starts, look, k, stroke, bool(hidden[k])) for k, stroke in enumerate(strokes)]

@@ -1,13 +1,13 @@
 """How is a position kept in a file? As small JSON: written whole or not at all, and read without guessing at anything."""
 
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from .._check import choice, refuse, refuse_what
+from .._files import write_whole
 from ..physics.table import TableLike
 from .position import Position
 
@@ -36,18 +36,8 @@ def _places(value: Any) -> list[Any]:
 
 def write(position: Position, path: str | Path) -> None:
     """Write the file: after a crash it holds either the old position or the new one, whole."""
-    file = Path(os.path.realpath(path))
-    temporary = file.with_name(f"{file.name}.{os.getpid()}.tmp")  # of this process alone
-    try:
-        with temporary.open("w", encoding="utf-8") as out:
-            json.dump(position.to_dict(), out)
-            out.write("\n")
-            out.flush()
-            os.fsync(out.fileno())
-        temporary.replace(file)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
+    text = json.dumps(position.to_dict()) + "\n"
+    write_whole(path, lambda file: file.write_text(text, encoding="utf-8"))
 
 
 def read(path: str | Path, table: TableLike) -> Position:

@@ -3,7 +3,7 @@
 ``__all__`` is public: what somebody needs who draws tables with a library of his own.
 """
 
+from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, outline, scene_data
 from .palette import COLOURS, PALETTE
-from .scene import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, outline, scene_data
 
 __all__ = ["BAULK_LINE", "COLOURS", "CUSHION", "D_ARC", "PALETTE", "RAIL", "SPOT_MARKS", "Outline", "outline", "scene_data"]

@@ -10,8 +10,9 @@ from textwrap import wrap
 import numpy as np
 
 from .._check import integer
+from .outline import BAULK_LINE, D_ARC, SPOT_MARKS, extent, is_marked
 from .palette import LETTERS, PALE
-from .scene import BAULK_LINE, D_ARC, SPOT_MARKS, Scene, extent, is_marked
+from .scene import Scene
 
 WIDTH = 100
 """Characters a line unless told."""

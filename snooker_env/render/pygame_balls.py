@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .._types import Floats
+from ..game.balls import YELLOW
 from .palette import COLOURS, LETTERS, PALETTE
 from .pygame_library import BOLD, surface_of, typeset
 from .scene import Scene
@@ -17,8 +18,8 @@ from .table_picture import LAMP_HEIGHT, lamps
 from .turning import matrix
 from .view import View
 
-PANEL = 0.55, 0.22
-"""How long and wide a lamp is [m]."""
+PANEL = 0.55
+"""How long a lamp is [m]."""
 _FADED = 0.42
 _SPOT = np.cos(np.radians(17.0))
 _SPOTS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=np.float64)
@@ -34,19 +35,18 @@ def draw_balls(surface: Any, scene: Scene, view: View) -> None:
         for place in view(places):
             images.append(_at(place, _body, tuple(COLOURS[ball].tolist()), round(radius, 2), _FADED))
     where = view(scene.positions)
-    images += _shadows(scene, view, over, where, radius)
+    images += _shadows(scene.positions, over, where, radius)
     for ball, place in zip(scene.ids.tolist(), where, strict=True):
         colour = tuple(COLOURS[ball].tolist())
         if ball in scene.turns:
             images.append(_spotted(place, colour, radius, scene.turns[ball]))
         else:
             images.append(_at(place, _body, colour, round(radius, 2), 1.0))
-    images += _mirrored(scene, view, over, where, radius)
-    if scene.lettered:
-        for ball, place in zip(scene.ids.tolist(), where, strict=True):
-            if ball > 15:
-                letter = _letter(ball, round(radius, 1))
-                images.append((letter, (round(place[0] - letter.get_width() / 2), round(place[1] - letter.get_height() / 2))))
+    lettered = (scene.ids >= YELLOW) & scene.lettered
+    images += _mirrored(scene.positions[~lettered], over, where[~lettered], radius)
+    for ball, place in zip(scene.ids[lettered].tolist(), where[lettered], strict=True):
+        letter = _letter(ball, round(radius, 1))
+        images.append((letter, (round(place[0] - letter.get_width() / 2), round(place[1] - letter.get_height() / 2))))
     surface.fblits(images)
 
 
@@ -106,17 +106,17 @@ def _rays(positions, over):
     return across, np.sqrt((across**2).sum(axis=-1) + LAMP_HEIGHT**2)
 
 
-def _mirrored(scene, view, over, where, radius):
+def _mirrored(positions, over, where, radius):
     """The lamps in the balls: each where the surface leans half-way between the eye, straight above, and the lamp."""
     found = []
-    ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.5)])[None] * PANEL[0]
-    across, far = _rays(scene.positions, ends.reshape(-1, 2))
+    ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
+    across, far = _rays(positions, ends.reshape(-1, 2))
     up = LAMP_HEIGHT / far + 1
     lean = across / far[..., None]
     lean /= np.sqrt((lean**2).sum(axis=-1) + up**2)[..., None]
-    lean = lean.reshape(len(where), len(over), 2, 2)
-    centre = where[:, None] + radius * lean.mean(axis=2)[..., ::-1]
-    length = np.abs(lean[:, :, 1, 1] - lean[:, :, 0, 1]) * radius / 2
+    lean = lean.reshape(len(where), len(over), 3, 2)  # of each lamp its first end, middle and last end
+    centre = where[:, None] + radius * lean[:, :, 1, ::-1]
+    length = np.abs(lean[:, :, 2, 1] - lean[:, :, 0, 1]) * radius / 2
     for places, lengths in zip(centre, length, strict=True):
         for place, half in zip(places, lengths.tolist(), strict=True):
             found.append(_at(place, _lamp, round(4 * max(half, 0.07 * radius)), round(radius, 1)))
@@ -131,14 +131,15 @@ def _lamp(half, radius, fx, fy):
     d = np.hypot(np.maximum(np.abs(x) - along + across, 0), y)
     image = np.empty((*d.shape, 4))
     image[..., :3] = PALETTE["lamp"]
-    image[..., 3] = 255 * np.maximum(0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2)))
+    small = min(1.0, 0.25 + radius / 12)  # in a small ball it would be all that is seen
+    image[..., 3] = 255 * small * np.maximum(0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2)))
     return surface_of(image)
 
 
-def _shadows(scene, view, over, where, radius):
+def _shadows(positions, over, where, radius):
     """One soft shadow a lamp, away from it, fainter the flatter its light falls; and the dark where the ball meets the cloth."""
     found = []
-    across, far = _rays(scene.positions, over)
+    across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3
     strength *= _ALL_DARK / strength.sum(axis=1, keepdims=True)
     centre = where[:, None] - (radius * across / LAMP_HEIGHT)[..., ::-1]

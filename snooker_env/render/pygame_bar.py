@@ -168,7 +168,7 @@ def _right(page, bar, width):
     if bar.points_on is not None:
         x = _column(page, "POINTS LEFT", str(bar.points_on), x)
     if bar.reds_left is not None:
-        x = _column(page, "REDS", str(bar.reds_left), x, (1,))
+        x = _column(page, "REDS", str(bar.reds_left), x, (1,), widest="15")
     if bar.ball_on:
         x = _column(page, "BALL ON", bar.ball_on, x, _shown(bar.ball_on), size=30)
     return x
@@ -184,11 +184,11 @@ def _shown(ball_on):
     return tuple(YELLOW + k for k, name in enumerate(COLOUR_NAMES) if name in words)
 
 
-def _column(page, label, value, end, balls=(), size=36):
-    """One figure under its label, up to ``end``. Returns where the next one ends."""
+def _column(page, label, value, end, balls=(), size=36, widest=""):
+    """One figure under its label, up to ``end``; room for the ``widest`` keeps what follows in its place. Returns where the next ends."""
     step = 22 if len(balls) < 3 else 13
     taken = (step * (len(balls) - 1) + 30) if balls else 0
-    across = max(page.width(label, 17, BOLD), taken + page.width(value, size, BOLD, room=220))
+    across = max(page.width(label, 17, BOLD), taken + max(page.width(text, size, BOLD, room=220) for text in (value, widest)))
     start = end - across
     page.text(label, 17, start, 17, ink="text_quiet", file=BOLD)
     for k, ball in enumerate(balls):

@@ -17,6 +17,7 @@ _STEP = 3.0
 """A path is drawn from point to point this many pixels apart ..."""
 _POINTS = 16
 """... so many of them a piece."""
+_LONGEST = 1e5  # pixels: a longer path is not drawn
 
 
 def line_width(scale: float) -> float:
@@ -24,36 +25,37 @@ def line_width(scale: float) -> float:
     return max(1.5, 0.0072 * scale)
 
 
-def draw_lines(surface: Any, lines: list[tuple[Floats, tuple[int, int, int]]], width: float, dash: float = 0.0) -> None:
-    """Draw polylines (points (m, 2) [pixels], colour) one above the other; ``dash``: pixels of a line and of a gap."""
+def draw_lines(surface: Any, lines: list[tuple[Floats, tuple[int, int, int]]], width: float) -> None:
+    """Draw polylines (points (m, 2) [pixels], colour) one above the other."""
     for points, colour in lines:
-        pieces = list(_pieces(points, dash))
+        pieces = list(_pieces(points))
         edge = width + 2 * max(0.9, 0.45 * width)
-        surface.fblits([_piece(piece, PALETTE["path_edge"], edge) for piece in pieces])
-        surface.fblits([_piece(piece, colour, width) for piece in pieces])
+        surface.fblits([_piece(*piece, PALETTE["path_edge"], edge) for piece in pieces])
+        surface.fblits([_piece(*piece, colour, width) for piece in pieces])
 
 
-def _pieces(points, dash):
-    """The line at equal steps from its start, cut: tuples of numbers, so that they can be looked up."""
+def _pieces(points):
+    """The line at equal steps from its start, cut: the points of each piece as numbers, and the cuts at its ends.
+
+    A cut is a point and the line's direction there, or None at an end of the line. Both sides know the same cut, so that each pixel at it
+    belongs to one of them.
+    """
     steps = np.hypot(*np.diff(points, axis=0).T)
     run = np.concatenate([[0.0], np.cumsum(steps)])
     moved = np.concatenate([[True], steps > 1e-9])
     run, points = run[moved], points[moved]
-    if len(points) < 2 or not np.isfinite(run[-1]) or run[-1] > 1e5:
+    if len(points) < 2 or not run[-1] < _LONGEST:
         return
     at = np.append(np.arange(0.0, run[-1], _STEP), run[-1])
     even = np.stack([np.interp(at, run, points[:, k]) for k in (0, 1)], axis=1)
-    if dash:
-        for start in np.arange(0.0, run[-1], 2 * dash):
-            ends = np.array([start, min(start + dash, run[-1])])
-            yield tuple(np.stack([np.interp(ends, run, points[:, k]) for k in (0, 1)], axis=1).ravel().tolist())
-        return
-    for first in range(0, len(even) - 1, _POINTS):
-        yield tuple(even[first : first + _POINTS + 1].ravel().tolist())
+    cuts = range(_POINTS, len(even) - 1, _POINTS)
+    edges = [None, *((*even[k].tolist(), *(even[k + 1] - even[k - 1]).tolist()) for k in cuts), None]
+    for k, first in enumerate((0, *cuts)):
+        yield tuple(even[first : first + _POINTS + 1].ravel().tolist()), edges[k], edges[k + 1]
 
 
 @lru_cache(maxsize=4096)
-def _piece(numbers, colour, width):
+def _piece(numbers, start, end, colour, width):
     """One piece as a picture, and where its corner goes."""
     points = np.array(numbers).reshape(-1, 2)
     chord = points[-1] - points[0]
@@ -63,12 +65,19 @@ def _piece(numbers, colour, width):
     margin = width / 2 + 1
     low, high = np.floor(points.min(axis=0) - margin).astype(int), np.ceil(points.max(axis=0) + margin).astype(int)
     x, y = np.meshgrid(np.arange(low[0], high[0]) + 0.5, np.arange(low[1], high[1]) + 0.5)
-    nearest = np.full(x.shape, np.inf)
-    for (ax, ay), (bx, by) in zip(points[:-1].tolist(), points[1:].tolist(), strict=True):
+    nearest, whose = np.full(x.shape, np.inf), np.zeros(x.shape, int)
+    for k, ((ax, ay), (bx, by)) in enumerate(zip(points[:-1].tolist(), points[1:].tolist(), strict=True)):
         dx, dy = bx - ax, by - ay
         part = np.clip(((x - ax) * dx + (y - ay) * dy) / max(dx * dx + dy * dy, 1e-12), 0, 1)
-        np.minimum(nearest, (x - ax - part * dx) ** 2 + (y - ay - part * dy) ** 2, out=nearest)
+        far = (x - ax - part * dx) ** 2 + (y - ay - part * dy) ** 2
+        whose[far < nearest] = k
+        np.minimum(nearest, far, out=nearest)
     image = np.empty((*x.shape, 4))
     image[..., :3] = colour
     image[..., 3] = 255 * np.clip(width / 2 + 0.5 - np.sqrt(nearest), 0, 1)
+    for cut, segment, side in ((start, 0, -1), (end, len(points) - 2, 1)):
+        if cut is not None:
+            px, py, dx, dy = cut
+            beyond = side * ((x - px) * dx + (y - py) * dy)
+            image[..., 3][(whose == segment) & (beyond >= 0 if side > 0 else beyond > 0)] = 0
     return surface_of(image), (int(low[0]), int(low[1]))

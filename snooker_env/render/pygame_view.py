@@ -11,10 +11,9 @@ from ..physics.table import Table, TableLike
 from .pygame_library import pygame_
 from .pygame_picture import draw
 from .scene import Scene
-from .view import SIZE, View
-from .window import Window, require_display
-
-__all__ = ["SIZE", "View", "Window", "require_display", "rgb_array", "to_pixels"]
+from .view import SIZE as SIZE
+from .view import View as View
+from .window import Window as Window
 
 
 def to_pixels(

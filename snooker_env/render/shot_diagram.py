@@ -97,8 +97,9 @@ def plot(
     >>> import snooker_env as sn
     >>> v, w = sn.strike(speed=2.0, aim=1.5708, top=-0.3)
     >>> shot = sn.simulate([(0.0, 0.5), (0.02, 1.2)], [v[:2], (0.0, 0.0)], [w, (0.0, 0.0, 0.0)])
-    >>> ax = shot.plot(view="shot")
-    >>> ax.figure.savefig("/tmp/shot.png")
+    >>> ax = shot.plot(view="shot", title="Screw")
+    >>> ax.texts[0].get_text(), bool(ax.yaxis_inverted())
+    ('Screw', True)
     """
     if len(shot.positions) > N_BALLS:
         raise refuse("balls of the shot", len(shot.positions), f"must be at most {N_BALLS}")

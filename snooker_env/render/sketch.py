@@ -110,20 +110,21 @@ class Sketch:
         region = Region.of_table(table) if region is None else region
         self.table, self.R = table, R
         depth = strip * region.width
-        if ax is None:
+        axes: Any = ax
+        if axes is None:
             figure = plt.figure(figsize=(WIDTH, WIDTH * (region.height + depth) / region.width), facecolor=rgb("floor"))
-            ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        self.ax: Axes = ax
-        self.fresh = not any(artist.get_gid() == TABLE for artist in ax.get_children())
+            axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        self.ax: Axes = axes
+        self.fresh = not any(artist.get_gid() == TABLE for artist in axes.get_children())
         if self.fresh:
             self.region, self.depth = region, depth
             self._set_up()
             self._draw_table()
         else:
-            (low_y, high_y), (bottom, low_x) = ax.get_xlim(), ax.get_ylim()
+            (low_y, high_y), (bottom, low_x) = axes.get_xlim(), axes.get_ylim()
             self.region, self.depth = Region(low_x, bottom, low_y, high_y), 0.0
-        box, (wide, high) = ax.get_position(), ax.get_figure().get_size_inches()
-        self.points_per_metre = 72 * min(box.width * wide / self.region.width, box.height * high / (self.region.height + self.depth))
+        room, points = axes.get_window_extent(), 72 / axes.figure.dpi
+        self.points_per_metre = points * min(room.width / self.region.width, room.height / (self.region.height + self.depth))
         self.font = float(np.clip(9.0 * self.points_per_metre * self.region.width / (72 * WIDTH), 7.5, 11.0))
         self._taken: list[tuple[float, float, float, float]] = []
         self._busy: list[Floats] = []
@@ -154,7 +155,7 @@ class Sketch:
             if clip is not None:
                 patch.set_clip_path(clip)
 
-        def box(extra, kind=Rectangle, **more):
+        def box(extra, kind: Any = Rectangle, **more):
             return kind((low_y - extra, low_x - extra), high_y - low_y + 2 * extra, high_x - low_x + 2 * extra, **more)
 
         def rail(extra, radius, colour, level):
@@ -206,9 +207,9 @@ class Sketch:
         add = self.ax.add_patch
         add(Circle((y + 0.25 * R, x + 0.3 * R), 1.08 * R, fc=rgb("shadow", 0.4), ec="none", zorder=6.9))
         add(Circle((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), lw=0.4, zorder=7.0, gid=f"ball-{ball}"))
-        for k in range(1, 6):
-            away = 0.07 * k * R
-            add(Circle((y - away, x - away), R * (1 - 0.15 * k), fc=(1, 1, 1, 0.055), ec="none", zorder=7.0 + 0.01 * k))
+        for k in range(1, 13):
+            away = 0.029 * k * R
+            add(Circle((y - away, x - away), R * (1 - 0.065 * k), fc=(1, 1, 1, 0.022), ec="none", zorder=7.0 + 0.005 * k))
         add(Circle((y - 0.36 * R, x - 0.40 * R), 0.17 * R, fc=rgb("lamp", 0.85), ec="none", zorder=7.1))
         self.keep_clear(np.asarray(place)[None], 2 * R)
         if label:

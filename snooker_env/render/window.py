@@ -142,7 +142,8 @@ class Window:
             False if the window was shut.
         """
         fps, clock = number("fps", fps, 0.0, open_low=True), pygame_().time.Clock()
-        take = _Reel(scenes, number("speed", speed, 0.0, open_low=True) / fps)
+        speed = number("speed", speed, 0.0, open_low=True)
+        take = _FilmReel(scenes, speed / fps) if isinstance(scenes, Film) else _SceneReel(scenes)
         self._skip, scene = False, take.first()
         while scene is not None:
             if not self.draw(scene, self._status()):
@@ -233,37 +234,47 @@ class Window:
         pygame.display.flip()
 
 
-class _Reel:
-    """A film, or scenes one after the other, from which the next picture is taken; None once the last was taken."""
+class _FilmReel:
+    """A film from which the next picture is taken; None once the last was taken."""
 
-    def __init__(self, scenes, step):
-        self._film = scenes if isinstance(scenes, Film) else None
-        self._scenes = iter(() if self._film else scenes)
-        self._step, self._time, self._due = step, 0.0, 0.0
-        self._last: Scene | None = None
+    def __init__(self, film: Film, step: float):
+        self._film, self._step, self._time = film, step, 0.0
 
-    def first(self):
-        self._last = self._film.at(0.0) if self._film else next(self._scenes, None)
-        return self._last
+    def first(self) -> Scene | None:
+        return self._film.at(0.0)
 
-    def on(self, speed):
-        """The next picture; of scenes some are left out at speeds above 1, and shown again below."""
-        if self._film:
-            return self._to(self._time + speed * self._step)
-        self._due += speed
-        count = int(self._due)
-        self._due -= count
-        return self._pass(count) if count else self._last
+    def on(self, speed: float) -> Scene | None:
+        return self._to(self._time + speed * self._step)
 
-    def skip(self):
+    def skip(self) -> Scene | None:
         """The very last picture."""
-        return self._to(self._film.duration) if self._film else self._pass(None)
+        return self._to(self._film.duration)
 
     def _to(self, time):
         if self._time >= self._film.duration:
             return None
         self._time = min(time, self._film.duration)
         return self._film.at(self._time)
+
+
+class _SceneReel:
+    """The same of scenes one after the other: some are left out at speeds above 1, and shown again below."""
+
+    def __init__(self, scenes: Iterable[Scene]):
+        self._scenes, self._due = iter(scenes), 0.0
+        self._last: Scene | None = None
+
+    def first(self) -> Scene | None:
+        return self._pass(1)
+
+    def on(self, speed: float) -> Scene | None:
+        self._due += speed
+        count = int(self._due)
+        self._due -= count
+        return self._pass(count) if count else self._last
+
+    def skip(self) -> Scene | None:
+        return self._pass(None)
 
     def _pass(self, count):
         passed = None

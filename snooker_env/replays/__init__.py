@@ -7,8 +7,8 @@
 2
 """
 
+from .document import Replay
 from .make import replay
-from .replay import Replay
 from .wrapper import RecordReplay
 
 __all__ = ["RecordReplay", "Replay", "replay"]

@@ -11,7 +11,7 @@ from ..physics.table import Table, TableLike
 from ..planning import Position
 from ..simulation import Shot, simulate
 from ..tasks.played import Played
-from .replay import Replay
+from .document import Replay
 
 _ALLOWED = "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay, or an environment that keeps its history"
 

@@ -7,7 +7,7 @@ from typing import Any
 import gymnasium
 
 from .._check import choice, refuse_what
-from .replay import SUFFIXES, Replay
+from .document import SUFFIXES, Replay
 
 
 class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):

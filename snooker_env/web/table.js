@@ -2,7 +2,7 @@
  * How is a table drawn in a browser, and how does a replay play? By one module on a 2-D canvas; it loads nothing.
  *
  * `decode` makes strokes that know where every ball is at any time: each phase of its motion is a closed form, in the arithmetic of
- * `physics/cloth.py`, so that places equal the simulation's. `TableView` draws a table from its scene, `mount` makes a `Player` of a replay.
+ * `physics/cloth.py`: places equal the simulation's. `TableView` draws a table from its scene, `mount` makes a `Player` of a replay.
  *
  * Frame: origin at the table's centre, +x to the yellow side, +y to the black end, SI units. On screen +y goes right and +x down.
  *
@@ -12,7 +12,7 @@
  */
 
 const GONE = 0, ROLL = 2, SLIDE = 3, FALLING = 4, BEND = 5, BALL_BALL = 0;
-/** What a stroke's events are called, by kind; those without a name are no stops for a step. */
+/** Words for events, by kind; one without is no stop for a step. */
 const EVENTS = ["touches", "meets a cushion", "meets a jaw", "is potted", "rolls", "rests", "drops", "comes back"];
 const { PI, abs, atan2, ceil, cos, floor, hypot, max, min, round, sign, sin, sqrt } = Math, TURN = 2 * PI;
 
@@ -25,11 +25,11 @@ const PALETTE = {
 };
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
 
-const css = (rgb, alpha = 1) => `rgba(${rgb.map(round).join()},${alpha})`;
+const css = (rgb, alpha = 1) => (rgb.map ? `rgba(${rgb.map(round)},${alpha})` : rgb);
 /** A colour on the way from one to another. */
 const mix = (a, b, share) => a.map((value, k) => value + (b[k] - value) * share);
 
-/** Base64 of little-endian numbers, as all browsers keep them, to an array of them. */
+/** Numbers from base64, little-endian as in all browsers. */
 const numbers = (text, Type) => new Type(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 
 /** The rotation q, then one by the vector (x, y, z) [rad]; quaternions are [w, x, y, z]. */
@@ -42,10 +42,10 @@ function turned(q, x, y, z) {
 	return [w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c, w * c + y * a + z * b - x * d, w * d + z * a + x * c - y * b];
 }
 
-/** Step [s] in which the orientation of a ball is followed where its axis turns. */
+/** Step [s] of a ball's orientation where its axis turns. */
 const STEP = 1 / 120;
 
-/** One stroke of a replay: its data, and where the balls are at any time. */
+/** A stroke's data, and where the balls are at any time. */
 class Stroke {
 	constructor(data, replay, previous) {
 		Object.assign(this, data, { R: replay.R, decel: replay.spin_decel, previous, turns: new Map() });
@@ -63,7 +63,7 @@ class Stroke {
 		this.later = { x: places.filter((_, k) => k % 2 === 0), y: places.filter((_, k) => k % 2), on: flags(after.on_table) };
 	}
 
-	/** Which segment of a ball's log holds at time t; -1 before the first. There are tens of them: a search by halves would gain nothing. */
+	/** Which segment of a ball's log holds at time t; -1 before the first. There are tens: no need to halve. */
 	find(ball, t) { return this.logs[ball].findLastIndex(segment => segment.t0 <= t); }
 
 	/** [x, y, vx, vy, wx, wy, wz] at time t of a segment; the order of the arithmetic is that of the simulation. */
@@ -82,7 +82,7 @@ class Stroke {
 			values.forEach((value, c) => { out[names[c]][i] = still && c > 3 ? 0 : value; });
 			if (k < 0 || !this.here[i]) return;
 			if (log[k].state === GONE) out.on[i] = 0;
-			let fell = k + 1; // the segment with which it went over the edge
+			let fell = k + 1; // with this segment it went over the edge
 			while (fell && [GONE, FALLING].includes(log[fell - 1].state)) fell--;
 			if (fell <= k) out.depth[i] = min(1, ((t - log[fell].t0) / 0.2) ** 2); // it falls 0.2 m in 0.2 s
 		});
@@ -99,12 +99,12 @@ class Stroke {
 		if (!known.length) known.push({ q: ball < before?.n ? before.turn(ball, before.duration) : turned([1, 0, 0, 0], ball + 0.4, 0.5 - ball, 2 * ball) });
 		for (let j = known.length - 1; j <= k; j++) {
 			known.push({ q: j ? this.rolled(log[j - 1], known[j], log[j].t0) : known[0].q });
-			known[j].steps = null; // so that a match does not fill the memory
+			known[j].steps = null; // or a match would fill the memory
 		}
 		return k < 0 ? known[0].q : this.rolled(log[k], known[k + 1], min(t, this.duration));
 	}
 
-	/** On from the start of a segment to time t: exact in one step where the axis stays, else by the middle of small steps. */
+	/** From the start of a segment to time t: in one exact step where the axis stays, else by the middles of small ones. */
 	rolled(segment, start, t) {
 		const { t0, state, wz } = segment;
 		if (state === GONE || t <= t0) return start.q;
@@ -137,24 +137,22 @@ export function decode(replay) {
 
 /** A canvas of its own, and its pen. */
 function sheet(width, height) {
-	const canvas = document.createElement("canvas");
-	canvas.width = max(1, ceil(width));
-	canvas.height = max(1, ceil(height));
+	const canvas = Object.assign(document.createElement("canvas"), { width: ceil(width), height: ceil(height) });
 	return [canvas, canvas.getContext("2d")];
 }
 
-/** Grey unrest for cloth and wood, the same at every call. */
+/** Grain for cloth and wood, always the same. */
 function unrest(strength) {
 	const [canvas, pen] = sheet(256, 256), image = pen.createImageData(256, 256);
-	for (let k = 0; k < 65536; k++) {
-		const noise = sin(12.9898 * k) * 43758.5453 % 1;
-		image.data.set([...(noise > 0 ? WHITE : BLACK), 255 * strength * abs(noise)], 4 * k);
+	for (let k = 0, seed = 1; k < 65536; k++) {
+		seed = Math.imul(seed, 1664525) + 1013904223 | 0;
+		image.data.set([...(seed > 0 ? WHITE : BLACK), abs(seed) / 2 ** 23 * strength], 4 * k);
 	}
 	pen.putImageData(image, 0, 0);
 	return canvas;
 }
 
-/** Fill what a pen has drawn; a filling may be a gradient with its stops [place, colour]. */
+/** Fill what a pen has drawn; a gradient comes with its stops [place, colour]. */
 function fill(pen, filling, ...stops) {
 	for (const [at, colour] of stops) filling.addColorStop(at, colour);
 	pen.fillStyle = filling;
@@ -184,7 +182,7 @@ function polyline(pen, points, width, colour) {
 	pen.stroke();
 }
 
-/** Draws a table on a canvas. What never moves is drawn once for each size. */
+/** Draws a table; what never moves, once for each size. */
 export class TableView {
 	constructor(canvas, scene) {
 		Object.assign(this, { canvas, scene, R: scene.ball_radius });
@@ -210,7 +208,7 @@ export class TableView {
 		this.left = w / 2 - this.scale * (y0 + y1) / 2;
 		this.top = h / 2 - this.scale * (x0 + x1) / 2;
 		this.sprites = new Map();
-		this.still = null;
+		if (this.still?.width !== w || this.still?.height !== h) this.still = null;
 	}
 
 	/** CSS pixels on the canvas of a place [m]. */
@@ -279,7 +277,7 @@ export class TableView {
 		pen.clip();
 		fill(pen, ink.hole);
 		pen.save();
-		start(bed);
+		start(9);
 		for (const [x, y, r] of scene.falls) { pen.moveTo(x + r, y); pen.arc(x, y, r, 0, TURN); } // the slate is cut out there
 		pen.clip("evenodd");
 		start(bed);
@@ -322,7 +320,7 @@ export class TableView {
 		return [canvas, half];
 	}
 
-	/** The lamps as a ball at (x, y) mirrors them: two rows along the table, 1 m above it. */
+	/** The lamps in the mirror of a ball at (x, y): two rows along the table, 1 m above. */
 	lamps(x, y, px, py, radius) {
 		const { pen, scene: { extent: [[x0, x1], [y0, y1]] } } = this;
 		pen.beginPath();
@@ -383,11 +381,11 @@ export class TableView {
 		this.pen.drawImage(image, px - wide, py - wide, 2 * wide, 2 * wide);
 	}
 
-	/** A ball on its way into the pocket at hand: darker, smaller, towards the middle of the hole. */
+	/** A ball on its way into the pocket at hand: darker, smaller, further in. */
 	falling(x, y, depth, rgb) {
 		const [u, v] = this.scene.falls.find(fall => hypot(fall[0] - x, fall[1] - y) < 0.2) ?? [x, y];
 		this.pen.globalAlpha = 1 - depth;
-		this.stamp(rgb, ...this.pixel(x + (u - x) * depth / 2, y + (v - y) * depth / 2), this.R * this.scale, 1 - 0.3 * depth);
+		this.stamp(rgb, ...this.pixel(x + (u - x) * sqrt(depth) / 2, y + (v - y) * sqrt(depth) / 2), this.R * this.scale, 1 - 0.3 * depth);
 		this.pen.globalAlpha = 1;
 	}
 
@@ -411,7 +409,7 @@ export class TableView {
 	}
 
 	/** A line through points, or a `path` in metres, at least 3 pixels wide, with a dark edge. */
-	line({ points = [], path, colour, width = 0.007, dash = [], arrow }) {
+	line({ points = [], path, colour = this.ink.text, width = 0.007, dash = [], arrow }) {
 		const { pen } = this, px = this.ratio / this.scale, wide = max(width, 3 * px), way = path ?? new Path2D();
 		for (const point of points) way.lineTo(...point);
 		if (arrow && points.length > 1) {
@@ -421,7 +419,7 @@ export class TableView {
 		this.metres(pen);
 		pen.lineJoin = pen.lineCap = "round";
 		pen.setLineDash(dash);
-		for (const [style, thick] of [[css(this.colours.path_edge, 0.55), wide + 2 * px], [colour?.map ? css(colour) : colour ?? this.ink.text, wide]]) {
+		for (const [style, thick] of [[css(this.colours.path_edge, 0.55), wide + 2 * px], [css(colour), wide]]) {
 			pen.strokeStyle = style;
 			pen.lineWidth = thick;
 			pen.stroke(way);
@@ -461,9 +459,9 @@ export class TableView {
 }
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
-/** Seconds shown before a stroke, of the cue, and after it. */
+/** Seconds shown before a stroke and after it. */
 const LEAD = 0.9, PAUSE = 1.4;
-/** Key, what it does, what its button shows (an icon or a word; none: no button), the method, its argument. */
+/** Key, what it does, its button's icon or word (none: no button), method, argument. */
 const COMMANDS = [
 	["Shift ArrowLeft", "previous stroke", "back", "skip", -1], ["ArrowLeft", "previous event", "last", "step", -1], ["Space", "play or pause", "play", "toggle"],
 	["ArrowRight", "next event", "next", "step", 1], ["Shift ArrowRight", "next stroke", "on", "skip", 1], ["ArrowDown", "slower", "−", "faster", -1], ["ArrowUp", "faster", "+", "faster", 1],
@@ -476,15 +474,15 @@ const ICONS = { play: "M7 4v16l13-8z", pause: "M6 4h4v16H6zM14 4h4v16h-4z", on: 
 const STYLE = `
 .sn{position:relative;container-type:inline-size;display:flex;flex-direction:column;justify-content:center;background:var(--floor);color:var(--text);overflow:hidden;
 font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
-.sn *{box-sizing:border-box}.sn-fill{height:100%}
-.sn-stage{position:relative;min-height:0}.sn-stage canvas{position:absolute;width:100%;height:100%;touch-action:manipulation}
-.sn-score{display:flex;flex-wrap:wrap;background:var(--bar);border-top:3px solid var(--bar_accent);font-size:clamp(14px,1.5cqw,26px);line-height:2}
-.sn-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.sn-who{flex:1 1 30%;min-width:0;font-weight:600}.sn-now+.sn-who{flex-direction:row-reverse;text-align:right}
+.sn *{box-sizing:border-box}.sn>*{flex:none}.sn-fill{height:100%}
+.sn .sn-stage{position:relative;flex:0 1 auto;min-height:0}.sn-stage canvas{position:absolute;width:100%;height:100%;touch-action:manipulation}
+.sn-score{display:flex;background:var(--bar);border-top:3px solid var(--bar_accent);font-size:clamp(14px,1.5cqw,26px);line-height:2}
+.sn-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.sn-who{flex:1 1 20%;min-width:0;font-weight:600}.sn-now+.sn-who{flex-direction:row-reverse;text-align:right}
 .sn-who span{flex:1;overflow:hidden;text-overflow:ellipsis;white-space:nowrap}.sn-who b{background:var(--text);color:var(--bar);line-height:1.5;min-width:2.6em;text-align:center}
 .sn-turn{background:var(--bar_edge)}.sn .sn-now{justify-content:center;flex-wrap:wrap;column-gap:1.4em;font-size:.8em}
 .sn i{display:inline-block;width:.85em;height:.85em;border-radius:50%;margin:0 1px;vertical-align:-.08em;box-shadow:inset 0 0 0 1px #fff6}
 .sn-bar{position:relative;height:30px;margin:0 14px;cursor:pointer;touch-action:none}.sn-bar *{position:absolute;top:12px;height:6px;background:var(--bar_accent)}
-.sn-bar :first-child{width:100%;background:var(--bar_edge)}.sn-bar u{width:2px;background:var(--text_quiet)}.sn-bar b{top:6px;width:18px;height:18px;margin-left:-9px;border-radius:9px;background:var(--text)}
+.sn-bar :first-child{width:100%;background:var(--bar_edge)}.sn-bar u{width:2px;background:var(--text_quiet)}.sn-bar b{z-index:1;top:6px;width:18px;height:18px;margin-left:-9px;border-radius:9px;background:var(--text)}
 .sn-foot{display:flex;flex-wrap:wrap;align-items:center;gap:6px 10px;padding:0 10px 8px}.sn-foot>*{flex:1 1 250px}.sn-words{text-align:right}
 .sn-about{display:flex;align-items:center;gap:10px;min-height:50px;color:var(--text_quiet)}.sn-about canvas{width:50px;height:50px}
 .sn-foot .sn-keys{flex:0 1 auto;display:flex;flex-wrap:wrap;justify-content:center;gap:4px}.sn output{width:3.4em;line-height:40px;text-align:center}
@@ -492,14 +490,11 @@ font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
 .sn [aria-pressed=true]{box-shadow:inset 0 -3px var(--bar_accent)}.sn svg{width:22px;fill:currentColor;vertical-align:middle}
 .sn:focus-visible,.sn :focus-visible{outline:2px solid var(--aim)}
 .sn-help{position:absolute;inset:0;margin:auto;padding:12px;background:var(--bar);border:1px solid var(--bar_edge)}.sn-help td{padding:2px 8px}
-@container (max-width:900px){.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}`;
+@media (max-height:500px){.sn .sn-about{min-height:0;zoom:.6;font-size:24px}.sn-score{line-height:1.5}.sn output{width:2.2em}.sn button{padding:0 4px;min-width:40px}}
+@container (max-width:900px){.sn-score{flex-wrap:wrap}.sn-who{flex-basis:30%}.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}`;
 
 /** A new element at the end of its parent. */
-function put(parent, tag) {
-	const made = document.createElement(tag);
-	parent.append(made);
-	return made;
-}
+const put = (parent, tag) => parent.appendChild(document.createElement(tag));
 
 const setAll = (element, attributes) => Object.entries(attributes).forEach(([name, value]) => element.setAttribute(name, value));
 
@@ -509,9 +504,8 @@ export class Player {
 		const data = decode(replay), { strokes } = data;
 		if (!strokes.length) throw new Error("a replay must hold at least one stroke");
 		this.options = { autoplay: !matchMedia("(prefers-reduced-motion: reduce)").matches, ...options };
-		this.show = { paths: !data.players.length, ghosts: true, spin: "cue", labels: false };
-		for (const name in this.show) this.show[name] = options[name] ?? this.show[name];
-		Object.assign(this, { replay: data, strokes, speed: options.speed ?? 1, k: 0, playing: false });
+		const { paths = !data.players.length, ghosts = true, spin = "cue", labels = false, speed = 1 } = options;
+		Object.assign(this, { replay: data, strokes, speed, show: { paths, ghosts, spin, labels }, k: 0, playing: false });
 		this.leads = strokes.map(stroke => (stroke.cue ? LEAD : 0));
 		this.t = -this.leads[0];
 		this.total = -PAUSE;
@@ -585,14 +579,14 @@ export class Player {
 	}
 
 	toggle() { if (this.playing) this.pause(); else this.play(); }
-	help() { this.part("help").hidden = !this.part("help").hidden; }
+	help() { this.part("help").toggleAttribute("hidden"); }
 
 	faster(way) {
-		this.speed = SPEEDS[SPEEDS.indexOf(this.speed) + way] ?? this.speed;
+		this.speed = (way > 0 ? SPEEDS.find(speed => speed > this.speed) : SPEEDS.findLast(speed => speed < this.speed)) ?? this.speed;
 		this.update();
 	}
 
-	/** Switch "paths", "ghosts" or "labels", or go on to the next choice of "spin". */
+	/** Switch paths, ghosts or labels, or go on to the next choice of spin. */
 	flip(name) {
 		this.show[name] = name === "spin" ? { cue: "all", all: "off", off: "cue" }[this.show.spin] : !this.show[name];
 		this.update();
@@ -626,13 +620,13 @@ export class Player {
 		this.seek(k, sum - this.starts[k]);
 	}
 
-	/** On by a stroke, or back: first to the beginning of this one. */
+	/** On by a stroke, or back, first to the start of this one. */
 	skip(way) {
 		const k = this.k + (way < 0 && this.t > 0.5 ? 0 : way);
 		this.seek(k, k < this.strokes.length ? -LEAD : Infinity);
 	}
 
-	/** Stop at the next event (+1) or the one before (-1), over strokes' ends. */
+	/** Stop at the next event (+1) or the one before (-1). */
 	step(way) {
 		this.pause();
 		const { events, duration } = this.strokes[this.k], stops = [0, ...events.filter(event => EVENTS[event[1]]).map(event => event[0]), duration];
@@ -680,7 +674,7 @@ export class Player {
 	/** [[x, y], ...] [m] of all balls as they are on screen. */
 	positions() { return Array.from(this.shown.x, (x, k) => [x, this.shown.y[k]]); }
 
-	/** Draw and say everything anew. */
+	/** Draw and say all anew. */
 	update() {
 		const sum = this.starts[this.k] + this.t;
 		this.shown = this.frame();
@@ -691,7 +685,7 @@ export class Player {
 		this.options.ontime?.(this.t, this.k);
 	}
 
-	/** Words and buttons; they are left alone while they stay the same. */
+	/** Words and buttons, left alone while they stay the same. */
 	say() {
 		const { k, playing, speed, show, t, replay: { scene: { balls }, title } } = this, stroke = this.strokes[k], { cue } = stroke, over = t >= stroke.duration;
 		const event = !playing && stroke.events.findLast(one => one[0] === t && EVENTS[one[1]]), reds = this.shown.on.slice(1, 16).filter(Boolean).length;
@@ -715,10 +709,8 @@ export class Player {
 		const { tip, view } = this, size = (tip.width = tip.height = round(50 * view.ratio)), pen = tip.getContext("2d"), R = size * 0.46, c = size / 2;
 		tip.hidden = !cue;
 		if (!cue) return;
-		const [image, half] = view.sprite(this.replay.scene.balls[0].rgb, R);
-		pen.drawImage(image, c - half, c - half);
-		polyline(pen, [[c - R, c], [c + R, c]], 1, "#0006");
-		polyline(pen, [[c, c - R], [c, c + R]], 1, "#0006");
+		disc(pen, c, c, R, css(this.replay.scene.balls[0].rgb));
+		polyline(pen, [[c - R, c], [c + R, c], [c, c], [c, c - R], [c, c + R]], 1, "#0006");
 		disc(pen, c + R * cue.side, c - R * cue.top, 0.17 * R, view.ink.bar_accent);
 	}
 

@@ -53,8 +53,10 @@ def test_points_expected_hold_what_follows():
 
 
 def test_the_same_seed_gives_the_same_advice_and_another_one_other_samples():
-    first, again, other = (sn.advise(OPEN, noise="club", n=3, seed=seed, **QUICK).to_dict() for seed in (4, 4, 5))
+    first, again, other = (sn.advise(OPEN, noise="club", n=3, seed=seed, **QUICK).to_dict()["suggestions"] for seed in (4, 4, 5))
     assert first == again and first != other
+    apart = [sn.advise(ENDGAME, agent="ghost_ball", noise="club", n=1, seed=seed, **QUICK)[0].stops for seed in (4, 5)]
+    assert apart[0] != apart[1]  # of one and the same stroke
 
 
 def test_the_noise_stream_of_a_state_has_no_say():
@@ -70,6 +72,11 @@ def test_a_position_may_be_given_in_every_way():
     many = sn.planning.Positions.of([OPEN])
     asked = [sn.advise(p, n=1, **QUICK).to_dict() for p in (OPEN, OPEN.to_dict(), state_of(OPEN), env, many)]
     assert all(one["suggestions"] == asked[0]["suggestions"] for one in asked)
+
+
+def test_points_of_the_visit_so_far_do_not_count():
+    far = sn.Position(**OPEN.to_dict() | {"points": 140})
+    assert sn.advise(far, n=1, **QUICK)[0] == sn.advise(OPEN, n=1, **QUICK)[0]
 
 
 def test_the_order_is_the_agents_own():

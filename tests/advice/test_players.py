@@ -62,6 +62,17 @@ def test_a_players_stroke_is_read_as_the_environment_reads_it():
     assert stroke_of(Aiming(), IN_HAND).place == pytest.approx((0.146, -1.0475)) and stroke_of(Aiming(), OPEN).side == pytest.approx(0.3)
 
 
+def test_a_player_who_cannot_place_the_cue_ball_plays_from_the_best_place():
+    """From the usual place a colour is in the way of the only red; from the side it can be potted."""
+    position = sn.Position(in_hand=True, reds=[(0.0, -0.2)], blue=(0.03, -0.8), green=(-0.03, -0.8), pink=(0.1, -0.7), black=(-0.1, -0.7))
+    usual = sn.Position(**position.to_dict() | {"in_hand": False})
+    assert sn.planning.pots(usual).ball[0, 0] == -1
+    stroke = stroke_of(Soft(), position)
+    there = sn.Position(**position.to_dict() | {"cue": stroke.place})
+    assert sn.planning.pots(there).ball[0, 0] == 1
+    assert stroke == stroke_of(Soft(), there, seed=5)
+
+
 def test_the_order_of_a_ranking_is_kept_and_its_scores():
     advice = sn.advise(ENDGAME, agent=Ranking(), n=2, samples=200, visits=0)
     assert [one.score for one in advice] == [2.0, 1.0] and advice[0].chance < advice[1].chance and advice.agent == "Ranking"

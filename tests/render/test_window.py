@@ -5,9 +5,9 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
-from snooker_env.render.pygame_view import Window, require_display, rgb_array
+from snooker_env.render.pygame_view import Window, rgb_array
 from snooker_env.render.scene import Film, scene, shot_scenes
-from snooker_env.render.window import SPEEDS, WAITING
+from snooker_env.render.window import SPEEDS, WAITING, require_display
 
 
 @pytest.fixture(scope="module")

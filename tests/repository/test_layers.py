@@ -19,7 +19,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
-BASE = {"_jit", "_check", "_types", "geometry"}
+BASE = {"_jit", "_check", "_files", "_types", "geometry"}
 ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
@@ -27,6 +27,7 @@ ALLOWED = {
     "_registration": set(),
     "_autoregister": set(),
     "_types": set(),
+    "_files": set(),
     "_check": {"_types"},
     "checks": {"_check", "physics"},
     "kernels": {"_jit", "game", "tasks"},
@@ -47,22 +48,9 @@ ALLOWED = {
     "widget": {"_check", "replays"},
     "play": BASE | {"physics", "shot", "simulation", "game", "tasks", "planning", "advice", "render", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {
-        "geometry",
-        "physics",
-        "impacts",
-        "shot",
-        "simulation",
-        "tasks",
-        "planning",
-        "advice",
-        "envs",
-        "match",
-        "replays",
-        "_warmup",
-        "_registration",
-    },
+    "__init__": BASE | {"physics", "impacts", "shot", "simulation", "tasks", "planning", "advice", "envs", "match", "replays"},
 }
+ALLOWED["__init__"] |= {"_warmup", "_registration"}
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
     "pygame": {"render"},
@@ -72,7 +60,7 @@ OUTSIDE = {
     "anywidget": {"widget"},
     "traitlets": {"widget"},
 }
-OUTSIDE |= dict.fromkeys(("hmac", "http", "secrets", "socket", "urllib", "webbrowser"), {"play"})  # the network, as well
+OUTSIDE |= {name: {"play"} for name in ("hmac", "http", "secrets", "socket", "urllib", "webbrowser")}  # the network, as well
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}

@@ -14,8 +14,9 @@ BLOCKS = re.findall(r"```python\n(.*?)```", README, re.S)
 
 
 @pytest.mark.parametrize("block", BLOCKS, ids=range(len(BLOCKS)))
-def test_python_blocks_run(block):
-    subprocess.run([sys.executable, "-W", "error", "-c", block], cwd=ROOT, check=True, timeout=300)
+def test_python_blocks_run(block, tmp_path):
+    env = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]), "MPLBACKEND": "Agg"}
+    subprocess.run([sys.executable, "-W", "error", "-c", block], cwd=tmp_path, env=env, check=True, timeout=300)
 
 
 def test_the_two_commands_are_those_that_ci_runs():
@@ -47,6 +48,8 @@ SHORT = {
     "benchmarks.layouts_picture": ["--out", "{tmp}"],
     "benchmarks.pictures": ["--out", "{tmp}"],
     "agents.evaluate": ["--agent", "random", "--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"],
+    "agents.watch": ["--agent", "ghost_ball", "--out", "{tmp}/visit.html"],
+    "benchmarks.diagrams": ["--out", "{tmp}"],
     "agents.report": ["--show", "agents/results/147.json"],
     "benchmarks.planning": ["--strokes", "100", "--repeats", "2"],
     "benchmarks.fuzz": ["--shots", "300", "--threads", "1"],

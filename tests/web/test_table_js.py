@@ -27,7 +27,7 @@ def start_of(world, rng):
     if n == 22:
         r, here = layout("break_off" if rng.random() < 0.5 else "random:9", rng)
         return r, here
-    half = np.array([(h - l) / 2 for l, h in scene_data(table)["extent"]]) - 3 * physics.R
+    half = np.array([(high - low) / 2 for low, high in scene_data(table)["extent"]]) - 3 * physics.R
     while True:
         r = rng.uniform(-half, half, (n, 2))
         gaps = np.hypot(*(r[:, None] - r[None]).T) + 9 * np.eye(n)
@@ -111,7 +111,7 @@ def test_velocities_spins_and_who_is_there(page):
     made = shots(18, rng)
     for world in WORLDS:
         ours = [one for one in made if one[0] == world]
-        times = [np.sort(rng.uniform(0, 1.05 * shot.duration, 50)) for _, shot, _, _ in ours]
+        times = [np.append(rng.uniform(0, 1.05 * shot.duration, 50), shot.events["time"][:20]) for _, shot, _, _ in ours]  # impacts, too
         names = ["vx", "vy", "wx", "wy", "wz", "on"]
         for (_, shot, _, here), t, found in zip(ours, times, in_browser(page, ours, times, names), strict=True):
             _, v, w = shot.at(t)
@@ -131,7 +131,10 @@ def test_a_ball_turns_as_it_spins(page):
     times = [0.3, 0.9, 2.5, shot.duration]
     found = page.evaluate(
         """([replay, times]) => {
-        const turns = order => { const [stroke] = table.decode(replay).strokes; return order.map(t => [stroke.turn(0, t), stroke.turn(1, t)]); };
+        const turns = order => {
+          const [stroke] = table.decode(replay).strokes;
+          return order.map(t => [stroke.turn(0, t), stroke.turn(1, t)]);
+        };
         return [turns([0, ...times]), turns([0, ...times].reverse()).reverse()];
         }""",
         [replay, times],
@@ -189,8 +192,9 @@ DRAWN = """({scene, frame, at, size = [900, 500]}) => {
   [canvas.width, canvas.height] = size;
   const view = new table.TableView(canvas, scene);
   view.draw(frame);
-  const read = ([x, y]) => Array.from(canvas.getContext("2d").getImageData(...view.toScreen(x, y).map(Math.round), 1, 1).data.slice(0, 3));
-  return {pixels: at.map(read), screen: at.map(([x, y]) => view.toScreen(x, y)), back: at.map(([x, y]) => view.toTable(...view.toScreen(x, y))), scale: view.scale};
+  const screen = at.map(([x, y]) => view.toScreen(x, y)), pen = canvas.getContext("2d");
+  const pixels = screen.map(place => Array.from(pen.getImageData(...place.map(Math.round), 1, 1).data.slice(0, 3)));
+  return {pixels, screen, back: screen.map(place => view.toTable(...place)), scale: view.scale};
 }"""
 
 

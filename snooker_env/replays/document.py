@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import choice, refuse, refuse_what
+from .._files import write_whole
 from ..physics.table import Table, TableLike
 from ..render.scene import scene_data
 from ..simulation import Shot
 from ..tasks.played import Played
 from .encode import encoded_stroke
-from .write import write_whole
 
 WEB = Path(__file__).resolve().parent.parent / "web"
 """Where the module that draws in a browser is."""

@@ -1,0 +1,54 @@
+"""Does the quick player play on as it says? Whole visits again, one position and one stroke at a time."""
+
+import numpy as np
+import pytest
+from cases import ENDGAME, OPEN
+
+from snooker_env.advice import seeds
+from snooker_env.advice.practice import practice_of
+from snooker_env.advice.visits import BEST, EVEN_SAMPLES, PICKS, played_on
+from snooker_env.planning import Planner, Positions, action_masks, as_actions, prospects_of, spread_of
+from snooker_env.tasks import LEVELS, SPEEDS, STROKES, TOPS
+
+
+def action(at, pick):
+    """A choice as an action in float64, to the last bit: rounding grows from stroke to stroke."""
+    speed, top = SPEEDS[pick % STROKES // 15], TOPS[pick % len(TOPS)]
+    turns = np.pi * float(as_actions(at, [0], [pick])[0, 3]) / np.pi
+    return np.array([[2.0 * (speed - 0.2) / (7.0 - 0.2) - 1.0, 0.0, 2.0 * top, turns]])
+
+
+def by_hand(position, visit, visits, seed, noise):
+    """Points of the rest of one visit, number ``visit`` of so many, and its strokes."""
+    at, exact, noisy = Positions.of(position), Planner({}), Planner({"noise": noise})
+    spread, total, strokes = spread_of(LEVELS[noise]), 0.0, 0
+    while True:
+        chances, tried = prospects_of(at, spread)[1][0], []
+        for pick in PICKS[action_masks(at)[0, PICKS]].tolist():
+            points, goes_on, left, _ = exact.play(at, [0], action(at, pick))
+            tried.append((-chances[pick // STROKES] * (points[0] + goes_on[0] * prospects_of(left, spread)[0][0]), pick))
+        best, chosen = -1.0, -1
+        for _, pick in sorted(tried)[:BEST]:
+            five = [noisy.play(at, [0], action(at, pick), [key]) for key in EVEN_SAMPLES]
+            worth = np.mean([points[0] + goes_on[0] * prospects_of(left, spread)[0][0] for points, goes_on, left, _ in five])
+            if worth > best:
+                best, chosen = worth, pick
+        key = np.random.default_rng((seed, seeds.GOING_ON, strokes)).integers(0, 2**64 - 1, visits, dtype=np.uint64)[visit]
+        points, goes_on, at, _ = noisy.play(at, [0], action(at, chosen), [key])
+        total, strokes = total + points[0], strokes + 1
+        if not goes_on[0]:
+            return total, strokes
+
+
+@pytest.mark.parametrize("noise", ["professional", "club"])
+def test_visits_are_played_on_stroke_by_stroke(noise):
+    positions = [OPEN, ENDGAME, OPEN, ENDGAME, OPEN]
+    numbers = np.array([0, 0, 1, 3, 2])
+    found = played_on(practice_of(noise), Positions.of(positions), numbers, 7)
+    own = [by_hand(position, visit, 4, 7, noise) for position, visit in zip(positions, numbers.tolist(), strict=True)]
+    assert found.tolist() == [total for total, _ in own]
+    assert max(strokes for _, strokes in own) > 2 and len(set(found.tolist())) > 2
+
+
+def test_no_visits_bring_no_points():
+    assert played_on(practice_of("club"), Positions.of(OPEN)[:0], np.empty(0, np.int64), 0).shape == (0,)
