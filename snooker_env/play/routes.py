@@ -140,7 +140,7 @@ def position_of(given: Any) -> Position:
         raise refuse("position", given, 'must be an object: {"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}')
     for name in given:
         choice("field of position", name, [n for n in names if n not in ("table", "over")])
-    points = {"points": integer("points", given.get("points", 0), 0, MOST_BREAK)}
+    points: dict[str, Any] = {"points": integer("points", given.get("points", 0), 0, MOST_BREAK)}
     if not isinstance(given.get("reds", []), list):
         raise refuse("reds", given["reds"], "must be a list of places [x, y]")
     return Position(**given | points)
