@@ -14,7 +14,7 @@ import snooker_env as sn
 from commands import provenance
 from snooker_env.game.balls import BROWN, CUE, N_BALLS, SPOTS
 from snooker_env.render.pygame_view import rgb_array
-from snooker_env.render.scene import Film, ScoreBar, contacts
+from snooker_env.render.scene import Film, ScoreBar
 
 from ._common.command import Command, at_least, run, save_json
 
@@ -31,7 +31,7 @@ def break_off():
 def made(shot, size, fps):
     """Times [s] of each frame: (frames, 2), the scene and its drawing."""
     bar = ScoreBar(("a player", "another"), (0, 0), striker=0, break_points=0, reds_left=15, points_on=147, ball_on="red")
-    scenes = Film("match", shot, spots=(CUE,), ghosts={CUE: contacts(shot)}, bar=bar).scenes(fps)
+    scenes = Film("match", shot, spots=(CUE,), faded=(CUE,), bar=bar).scenes(fps)
     times = []
     while True:
         begin = time.perf_counter()

@@ -9,11 +9,12 @@ import snooker_env as sn
 from snooker_env.game.layouts import opened
 from snooker_env.game.pots import GHOST_X, GHOST_Y, POT_BALL, pots
 from snooker_env.render.pygame_view import rgb_array
-from snooker_env.render.scene import ball_paths, scene
+from snooker_env.render.scene import ball_paths, contacts, scene
 
 from ._common.command import Command, run, save_image, save_json
 
 FILE = "shot.png"
+SIZE = 1200, 675
 
 
 def pot(seed):
@@ -39,7 +40,8 @@ def main():
     options = Command("pictures", __doc__, files=(FILE,), seed=6).options()
     positions, ball, shot = pot(options.seed)
     text = "a red potted with screw and right-hand side: the table before the shot, and where the two balls went"
-    picture = rgb_array(scene("match", positions, paths=ball_paths(shot, balls=(0, ball)), text=text))
+    paths, ghosts = ball_paths(shot, balls=(0, ball)), {0: contacts(shot)}
+    picture = rgb_array(scene("match", positions, paths=paths, ghosts=ghosts, text=text), size=SIZE)
     save_json(options.json, {"seed": options.seed, "ball": ball, "before": positions.tolist(), "after": shot.positions.tolist()})
     save_image(options.folder / FILE, picture)
     print(options.folder / FILE)

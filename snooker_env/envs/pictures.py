@@ -98,13 +98,13 @@ class Pictures:
 
     def _films(self, history: list[Played], recent: int) -> Iterator[Any]:
         """The last strokes as films."""
-        from ..render.scene import Film, contacts
+        from ..render.scene import Film
         from ..replays.bars import bars
 
         told = bars(history, self.players)
         for k in range(len(history) - recent, len(history)):
             shot = history[k].shot
-            yield Film(self.table, shot, trail=trail_of(shot), spots=(0,), bar=told[k][0], ghosts={0: contacts(shot)})
+            yield Film(self.table, shot, trail=trail_of(shot), spots=(0,), faded=(0,), bar=told[k][0])
 
     def _motion(self, history: list[Played], recent: int) -> Iterator[NDArray[np.uint8]]:
         from ..render.pygame_view import rgb_array
@@ -120,16 +120,20 @@ class Pictures:
 
     def _scene(self, tables, k, history):
         from ..render.scene import ball_paths, contacts, scene
+        from ..render.turning import Turning
         from ..replays.bars import bars, standing_bar
 
         paths = ghosts = last = None
+        turns = {0: np.array([1.0, 0.0, 0.0, 0.0])}  # spots as in films
         if history:
             shot = history[-1].shot
             paths, ghosts = ball_paths(shot, trail_of(shot)), {0: contacts(shot)}
             last = bars(history, self.players)[-1][1]
+            if shot.on_table[0] and np.array_equal(shot.positions[0], tables.positions[k][0]):  # as the film of the stroke left it
+                turns = {0: Turning(shot, 0).at(shot.duration)}
         bar = standing_bar(tables, k, self.players, last)
         return scene(
-            self.table, tables.positions[k], tables.on_table[k], paths=paths, ghosts=ghosts, text=tables.text(k), bar=bar
+            self.table, tables.positions[k], tables.on_table[k], paths=paths, ghosts=ghosts, turns=turns, text=tables.text(k), bar=bar
         )  # fmt: skip
 
 

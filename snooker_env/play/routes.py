@@ -14,8 +14,8 @@ from ..advice import CueStroke
 from ..game.frame import MOST_BREAK
 from ..game.ruling import AUTO
 from ..planning.position import Position
-from ..replays.encode import encoded_stroke
 from ..replays import Replay
+from ..replays.encode import encoded_stroke
 from ..tasks.noise import LEVELS
 from ..tasks.states import MOST
 from . import questions

@@ -18,8 +18,8 @@ from .table_picture import LAMP_HEIGHT, lamps
 from .turning import matrix
 from .view import View
 
-PANEL = 0.55, 0.22
-"""How long and wide a lamp is [m]."""
+PANEL = 0.55
+"""How long a lamp is [m]."""
 _FADED = 0.42
 _SPOT = np.cos(np.radians(17.0))
 _SPOTS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=np.float64)
@@ -109,14 +109,14 @@ def _rays(positions, over):
 def _mirrored(positions, over, where, radius):
     """The lamps in the balls: each where the surface leans half-way between the eye, straight above, and the lamp."""
     found = []
-    ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.5)])[None] * PANEL[0]
+    ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
     across, far = _rays(positions, ends.reshape(-1, 2))
     up = LAMP_HEIGHT / far + 1
     lean = across / far[..., None]
     lean /= np.sqrt((lean**2).sum(axis=-1) + up**2)[..., None]
-    lean = lean.reshape(len(where), len(over), 2, 2)
-    centre = where[:, None] + radius * lean.mean(axis=2)[..., ::-1]
-    length = np.abs(lean[:, :, 1, 1] - lean[:, :, 0, 1]) * radius / 2
+    lean = lean.reshape(len(where), len(over), 3, 2)  # of each lamp its first end, middle and last end
+    centre = where[:, None] + radius * lean[:, :, 1, ::-1]
+    length = np.abs(lean[:, :, 2, 1] - lean[:, :, 0, 1]) * radius / 2
     for places, lengths in zip(centre, length, strict=True):
         for place, half in zip(places, lengths.tolist(), strict=True):
             found.append(_at(place, _lamp, round(4 * max(half, 0.07 * radius)), round(radius, 1)))
@@ -131,7 +131,8 @@ def _lamp(half, radius, fx, fy):
     d = np.hypot(np.maximum(np.abs(x) - along + across, 0), y)
     image = np.empty((*d.shape, 4))
     image[..., :3] = PALETTE["lamp"]
-    image[..., 3] = 255 * np.maximum(0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2)))
+    small = min(1.0, 0.25 + radius / 12)  # in a small ball it would be all that is seen
+    image[..., 3] = 255 * small * np.maximum(0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2)))
     return surface_of(image)
 
 

@@ -247,13 +247,17 @@ def contacts(shot: Shot, ball: int = CUE) -> Floats:
     float64 (m, 2)
         [m], in the order of time; one that would lie half over the last is left out.
     """
+    return _timed_contacts(shot, ball)[0]
+
+
+def _timed_contacts(shot, ball):
+    """``contacts`` and their times (m,) [s]."""
     met = shot.events[(shot.events["kind"] == EventKind.BALL_BALL) & ((shot.events["i"] == ball) | (shot.events["j"] == ball))]
-    places = shot.at(met["time"])[0][:, ball].reshape(-1, 2)
-    kept: list[Floats] = []
-    for place in places:
-        if not kept or np.hypot(*(place - kept[-1])) > shot.physics.R:
-            kept.append(place)
-    return np.array(kept).reshape(-1, 2)
+    kept = []
+    for place, time in zip(shot.at(met["time"])[0][:, ball].reshape(-1, 2), met["time"], strict=True):
+        if not kept or np.hypot(*(place - kept[-1][0])) > shot.physics.R:
+            kept.append((place, time))
+    return np.array([place for place, _ in kept]).reshape(-1, 2), np.array([time for _, time in kept])
 
 
 class Film:
@@ -269,6 +273,8 @@ class Film:
         Balls whose path grows as they run.
     spots : iterable of int
         Balls with spots, which show how they turn.
+    faded : iterable of int
+        Balls of which a faded ghost stays wherever they met others, from then on.
     overlays
         As in ``scene``.
 
@@ -278,11 +284,15 @@ class Film:
         Of the shot [s].
     """
 
-    def __init__(self, table: TableLike, shot: Shot, *, trail: Iterable[int] = (CUE,), spots: Iterable[int] = (), **overlays: Any):
+    def __init__(
+        self, table: TableLike, shot: Shot, *, trail: Iterable[int] = (CUE,), spots: Iterable[int] = (), faded: Iterable[int] = (),
+        **overlays: Any,
+    ):  # fmt: skip
         self.duration = shot.duration
         self._table, self._shot, self._overlays = Table.of(table), shot, {"ball_radius": shot.physics.R, **overlays}
         self._paths = _timed_paths(shot, trail, shot.duration)
         self._turning = {int(ball): Turning(shot, ball) for ball in spots}
+        self._contacts = {int(ball): _timed_contacts(shot, ball) for ball in faded}
         drops = shot.events[shot.events["kind"] == EventKind.POT]
         self._gone_at = np.where(shot.on_table, np.inf, -1.0)  # -1: not on the table when the shot began
         self._gone_at[drops["i"]] = drops["time"]
@@ -309,7 +319,8 @@ class Film:
             if len(done) > 1:
                 paths[ball] = done
         turns = {ball: turning.at(t) for ball, turning in self._turning.items()}
-        return scene(self._table, r, self._gone_at > t, **{"paths": paths, "turns": turns, **self._overlays})
+        ghosts = {ball: places[times <= t] for ball, (places, times) in self._contacts.items()}
+        return scene(self._table, r, self._gone_at > t, **{"paths": paths, "turns": turns, "ghosts": ghosts, **self._overlays})
 
     def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
         """One picture every ``speed / fps`` seconds of the shot's own time, and one of its end.
@@ -338,10 +349,11 @@ def shot_scenes(
     speed: float = 1.0,
     trail: Iterable[int] = (CUE,),
     spots: Iterable[int] = (),
+    faded: Iterable[int] = (),
     **overlays: Any,
 ) -> Iterator[Scene]:
     """The film of a ``Shot``: one ``Scene`` every speed / fps seconds of the shot's own time, and one of its end.
 
     A potted ball leaves the picture when it drops. The other arguments are those of ``Film``, which gives a picture of any time.
     """
-    return Film(table, shot, trail=trail, spots=spots, **overlays).scenes(fps, speed)
+    return Film(table, shot, trail=trail, spots=spots, faded=faded, **overlays).scenes(fps, speed)

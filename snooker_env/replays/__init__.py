@@ -7,8 +7,8 @@
 2
 """
 
-from .make import replay
 from .document import Replay
+from .make import replay
 from .wrapper import RecordReplay
 
 __all__ = ["RecordReplay", "Replay", "replay"]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .._check import number, refuse
 from .._files import write_whole
-from ..render.scene import Film, Scene, contacts, scene
+from ..render.scene import Film, Scene, scene
 from ..tasks.played import Played
 from .bars import bars
 from .words import pots_of
@@ -31,11 +31,11 @@ def scenes(replay: "Replay", fps: float, speed: float) -> Iterator[Scene]:
     for stroke in replay.strokes:
         shot = stroke if not isinstance(stroke, Played) else stroke.shot
         during, after = next(told) if isinstance(stroke, Played) else (None, None)
-        shown = {"ghosts": {0: contacts(shot)}, "text": "" if during else replay.title}
-        film = Film(replay.table, shot, trail=(0, *pots_of(shot)), spots=(0,), bar=during, **shown)
+        text = "" if during else replay.title
+        film = Film(replay.table, shot, trail=(0, *pots_of(shot)), spots=(0,), faded=(0,), bar=during, text=text)
         yield from film.scenes(fps, speed)
         last = film.at(shot.duration)
-        rest = {"ball_radius": shot.physics.R, "paths": last.paths, "turns": last.turns, "bar": after, **shown}
+        rest = {"ball_radius": shot.physics.R, "paths": last.paths, "turns": last.turns, "ghosts": last.ghosts, "bar": after, "text": text}
         where, there = (shot.positions, shot.on_table) if not isinstance(stroke, Played) else (stroke.positions, stroke.on_table)
         still = scene(replay.table, where, there, **rest)
         for _ in range(round(PAUSE * fps)):

@@ -12,7 +12,7 @@
  */
 
 const GONE = 0, ROLL = 2, SLIDE = 3, FALLING = 4, BEND = 5, BALL_BALL = 0;
-/** What a stroke's events are called, by kind; those without a name are no stops for a step. */
+/** Words for events, by kind; one without is no stop for a step. */
 const EVENTS = ["touches", "meets a cushion", "meets a jaw", "is potted", "rolls", "rests", "drops", "comes back"];
 const { PI, abs, atan2, ceil, cos, floor, hypot, max, min, round, sign, sin, sqrt } = Math, TURN = 2 * PI;
 
@@ -45,7 +45,7 @@ function turned(q, x, y, z) {
 /** Step [s] of a ball's orientation where its axis turns. */
 const STEP = 1 / 120;
 
-/** One stroke of a replay: its data, and where the balls are at any time. */
+/** A stroke's data, and where the balls are at any time. */
 class Stroke {
 	constructor(data, replay, previous) {
 		Object.assign(this, data, { R: replay.R, decel: replay.spin_decel, previous, turns: new Map() });
@@ -82,7 +82,7 @@ class Stroke {
 			values.forEach((value, c) => { out[names[c]][i] = still && c > 3 ? 0 : value; });
 			if (k < 0 || !this.here[i]) return;
 			if (log[k].state === GONE) out.on[i] = 0;
-			let fell = k + 1; // the segment with which it went over the edge
+			let fell = k + 1; // with this segment it went over the edge
 			while (fell && [GONE, FALLING].includes(log[fell - 1].state)) fell--;
 			if (fell <= k) out.depth[i] = min(1, ((t - log[fell].t0) / 0.2) ** 2); // it falls 0.2 m in 0.2 s
 		});
@@ -99,7 +99,7 @@ class Stroke {
 		if (!known.length) known.push({ q: ball < before?.n ? before.turn(ball, before.duration) : turned([1, 0, 0, 0], ball + 0.4, 0.5 - ball, 2 * ball) });
 		for (let j = known.length - 1; j <= k; j++) {
 			known.push({ q: j ? this.rolled(log[j - 1], known[j], log[j].t0) : known[0].q });
-			known[j].steps = null; // so that a match does not fill the memory
+			known[j].steps = null; // or a match would fill the memory
 		}
 		return k < 0 ? known[0].q : this.rolled(log[k], known[k + 1], min(t, this.duration));
 	}
@@ -141,7 +141,7 @@ function sheet(width, height) {
 	return [canvas, canvas.getContext("2d")];
 }
 
-/** Grey unrest for cloth and wood, the same at every call. */
+/** Grain for cloth and wood, always the same. */
 function unrest(strength) {
 	const [canvas, pen] = sheet(256, 256), image = pen.createImageData(256, 256);
 	for (let k = 0, seed = 1; k < 65536; k++) {
@@ -182,7 +182,7 @@ function polyline(pen, points, width, colour) {
 	pen.stroke();
 }
 
-/** Draws a table on a canvas. What never moves is drawn once for each size. */
+/** Draws a table; what never moves, once for each size. */
 export class TableView {
 	constructor(canvas, scene) {
 		Object.assign(this, { canvas, scene, R: scene.ball_radius });
@@ -459,7 +459,7 @@ export class TableView {
 }
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
-/** Seconds shown before a stroke, of the cue, and after it. */
+/** Seconds shown before a stroke and after it. */
 const LEAD = 0.9, PAUSE = 1.4;
 /** Key, what it does, its button's icon or word (none: no button), method, argument. */
 const COMMANDS = [
@@ -474,8 +474,8 @@ const ICONS = { play: "M7 4v16l13-8z", pause: "M6 4h4v16H6zM14 4h4v16h-4z", on: 
 const STYLE = `
 .sn{position:relative;container-type:inline-size;display:flex;flex-direction:column;justify-content:center;background:var(--floor);color:var(--text);overflow:hidden;
 font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
-.sn *{box-sizing:border-box}.sn-fill{height:100%}
-.sn-stage{position:relative;min-height:0}.sn-stage canvas{position:absolute;width:100%;height:100%;touch-action:manipulation}
+.sn *{box-sizing:border-box}.sn>*{flex:none}.sn-fill{height:100%}
+.sn .sn-stage{position:relative;flex:0 1 auto;min-height:0}.sn-stage canvas{position:absolute;width:100%;height:100%;touch-action:manipulation}
 .sn-score{display:flex;background:var(--bar);border-top:3px solid var(--bar_accent);font-size:clamp(14px,1.5cqw,26px);line-height:2}
 .sn-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.sn-who{flex:1 1 20%;min-width:0;font-weight:600}.sn-now+.sn-who{flex-direction:row-reverse;text-align:right}
 .sn-who span{flex:1;overflow:hidden;text-overflow:ellipsis;white-space:nowrap}.sn-who b{background:var(--text);color:var(--bar);line-height:1.5;min-width:2.6em;text-align:center}
@@ -490,6 +490,7 @@ font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
 .sn [aria-pressed=true]{box-shadow:inset 0 -3px var(--bar_accent)}.sn svg{width:22px;fill:currentColor;vertical-align:middle}
 .sn:focus-visible,.sn :focus-visible{outline:2px solid var(--aim)}
 .sn-help{position:absolute;inset:0;margin:auto;padding:12px;background:var(--bar);border:1px solid var(--bar_edge)}.sn-help td{padding:2px 8px}
+@media (max-height:500px){.sn .sn-about{min-height:0;zoom:.6;font-size:24px}.sn-score{line-height:1.5}.sn output{width:2.2em}.sn button{padding:0 4px;min-width:40px}}
 @container (max-width:900px){.sn-score{flex-wrap:wrap}.sn-who{flex-basis:30%}.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}`;
 
 /** A new element at the end of its parent. */
@@ -585,7 +586,7 @@ export class Player {
 		this.update();
 	}
 
-	/** Switch "paths", "ghosts" or "labels", or go on to the next choice of "spin". */
+	/** Switch paths, ghosts or labels, or go on to the next choice of spin. */
 	flip(name) {
 		this.show[name] = name === "spin" ? { cue: "all", all: "off", off: "cue" }[this.show.spin] : !this.show[name];
 		this.update();
@@ -619,13 +620,13 @@ export class Player {
 		this.seek(k, sum - this.starts[k]);
 	}
 
-	/** On by a stroke, or back: first to the beginning of this one. */
+	/** On by a stroke, or back, first to the start of this one. */
 	skip(way) {
 		const k = this.k + (way < 0 && this.t > 0.5 ? 0 : way);
 		this.seek(k, k < this.strokes.length ? -LEAD : Infinity);
 	}
 
-	/** Stop at the next event (+1) or the one before (-1), over strokes' ends. */
+	/** Stop at the next event (+1) or the one before (-1). */
 	step(way) {
 		this.pause();
 		const { events, duration } = this.strokes[this.k], stops = [0, ...events.filter(event => EVENTS[event[1]]).map(event => event[0]), duration];
@@ -708,8 +709,7 @@ export class Player {
 		const { tip, view } = this, size = (tip.width = tip.height = round(50 * view.ratio)), pen = tip.getContext("2d"), R = size * 0.46, c = size / 2;
 		tip.hidden = !cue;
 		if (!cue) return;
-		const [image, half] = view.sprite(this.replay.scene.balls[0].rgb, R);
-		pen.drawImage(image, c - half, c - half);
+		disc(pen, c, c, R, css(this.replay.scene.balls[0].rgb));
 		polyline(pen, [[c - R, c], [c + R, c], [c, c], [c, c - R], [c, c + R]], 1, "#0006");
 		disc(pen, c + R * cue.side, c - R * cue.top, 0.17 * R, view.ink.bar_accent);
 	}

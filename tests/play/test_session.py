@@ -6,8 +6,8 @@ from math import pi
 
 import numpy as np
 import pytest
-from snooker_env.advice import CueStroke
 
+from snooker_env.advice import CueStroke
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, BallOn
 from snooker_env.game.ruling import AUTO, Foul
 from snooker_env.planning import Position

@@ -72,6 +72,17 @@ def test_contacts_are_where_the_cue_ball_met_others(pot):
     assert contacts(alone).shape == (0, 2)
 
 
+def test_ghosts_stay_from_the_contact_on(pot):
+    film = Film("match", pot, faded=(CUE, 1))
+    met = pot.events["time"][pot.events["kind"] == sn.EventKind.BALL_BALL][0]
+    for t, count in [(0.0, 0), (met - 1e-6, 0), (met, 1), (pot.duration, 1)]:
+        ghosts = film.at(t).ghosts
+        assert [len(ghosts[ball]) for ball in (CUE, 1)] == [count, count]
+    assert np.array_equal(ghosts[CUE], contacts(pot)) and Film("match", pot).at(pot.duration).ghosts == {}
+    end = list(shot_scenes("match", pot, faded=(CUE,)))[-1]
+    assert np.array_equal(end.ghosts[CUE], contacts(pot))
+
+
 def test_a_rolling_ball_turns_once_each_circumference():
     """It rolls a quarter of a turn along +x: what was on top is in front, what was in front is below."""
     R = BALL_RADIUS
@@ -83,6 +94,19 @@ def test_a_rolling_ball_turns_once_each_circumference():
     assert np.array_equal(turning.at(0.0), (1, 0, 0, 0)) and np.linalg.norm(turning.at(shot.duration)) == pytest.approx(1.0, abs=1e-12)
     film = Film(None, shot, spots=(CUE,))
     assert np.array_equal(film.at(t).turns[CUE], turning.at(t)) and Film(None, shot).at(t).turns == {}
+
+
+def test_a_ball_that_rolls_and_spins_turns_about_both():
+    """Against a marked point of it, carried along in tiny steps: p' = w x p."""
+    R = BALL_RADIUS
+    shot = sn.simulate([(0.0, 0.0)], [(0.5, 0.3)], [(-0.3 / R, 0.5 / R, 25.0)], None)
+    end, steps = 1.2, 60_000
+    spins = shot.at((np.arange(steps) + 0.5) * end / steps)[2][:, CUE] * end / steps
+    point = np.array([0.0, 0.0, 1.0])
+    for w in spins:
+        middle = point + np.cross(w, point) / 2
+        point = point + np.cross(w, middle)
+    assert matrix(Turning(shot, CUE).at(end)) @ (0.0, 0.0, 1.0) == pytest.approx(point, abs=2e-4)
 
 
 def test_turns_add_up():

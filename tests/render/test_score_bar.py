@@ -89,8 +89,11 @@ def test_each_thing_has_its_place():
     ]:  # fmt: skip
         left, right = where(full, pixels(ScoreBar(**{**given, **change})))
         assert low <= left <= right < high, change
-    turn = [np.flatnonzero(np.all(bar[37] == PALETTE["bar_accent"], axis=1)) for bar in (full, pixels(ScoreBar(**{**given, "striker": 1})))]
-    assert turn[0].max() < 960 < turn[1].min()
+    accents = [
+        np.flatnonzero(np.all(bar[37] == PALETTE["bar_accent"], axis=1)) for bar in (full, pixels(ScoreBar(**{**given, "striker": 1})))
+    ]
+    assert accents[0].max() < 960 < accents[1].min()  # the box of the score, and the triangle beside the name
+    assert accents[0].min() < 780 and accents[1].max() > 1140
 
 
 def test_what_is_too_long_is_cut():

@@ -48,22 +48,9 @@ ALLOWED = {
     "widget": {"_check", "replays"},
     "play": BASE | {"physics", "shot", "simulation", "game", "tasks", "planning", "advice", "render", "replays"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
-    "__init__": {
-        "geometry",
-        "physics",
-        "impacts",
-        "shot",
-        "simulation",
-        "tasks",
-        "planning",
-        "advice",
-        "envs",
-        "match",
-        "replays",
-        "_warmup",
-        "_registration",
-    },  # fmt: skip
+    "__init__": BASE | {"physics", "impacts", "shot", "simulation", "tasks", "planning", "advice", "envs", "match", "replays"},
 }
+ALLOWED["__init__"] |= {"_warmup", "_registration"}
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
     "pygame": {"render"},
