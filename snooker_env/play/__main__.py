@@ -63,6 +63,21 @@ def service_of(given: argparse.Namespace) -> Any:
     return Service(session, seats)
 
 
+def warm_up(service: Any) -> None:
+    """Have everything compiled that a stroke and a question need, so that nobody waits for it in the middle of a game."""
+    from ..advice import CueStroke
+    from . import questions
+    from .report import report
+
+    with service.asking() as session:
+        if session.frame.phase == "stroke":
+            stroke = CueStroke(speed=2.0, aim=1.0)
+            questions.scatter(session, stroke, noise="professional", samples=16, seed=0)
+            service.seats.stroke("lookahead", session)
+    with service.looking():
+        report(service)
+
+
 def _read(path: Path) -> dict[str, Any]:
     """The JSON object in a file."""
     if path.stat().st_size > MOST_FILE:
@@ -95,6 +110,7 @@ def main(argv: list[str] | None = None) -> int:
     try:
         service = service_of(given)
         server = PlayServer(service, given.port)
+        warm_up(service)
     except (ValueError, OSError, OverflowError) as error:
         print(f"snooker_env.play: {error}", file=sys.stderr)
         return 2

@@ -98,7 +98,7 @@ def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
     aims = POCKET_AIMS[pockets, :2]
     ghosts = places[balls] - 2.0 * BALL_RADIUS * _unit(aims - places[balls])
     rows = np.zeros(len(ways), np.int64)
-    skip = np.column_stack([np.full(len(ways), CUE), balls])
+    skip: Any = np.column_stack([np.full(len(ways), CUE), balls])
     barred = obstructions(at, rows, places[balls], aims, ignore=skip)
     barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, ignore=skip)
     return [_line(*way, places, ghosts[k], aims[k], barred[k], found, sigma) for k, way in enumerate(ways)]

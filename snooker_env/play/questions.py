@@ -32,7 +32,7 @@ def aim_at(session: Session, given: Any, stroke: CueStroke) -> float:
     if not session.tables.on_table[0, ball]:
         raise refuse("aim_at.pot[0]", NAMES[ball], "must be on the table")
     target = POCKET_AIMS[[pocket], :2]
-    tip = {"side": stroke.side, "top": stroke.top, "elevation": stroke.elevation}
+    tip: dict[str, Any] = {"side": stroke.side, "top": stroke.top, "elevation": stroke.elevation}
     return float(pot_aim(session.planned(), [0], [ball], target, stroke.speed, **tip)[0])
 
 

@@ -20,7 +20,7 @@ from ..tasks.noise import LEVELS
 from ..tasks.states import MOST
 from . import questions
 from .report import report, scene
-from .service import Service
+from .service import Service, StaleError
 from .session import Act, Session
 from .wishes import colour_named, place_of_request, stroke_in
 
@@ -140,7 +140,7 @@ def position_of(given: Any) -> Position:
         raise refuse("position", given, 'must be an object: {"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}')
     for name in given:
         choice("field of position", name, [n for n in names if n not in ("table", "over")])
-    points = {"points": integer("points", given.get("points", 0), 0, MOST_BREAK)}
+    points: dict[str, Any] = {"points": integer("points", given.get("points", 0), 0, MOST_BREAK)}
     if not isinstance(given.get("reds", []), list):
         raise refuse("reds", given["reds"], "must be a list of places [x, y]")
     return Position(**given | points)
@@ -217,14 +217,19 @@ def _advise(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     agent = choice("agent", given.get("agent", service.seats.agents[0]), service.seats.agents)
     n = integer("n", given.get("n", 5), 1, questions.MOST_SUGGESTIONS)
     noise, samples, seed = _errors(given, 200, "professional")
-    with service.asking() as session:
+    with service.asking(_revision(given)) as session:
         return {"suggestions": questions.suggestions(session, service.seats, agent=agent, noise=noise, n=n, samples=samples, seed=seed)}
 
 
 def _destinations(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     noise, samples, seed = _errors(given, 500, "professional")
-    with service.asking() as session:
+    with service.asking(_revision(given)) as session:
         return questions.scatter(session, _asked(session, given), noise=noise, samples=samples, seed=seed)
+
+
+def _revision(given: dict[str, Any]) -> int | None:
+    """Of the table that a question is about; None: of the one that there is."""
+    return integer("revision", given["revision"], 0, MOST) if "revision" in given else None
 
 
 def _errors(given, samples: int, noise: str) -> tuple[Any, int, int]:
@@ -257,7 +262,7 @@ def _scene(service: Service, given: dict[str, Any]) -> dict[str, Any]:
         return scene(service)
 
 
-ERRORS = ("noise", "samples", "seed")
+ERRORS = ("noise", "samples", "seed", "revision")
 GET: dict[str, Route] = {
     "scene": Route(_scene), "state": Route(_state, ("after", "wait")), "strokes": Route(_strokes, ("from",)), "replay": Route(_replay),
     "replay.html": Route(_replay_page),
@@ -283,4 +288,7 @@ def answer(service: Service, route: Route, given: dict[str, Any]) -> Any:
     for name in given:
         if name not in route.fields:
             raise refuse("field", name, f"must be one of {list(route.fields)}" if route.fields else "must be left out: there are no fields")
-    return route.handler(service, given)
+    try:
+        return route.handler(service, given)
+    except StaleError:
+        return {"stale": True}

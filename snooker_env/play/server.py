@@ -34,7 +34,7 @@ MOST_BODY = 65_536
 """Bytes of a request's head and body; a saved game has about 3,000."""
 MOST_AT_ONCE = 32
 """Connections; a browser keeps six."""
-IDLE, REQUEST = 60.0, 10.0
+IDLE, REQUEST = 20.0, 10.0
 """How long a connection may wait for its next request, and a request for its end [s]."""
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "

@@ -22,6 +22,10 @@ class BusyError(RuntimeError):
     """Too much is being computed already; to be asked again a little later."""
 
 
+class StaleError(RuntimeError):
+    """A question about a table that is no longer so."""
+
+
 class Service:
     """One game, its seats, and the thread in which agents think.
 
@@ -74,12 +78,14 @@ class Service:
             self._moved()
 
     @contextmanager
-    def asking(self) -> Iterator[Session]:
-        """A copy of the game to try strokes on; ``BusyError`` if too many ask at once."""
+    def asking(self, revision: int | None = None) -> Iterator[Session]:
+        """A copy of the game to try strokes on; ``BusyError`` if too many ask at once, ``StaleError`` if that is the revision no longer."""
         if not self._asking.acquire(timeout=10.0):
             raise BusyError("other questions are being answered")
         try:
             with self._changed:
+                if revision not in (None, self.revision):
+                    raise StaleError
                 twin = self.session.twin()
             yield twin
         finally:

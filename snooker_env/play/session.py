@@ -277,14 +277,14 @@ class Session:
         noise = saved["noise"]
         if not isinstance(noise, list) or len(noise) != 2:
             raise refuse("saved.noise", noise, "must be two names")
-        noise = [choice(f"saved.noise[{k}]", name, LEVELS) for k, name in enumerate(noise)]
+        levels: Any = [choice(f"saved.noise[{k}]", name, LEVELS) for k, name in enumerate(noise)]
         practice = truth("saved.practice", saved["practice"])
         state = saved["state"]
         if not isinstance(state, dict) or set(state) != set(STATE):
             raise refuse_what("saved.state", "something else", f"must be a dict with {list(STATE)}")
         self.tables.set_state(0, self._checked(state))
         self.practice = practice
-        self.noise[:] = noise
+        self.noise[:] = levels
         self.acts, self.at = [Act("load", self.state)], 1
 
     # inside -----------------------------------------------------------------------------------------------------------------

@@ -85,6 +85,7 @@ class Page {
   /** Always wait for the next change. */
   async watch() {
     for (;;) {
+      if (document.hidden) await new Promise(done => document.addEventListener("visibilitychange", done, { once: true })); // another page's turn
       try {
         this.take(await ask("state", undefined, this.state ? `?after=${this.state.revision}&wait=20` : ""));
       } catch (error) {

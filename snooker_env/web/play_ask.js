@@ -64,14 +64,14 @@ export class Advisor {
 
   question(wish, event, own) {
     const { state } = this.app, body = { speed: wish.speed, side: wish.side, top: wish.top, aim: wish.aim, elevation: wish.elevation, noise: by("errors").value };
+    body.revision = state.revision;
     if (state.in_hand && wish.place) body.place = wish.place;
-    else if (state.in_hand) body.place = [this.app.balls.x[0], this.app.balls.y[0]];
     this.wait.ask(body, { at: event?.timeStamp ?? performance.now(), revision: state.revision, own });
   }
 
   take(found, input) {
     const { app } = this;
-    if (!app.aiming || input.own && this.hover) return;
+    if (found.stale || !app.aiming || input.own && this.hover) return;
     found.heat = [cloud(pairs(found.ball), app.scene.extent, BALL_CLOUD), cloud(pairs(found.cue), app.scene.extent, CUE_CLOUD)];
     this.found = found;
     this.say();
@@ -100,8 +100,8 @@ export class Advisor {
     button.disabled = true;
     button.textContent = "Looking …";
     try {
-      const { suggestions } = await ask("advise", { agent: by("agent").value, noise: by("errors").value, n: 5 });
-      if (revision === app.state.revision) this.show(suggestions);
+      const { suggestions } = await ask("advise", { agent: by("agent").value, noise: by("errors").value, n: 5, revision });
+      if (suggestions && revision === app.state.revision) this.show(suggestions);
     } catch (error) {
       by("advice").replaceChildren(make("li", { className: "trouble", textContent: error.message }));
     }

@@ -17,7 +17,7 @@ from tests.playing import COVERED, EASY, STRAIGHT
 from tests.processes import ROOT
 
 
-def waited(game, until, seconds=60.0):
+def waited(game, until, seconds=240.0):
     """The state, once something holds of it."""
     end, state = time.monotonic() + seconds, game.get("state")
     while not until(state):
@@ -228,6 +228,13 @@ def test_destinations_spread_with_the_errors(game):
     assert np.allclose(unpacked(sure["cue"])[0], sure["paths"]["0"][-1], atol=1e-3)
     assert game("destinations", speed=1.5, aim=STRAIGHT, noise="club", samples=300) == loose
     assert game.get("state")["strokes"] == 0
+
+
+def test_a_question_about_a_table_that_is_gone_is_told_so(game):
+    revision = game("position", position=EASY)["revision"]
+    assert "cue" in game("destinations", speed=1.0, aim=0.0, samples=8, revision=revision)
+    game("stroke", speed=1.0, aim=STRAIGHT)
+    assert game("destinations", speed=1.0, aim=0.0, revision=revision) == {"stale": True} == game("advise", revision=revision)
 
 
 def test_undo_redo_new_save_load_and_replay(game):

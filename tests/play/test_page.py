@@ -1,0 +1,262 @@
+"""Does the page play? In a real headless Chromium, by mouse, keys and touch: visits, fouls, positions, advice, agents, undo, all sizes."""
+
+import time
+
+import pytest
+
+from tests.playing import COVERED, EASY, STRAIGHT, Line
+from tests.web.chromium import chromium  # noqa: F401
+
+AWAY = 2.0
+"""An aim [rad] along which EASY has no ball."""
+
+
+class Shown:
+    """The page of a server's game, its mouse in metres, and what went wrong in it."""
+
+    def __init__(self, browser, line: Line, **options):
+        self.line = line
+        self.page = browser.new_page(**{"viewport": {"width": 1280, "height": 720}, **options})
+        self.errors, self.asked = [], set()
+        self.page.on("console", lambda message: self.errors.append(message.text))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on("request", lambda request: self.asked.add(request.url))
+        self.page.goto(line.server.address)
+        self.until("page.state")
+
+    def __call__(self, code, argument=None):
+        return self.page.evaluate(f"argument => {{ const page = window.page ?? {{}}; return {code}; }}", argument)
+
+    def until(self, code, argument=None, seconds=120):  # what is not compiled yet takes a while
+        """Wait for it from here: the page's policy allows no code from a string."""
+        end = time.monotonic() + seconds
+        while not self(f"Boolean({code})", argument):
+            assert time.monotonic() < end, code
+            time.sleep(0.02)
+
+    def set_up(self, position, **fields):
+        """A position by the protocol, and wait until the page shows it."""
+        self.line("api/players", {"players": ["person", "person"], "noise": ["none", "none"], "practice": False})
+        self.line("api/new", {"layout": "break_off", "seed": 1})
+        status, state, _ = self.line("api/position", {"position": position, **fields})
+        assert status == 200
+        self.until("page.state.revision >= argument && page.settled === page.state.revision && page.aiming", state["revision"])
+
+    def at(self, x, y):
+        """Where a place [m] is on the screen."""
+        box, (px, py) = self.page.locator("#table").bounding_box(), self("page.view.toScreen(...argument)", [x, y])
+        return box["x"] + px, box["y"] + py
+
+    def drag(self, start, end, steps=8):
+        """The mouse from one place [m] to another, button down."""
+        self.page.mouse.move(*self.at(*start))
+        self.page.mouse.down()
+        self.page.mouse.move(*self.at(*end), steps=steps)
+        self.page.mouse.up()
+
+    def played(self, strokes):
+        """Cut the motion short and wait until so many strokes are shown."""
+        self.until("page.moving || page.state.strokes >= argument", strokes)
+        end = time.monotonic() + 120
+        while not self("page.played >= argument && !page.busy && !page.moving && page.settled === page.state.revision", strokes):
+            assert time.monotonic() < end
+            self("page.skip()")
+            time.sleep(0.02)
+
+    @property
+    def words(self):
+        return self.page.inner_text("#asked")
+
+    def close(self):
+        self.page.close()
+        assert not self.errors
+        assert not [url for url in self.asked if not url.startswith((self.line.server.address, "blob:", "data:"))]
+
+
+@pytest.fixture
+def shown(chromium, line):  # noqa: F811
+    one = Shown(chromium, line)
+    yield one
+    one.close()
+
+
+def test_a_visit_is_played_by_mouse(shown):
+    """Aim by dragging, speed by the slider, strike by the button: a red, the black, then a miss ends the visit."""
+    shown.set_up(EASY)
+    shown.drag((0.4, 1.0), (0.6, 1.4))
+    assert shown("page.aim.wish.aim") == pytest.approx(STRAIGHT, abs=0.01)
+    shown.page.locator("#speed").fill("2")
+    assert shown.page.inner_text("#speed-out") == "2.00 m/s"
+    shown.page.click("#play")
+    shown.until("page.moving")
+    assert shown.page.is_visible("#skip") and not shown.page.is_enabled("#play") and "plays: red" in shown.words
+    moved = shown("[page.moving.stroke.at(0.3).x[0], page.moving.stroke.first[0]]")
+    assert abs(moved[0] - moved[1]) > 0.05
+    shown.page.click("#skip")
+    shown.played(1)
+    assert shown.words == "Player 1's stroke: any colour is on." and "Red potted, 1" in shown.page.inner_text("#last")
+    assert shown.page.inner_text("#side-0 b") == "1" and shown("page.balls.on[1]") == 0
+    assert shown.page.is_visible("#nominate")
+    assert shown("[...document.querySelectorAll('#nominate option')].map(one => one.value)") == ["", "pink", "black"]
+    shown.page.select_option("#nominate", "pink")
+    shown("page.aim.set({aim: Math.atan2(argument[1] - page.balls.y[0], argument[0] - page.balls.x[0]), speed: 1})", EASY["pink"])
+    shown.page.keyboard.press("Enter")
+    shown.played(2)
+    state = shown("page.state")
+    assert "(pink nominated)" in state["last"] and state["scores"] == [1, 0] and state["striker"] == 1
+    assert shown.words == "Player 2's stroke: red is on." and not shown.page.is_visible("#nominate")
+    places = shown(
+        "Object.entries(page.state.positions).map(([name, [x, y]]) => {"
+        " const i = page.names.indexOf(name); return [page.balls.x[i] - x, page.balls.y[i] - y]; })"
+    )
+    assert max(abs(value) for place in places for value in place) == 0.0
+
+
+def test_keys_and_dial_change_the_stroke(shown):
+    shown.set_up(EASY)
+    shown("page.aim.set({aim: 1, speed: 2, side: 0, top: 0, elevation: 0})")
+    for key in ("ArrowLeft", "Shift+ArrowLeft", "ArrowUp", "Shift+ArrowUp", "w", "w", "d", "e"):
+        shown.page.keyboard.press(key)
+    wish = shown("page.aim.wish")
+    assert wish["aim"] == pytest.approx(1 + 1.1 * 0.017453293, abs=1e-6) and wish["speed"] == pytest.approx(2.6)
+    assert (wish["side"], wish["top"]) == pytest.approx((0.05, 0.1)) and wish["elevation"] == pytest.approx(0.017453293)
+    box = shown.page.locator("#dial").bounding_box()
+    shown.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    shown.page.mouse.down()
+    shown.page.mouse.move(box["x"] - 200, box["y"] + box["height"] / 2, steps=3)
+    shown.page.mouse.up()
+    assert shown("[page.aim.wish.side, page.aim.wish.top]") == pytest.approx([-0.5, 0.0], abs=1e-9)
+    assert shown.page.inner_text("#tip-words") == "left 0.50"
+    shown.page.keyboard.press("c")
+    assert shown("[page.aim.wish.side, page.aim.wish.top]") == [0, 0]
+    shown.page.mouse.move(*shown.at(0.0, 0.0))
+    before = shown("page.aim.wish.aim")
+    shown.page.mouse.wheel(0, -100)
+    assert shown("page.aim.wish.aim") - before == pytest.approx(0.05 * 0.017453293, abs=1e-9)
+
+
+def test_after_a_foul_the_choices_are_shown(shown):
+    shown.set_up(COVERED)
+    shown("page.aim.set({aim: 1.5708, speed: 1})")
+    shown.page.click("#play")
+    shown.played(1)
+    assert shown.words == "Foul and a miss by Player 1: Player 2 chooses."
+    assert shown("[...document.querySelectorAll('#choices button')].map(b => b.dataset.choice)") == ["play", "play_again", "replace"]
+    assert shown.page.is_visible("#choices") and not shown.page.is_enabled("#play")
+    shown.page.click("#choices button[data-choice=replace]")
+    shown.until("page.state.phase === 'stroke' && page.settled === page.state.revision")
+    assert not shown.page.is_visible("#choices") and shown("[page.balls.x[0], page.balls.y[0]]") == COVERED["cue"]
+    assert shown("page.state.striker") == 0
+    shown.page.click("#undo")
+    shown.until("page.state.phase === 'choice'")
+    assert shown.page.is_visible("#choices")
+    shown.page.click("#redo")
+    shown.until("page.state.phase === 'stroke'")
+
+
+def test_a_ball_is_dragged_in_set_up_and_a_wrong_place_is_told_beside_it(shown):
+    shown.set_up(EASY)
+    shown.page.click("#set")
+    shown.drag(EASY["reds"][1], (0.02, 0.90), steps=4)  # onto the pink
+    shown.until("!document.getElementById('bubble').hidden")
+    assert "overlaps" in shown.page.inner_text("#bubble") and not shown.page.is_enabled("#set-done")
+    shown.drag((0.02, 0.90), (-0.3, 0.4))
+    shown.until("document.getElementById('bubble').hidden && !document.getElementById('set-done').disabled")
+    shown.page.select_option("#set-striker", "1")
+    shown.page.locator("#set-score-0").fill("33")
+    shown.drag(EASY["black"], (1.3, 1.0))  # off the table
+    assert shown.page.locator("#tray button[aria-label=black]").count() == 1
+    shown.page.locator("#tray button[aria-label=blue]").click()
+    shown.page.mouse.click(*shown.at(0.3, -0.3))
+    shown.until("!document.getElementById('set-done').disabled && page.setup.balls.on[19]")
+    shown.page.click("#set-done")
+    shown.until("page.state.striker === 1 && !page.setup.open && page.settled === page.state.revision")
+    state = shown("page.state")
+    places = state["positions"]
+    assert state["scores"] == [33, 0] and "black" not in places and places["blue"] == pytest.approx([0.3, -0.3], abs=0.003)
+    assert places["red 2"] == pytest.approx([-0.3, 0.4], abs=0.003) and places["red 1"] == EASY["reds"][0]
+
+
+def test_a_cue_ball_in_hand_is_dragged_within_the_d(shown):
+    shown.set_up({"reds": [[0.6, 1.4]], "black": [0.0, 1.4605], "in_hand": True})
+    cue = shown("[page.balls.x[0], page.balls.y[0]]")
+    shown.drag(cue, (0.1, -1.2))
+    shown.until("Math.hypot(page.state.positions.cue[0] - 0.1, page.state.positions.cue[1] + 1.2) < 0.004")
+    shown.drag(shown("[page.balls.x[0], page.balls.y[0]]"), (0.0, 0.5))
+    shown.until("Math.abs(page.state.positions.cue[1] + 1.0475) < 1e-9")
+    shown("page.aim.set({aim: -1.5708, speed: 0.5})")
+    shown.page.keyboard.press("Enter")
+    shown.played(1)
+    assert not shown("page.state.in_hand")
+
+
+def test_advice_is_shown_drawn_and_taken(shown):
+    shown.set_up(EASY)
+    shown.page.click("#advise")
+    shown.until("document.querySelectorAll('#advice button').length")
+    assert "points expected" in shown.page.inner_text("#advice li:first-child")
+    shown.page.hover("#advice li:first-child button")
+    shown.until("page.advisor.hover && page.advisor.found && page.advisor.times.length")
+    heat = shown("page.advisor.overlay().heat.map(one => [one.nx * one.ny, one.values.length, one.values.reduce((a, b) => a + b, 0)])")
+    assert len(heat) == 2 and heat[0][0] == heat[0][1] and heat[1][2] == pytest.approx(500, rel=0.02)
+    best = shown("page.advisor.hover")
+    shown.page.click("#advice li:first-child button")
+    assert shown("page.aim.wish.aim") == best["aim"]
+    shown.page.keyboard.press("Enter")
+    shown.played(1)
+    assert [name for name, _ in best["pots"]] == [f"red {ball}" for ball in shown("page.last.pots")]
+    assert shown("document.querySelectorAll('#advice button').length") == 0  # it was about another table
+
+
+def test_the_clouds_follow_the_aim(shown):
+    shown.set_up(EASY)
+    shown.until("page.advisor.found")
+    shown("page.aim.set({aim: argument, speed: 2})", STRAIGHT)
+    shown.until("page.advisor.found && page.advisor.found.potted > 0.5")
+    assert "red: potted" in shown.page.inner_text("#odds")
+    shown("page.aim.set({aim: argument})", AWAY)
+    shown.until("page.advisor.found && page.advisor.found.first === null")
+    assert "strikes no ball" in shown.page.inner_text("#odds")
+    shown.page.uncheck("#map")
+    assert shown("page.advisor.found") is None and shown.page.inner_text("#odds") == ""
+
+
+def test_an_agent_plays_and_its_strokes_are_shown(shown):
+    shown.set_up(EASY)
+    shown.page.click("#game details summary")
+    shown.page.select_option("#who-1", "ghost_ball")
+    shown.until("page.state.players[1] === 'ghost_ball' && page.state.noise[1] === 'professional'")
+    assert shown.words == "Your stroke: red is on."
+    shown("page.aim.set({aim: argument, speed: 0.5})", AWAY)
+    shown.page.click("#play")
+    shown.played(1)
+    shown.until("page.state.strokes >= 2 && !page.state.thinking")
+    shown.played(shown("page.state.strokes"))
+    assert "ghost_ball" in shown.page.inner_text("#last")
+    shown.page.click("#undo")
+    shown.until("page.state.strokes === 0 && page.settled === page.state.revision")
+    assert shown.words == "Your stroke: red is on." and shown("page.balls.x[0]") == EASY["cue"][0]
+
+
+def test_a_program_plays_and_the_page_shows_it(shown):
+    shown.set_up(EASY)
+    assert shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})[0] == 200
+    shown.until("page.moving")
+    shown.played(1)
+    assert shown("page.state.scores") == [1, 0] and shown("page.balls.on[1]") == 0
+
+
+@pytest.mark.parametrize("size", [(390, 844), (844, 390), (1280, 720), (1920, 1080)])
+def test_it_fits_every_screen_and_can_be_touched(chromium, line, size):  # noqa: F811
+    shown = Shown(chromium, line, viewport={"width": size[0], "height": size[1]}, has_touch=True, device_scale_factor=1)
+    shown.set_up(EASY)
+    canvas = shown.page.locator("#table").bounding_box()
+    assert canvas["width"] >= 0.6 * size[0] and canvas["height"] >= 0.2 * size[1]
+    assert shown("document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight")
+    shown.page.touchscreen.tap(*shown.at(0.0, 0.89225))
+    assert shown("page.aim.wish.aim") == pytest.approx(-2.738, abs=0.02)
+    seen = "[...document.querySelectorAll('button, select, input, canvas')].filter(one => one.offsetParent)"
+    assert shown(f"{seen}.filter(one => one.type !== 'checkbox' && one.getBoundingClientRect().height < 28).map(one => one.id)") == []
+    named = "one.textContent.trim() || one.getAttribute('aria-label') || one.title || one.labels?.[0]?.textContent.trim()"
+    assert shown(f"{seen}.filter(one => !({named})).map(one => one.id)") == []
+    shown.close()
