@@ -16,20 +16,21 @@ from snooker_env.tasks import LEVELS, Noise
 from ._common.command import Command, at_least, run, save_figure, save_json
 
 SHOT, COMPARE, FAN, DENSITY = FILES = ("diagram_shot.png", "diagram_compare.png", "diagram_fan.png", "diagram_density.png")
-POSITION = sn.Position(
+PLACES = dict(
     cue=(0.30, 0.62), reds=[(0.52, 1.30), (-0.34, 1.12), (-0.20, 1.32), (-0.30, 1.58), (-0.52, 0.74), (-0.12, 0.55)],
     yellow=(0.292, -1.0475), green=(-0.292, -1.0475), brown=(0.0, -1.0475), blue=(0.0, 0.0), pink=(0.0, 0.89225), black=(0.0, 1.4605),
 )  # fmt: skip
+"""What ``Position`` is made of; made late, since its checks compile."""
 BALL, POCKET, SPEED = 1, 3, 3.0
 PLAYED, OTHER = (0.30, 0.30), (-0.35, 0.0)
 """Top and side of the stroke, and of another way to pot the ball."""
-TABLE, PHYSICS = sn.Table.preset("match"), sn.Physics.preset("match")
+TABLE, PHYSICS = "match", sn.Physics.preset("match")
 
 
 def option(top, side):
     """The stroke that pots the ball with this top and side, solved as ``fan`` does."""
-    places, there, _ = POSITION.arrays()
-    return fan_options(places, there, BALL, POCKET, SPEED, [top], [side], 0.0, None, TABLE, PHYSICS)[0]
+    places, there, _ = sn.Position(**PLACES).arrays()
+    return fan_options(places, there, BALL, POCKET, SPEED, [top], [side], 0.0, None, sn.Table.preset(TABLE), PHYSICS)[0]
 
 
 def stops(stroke, noise, n, seed):
@@ -38,7 +39,7 @@ def stops(stroke, noise, n, seed):
     speed = SPEED + rng.normal(size=n) * np.hypot(noise.speed_abs, noise.speed_rel * SPEED)
     tips = np.array([stroke.side, stroke.top]) + rng.normal(size=(n, 2)) * noise.offset_mm / 1e3 / PHYSICS.R
     aim = stroke.aim + rng.normal(size=n) * np.radians(noise.aim_deg)
-    places, there, _ = POSITION.arrays()
+    places, there, _ = sn.Position(**PLACES).arrays()
     v, w = np.zeros((n, len(places), 2)), np.zeros((n, len(places), 3))
     for k in range(n):
         struck = sn.strike(max(0.0, speed[k]), aim[k], *tips[k], physics=PHYSICS)
@@ -66,7 +67,7 @@ def main():
         drawn = {
             SHOT: played.shot.plot(title="A red, and on to the blue"),
             COMPARE: compare([played.shot, other.shot], ["A: follow with right side", "B: screw"])[0],
-            FAN: fan(POSITION, BALL, POCKET, speed=SPEED, table=TABLE, physics=PHYSICS, title="One pot, fifteen tips"),
+            FAN: fan(sn.Position(**PLACES), BALL, POCKET, speed=SPEED, table=TABLE, physics=PHYSICS, title="One pot, fifteen tips"),
             DENSITY: density(points, played.shot.plot(speeds=False, title=said)),
         }
         for name, ax in drawn.items():

@@ -25,7 +25,7 @@ def warmup() -> None:
     from .game.referee import Situation, Stroke, judge
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
-    from .planning import Planner, Positions, clear_paths, obstructions
+    from .planning import Planner, Positions, clear_paths, obstructions, prospects_of
     from .planning import pots as direct_pots
     from .tasks.box_actions import Actions, line
 
@@ -63,5 +63,6 @@ def warmup() -> None:
         planner.as_actions(at, [0], [0])
         planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
         obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
+        prospects_of(at, 1e-3)
         for ask in (direct_pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):
             ask(at)

@@ -1,6 +1,6 @@
 """What comes of a stroke under errors? Chances, points expected and stops of strokes that all meet the same noise samples."""
 
-from math import sqrt
+from math import hypot, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -77,8 +77,8 @@ def looked_at(practice: Practice, at: Positions, strokes: list[CueStroke]) -> tu
 def _looked(practice: Practice, starts: Positions, look: Stops, k: int, stroke: CueStroke, hidden: bool) -> Looked:
     """What stroke k of a look without errors does; ``hidden``: no straight path leads to a ball on."""
     first, pocket, how = int(look.first[k]), -1, ""
-    ball, cue = first, starts.positions[k, CUE]
-    to = starts.positions[k, max(0, first)] - cue
+    ball, (x, y) = first, starts.positions[k, CUE].tolist()
+    dx, dy = (starts.positions[k, max(0, first)] - (x, y)).tolist()
     down = [ball for ball in np.flatnonzero(look.potted[k] >= 0).tolist() if ball != CUE]
     if look.points[k] > 0 and down:
         kind, ball = "pot", first if first in down else down[0]
@@ -86,10 +86,10 @@ def _looked(practice: Practice, starts: Positions, look: Stops, k: int, stroke: 
     elif look.penalty[k]:
         kind = "in-off" if look.potted[k, CUE] >= 0 else "foul"
     elif hidden:
-        kind, how = "escape", cushion_words(*cue.tolist(), stroke.aim) if stroke.elevation < RAISED else ""
+        kind, how = "escape", cushion_words(x, y, stroke.aim) if stroke.elevation < RAISED else ""
     else:
-        kind, how = "safety", contact_words(*to.tolist(), stroke.aim)
-    distance = None if first < 0 else max(0.0, float(np.hypot(*to)) - 2.0 * BALL_RADIUS)
+        kind, how = "safety", contact_words(dx, dy, stroke.aim)
+    distance = None if first < 0 else max(0.0, hypot(dx, dy) - 2.0 * BALL_RADIUS)
     words = f"{what_words(kind, ball, pocket, first, how)}, {stroke_words(stroke, distance, practice.options.rules.physics)}"
     return Looked(kind, ball, pocket, first, words)
 

@@ -31,7 +31,7 @@ SURE = (1e4, 1e-3, 0.0, 0.0)
 """The same for a player without execution errors: all that is left follows."""
 
 
-@entry
+@entry(what="the value of positions", seconds=1)
 def _prospects(positions, on_table, ball_on, spread, constants, values, chances):
     """For n tables: ``values`` (n,) of the positions, by the rule of thumb, and ``chances`` (n, most) to make each of the widest pots.
 

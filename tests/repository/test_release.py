@@ -29,10 +29,11 @@ def built(tmp_path_factory):
 
 def test_the_wheel_says_who_may_use_it(built):
     told = built.metadata
-    assert told["License-Expression"] == "MIT" and told.get_all("License-File") == ["LICENSE"]
+    assert told["License-Expression"] == "MIT" and told.get_all("License-File") == ["LICENSE", "snooker_env/render/fonts/OFL.txt"]
     assert told["Author"] == "the snooker_env authors" and told["Version"] == sn.__version__
     text = built.read_text("licenses/LICENSE")
     assert text == (ROOT / "LICENSE").read_text()
+    assert "SIL OPEN FONT LICENSE" in built.read_text("licenses/snooker_env/render/fonts/OFL.txt").upper()
     assert text.startswith("MIT License\n") and "the snooker_env authors" in text
 
 
