@@ -90,14 +90,11 @@ def main():
     finally:
         server.terminate()
         server.wait()
-    print(
-        f"From an input to the picture of where the balls would stop, 500 strokes each, {options.width} x {options.height} pixels [ms]:\n"
-    )
+    print(f"From an input to the picture of where the balls would stop, 500 strokes each, {options.width} x {options.height} pixels:\n")
     for name, row in figures.items():
         if isinstance(row, dict):
-            print(
-                f"{name:<14} median {row['median_ms']:5.0f}   95 % {row['95_ms']:5.0f}   most {row['most_ms']:5.0f}   pictures {row['pictures']}"
-            )
+            spread = f"median {row['median_ms']:4.0f} ms   95 % {row['95_ms']:4.0f} ms   most {row['most_ms']:4.0f} ms"
+            print(f"  {name:<14} {spread}   {row['pictures']} pictures of {options.inputs}")
     print(f"\n{figures['machine']}")
     save_json(options.json, figures)
 
