@@ -303,6 +303,7 @@ class Page {
     }
     by("go").hidden = busy || setup || !state.paused;
     by("play").disabled = !mine;
+    if (!mine) by("odds").textContent = "";
     by("advise").disabled = !mine;
     by("undo").disabled = !state.undo;
     by("redo").disabled = !state.redo;
