@@ -1,7 +1,7 @@
 """What does a simulated shot tell? ``Shot`` and ``ShotBatch``: where the balls came to rest, what happened, and every moment between."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +11,6 @@ from ._types import Bools, Floats, Ints, Real, Vector
 from .physics import trajectory
 from .physics.parameters import Physics
 from .physics.table import Table
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
 """One logged event; ``kind`` is an ``EventKind``."""
@@ -112,7 +109,7 @@ class Shot:
             out[2][times >= self.duration] = 0.0  # rounding may leave 1e-14 of a spin at the very time at which it ends
         return (out[0][0], out[1][0], out[2][0]) if single else out
 
-    def plot(self, ax: "Axes | None" = None, **options: Any) -> "Axes":
+    def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw the shot with matplotlib.
 
         Parameters

@@ -128,9 +128,9 @@ class Replay:
         size : (int, int)
             Width and height [pixels].
 
-        Yields
-        ------
-        uint8 (height, width, 3)
+        Returns
+        -------
+        iterator of uint8 (height, width, 3)
             A fresh array each.
         """
         from .film import frames

@@ -54,7 +54,7 @@ ALLOWED["__init__"] |= {"_warmup", "_registration"}
 OUTSIDE = {
     "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
     "pygame": {"render"},
-    "matplotlib": {"render", "shot"},
+    "matplotlib": {"render"},
     "pettingzoo": {"envs"},
     "imageio_ffmpeg": {"replays"},
     "anywidget": {"widget"},
