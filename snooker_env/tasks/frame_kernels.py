@@ -114,7 +114,7 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
             p, on, ball_on, row[FREE_BALL], lead_of(row, row[STRIKER]), seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN],
             0, nominated[k], 0, jaws, BALL_RADIUS,
         )  # fmt: skip
-        write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], result, seen)
+        write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result, seen)
         after_stroke(row, result, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], miss)
         row[STROKES] += 1
         if row[PHASE] == LOT:  # the winner of the lot is taken to play first

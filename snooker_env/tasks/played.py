@@ -43,7 +43,7 @@ class Played:
     scores : tuple of int
         Of a frame, after the stroke; of a visit its points so far.
     break_points : int
-        Points of the break that goes on, 0 if it has ended; of a visit its points so far.
+        Points of the break with this stroke, 0 if it scored nothing; of a visit its points so far.
     in_hand : bool
         Whether the cue ball is in hand next.
     choice : bool

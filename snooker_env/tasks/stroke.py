@@ -36,9 +36,9 @@ AT_ONCE = 1e-9
 STRIKE_COLUMNS = 11
 
 # Columns of what the referee sees of a stroke: masks of balls, then the paths before it (only where misses are called); and of what he
-# says of it: who played, on which ball (a ``BallOn``), with a free ball or not, what it scored, cost, and the fouls.
-(FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, PLAYER, WAS_ON, FREE, SCORED, COST, FOULS) = range(12)
-SEEN_COLUMNS = 12
+# says of it: who played, on which ball (a ``BallOn``), with a free ball or not, his break with it, what it scored, cost, the fouls.
+(FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS) = range(13)
+SEEN_COLUMNS = 13
 
 _BALL_BALL = int(EventKind.BALL_BALL)
 _WHY = {
@@ -135,10 +135,10 @@ def see(j, event_time, event_what, n_events, potted, positions, on_table, speed,
 
 
 @kernel
-def write_ruling(j, player, ball_on, free_ball, result, seen):
-    """Write down what the referee says of shot j: ``result`` is his ``Ruling``."""
+def write_ruling(j, player, ball_on, free_ball, before, result, seen):
+    """Write down what the referee says of shot j: ``result`` is his ``Ruling``; ``before``: points of the break until then."""
     seen[j, PLAYER], seen[j, WAS_ON], seen[j, FREE] = player, ball_on, free_ball
-    seen[j, SCORED], seen[j, COST], seen[j, FOULS] = result.points, result.penalty, result.fouls
+    seen[j, BREAK], seen[j, SCORED], seen[j, COST], seen[j, FOULS] = before + result.points, result.points, result.penalty, result.fouls
 
 
 class ShotBuffers:

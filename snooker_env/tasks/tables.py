@@ -202,11 +202,12 @@ class Tables(ABC):
 
     def played(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
         """The stroke that table k has just seen, shot j of the buffers, and the table as it left it."""
-        game = self.game[k]
+        game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
+        if seen[stroke.SCORED]:
+            standing["break_points"] = seen[stroke.BREAK]  # with the stroke that ended the frame, too
         return Played(
             shot=buffers.shot(j, self.rules), cue=struck(buffers, j), positions=self.positions[k].copy(), on_table=self.on_table[k].copy(),
-            next_on=BallOn(game[BALL_ON]), in_hand=bool(game[IN_HAND]), over=bool(game[OVER]), **judged(buffers.seen[j].tolist()),
-            **self.standing(k),
+            next_on=BallOn(game[BALL_ON]), in_hand=bool(game[IN_HAND]), over=bool(game[OVER]), **judged(seen), **standing,
         )  # fmt: skip
 
     def on(self, k: int) -> int:

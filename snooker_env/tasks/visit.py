@@ -40,7 +40,7 @@ def _conclude(which, positions, on_table, game, r, potted, status, duration, eve
             p[i, 0], p[i, 1] = r[j, i, 0], r[j, i, 1]
         ball_on = state[BALL_ON]
         ruling = settle_visit(p, on, ball_on, state[POINTS], seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN], BALL_RADIUS)
-        write_ruling(j, 0, ball_on, False, ruling, seen)
+        write_ruling(j, 0, ball_on, False, state[POINTS], ruling, seen)
         state[BALL_ON], state[IN_HAND] = ruling.ball_on, ruling.in_hand
         state[POINTS] += ruling.points
         state[STEPS] += 1
