@@ -1,5 +1,7 @@
 """Do score bars and the referee's words follow the frame? Whole frames of chance, against the ``Frame`` after each stroke."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -33,7 +35,7 @@ def test_scores_follow_the_frame(frame):
     for count, state in seen:
         if count:
             assert made[count - 1][1].scores == state.scores
-    for (_, after), (before, _) in zip(made, made[1:], strict=False):
+    for (_, after), (before, _) in pairwise(made):
         assert before.scores == after.scores
     assert {during.striker for during, _ in made} <= {0, 1}
 
