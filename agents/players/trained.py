@@ -7,7 +7,6 @@ sb3-contrib is a file whose pickles run when it is loaded: ``load_other``, with 
 import inspect
 
 import numpy as np
-import torch
 from gymnasium import spaces
 
 from snooker_env import SnookerVectorEnv
@@ -48,6 +47,8 @@ class ModelPlayer:
         """The choices of a masked policy, the likeliest first, with their probabilities; of any other its own action, without a score."""
         if not self._masked or not isinstance(tables.single_action_space, spaces.Discrete):
             return [(action[None], None) for action in self.act(tables, observations, going)[going]]
+        import torch  # here: whoever plays no model waits for none
+
         policy, masks = self.model.policy, self._view.masks(tables)[going]
         seen, _ = policy.obs_to_tensor(self._view(tables, observations[going], going))
         with torch.no_grad():
