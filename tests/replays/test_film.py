@@ -46,7 +46,7 @@ def test_every_ball_keeps_its_colour(replay, tmp_path, suffix):
     for place in replay.shots[0].at(0.0)[0]:
         x, y = np.rint(view(place)).astype(int)
         seen, drawn = (a[y - 1 : y + 2, x - 1 : x + 2, :3].astype(int).mean(axis=(0, 1)) for a in (film, first))
-        assert np.abs(seen - drawn).max() < 30, (place, seen, drawn)
+        assert np.abs(seen - drawn).max() < 60, (place, seen, drawn)  # a video halves the resolution of colours
     assert [p.name for p in tmp_path.iterdir()] == [file.name]
 
 
