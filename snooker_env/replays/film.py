@@ -16,6 +16,7 @@ from ..render.scene import Film, Scene, ScoreBar, scene
 from ..simulation import Shot
 from ..tasks.played import Played
 from .bars import bars
+from .video_colours import to_video
 from .words import pots_of
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ PAUSE = 0.8
 """How long the table is shown after each stroke [s of the film]."""
 UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 SIZE = (1920, 1080)
+HD = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
+"""What the numbers of ``to_video`` mean."""
 USUAL = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 15.0)}
 """Size [pixels] and pictures a second of a film unless told: a GIF that fits into a page."""
 
@@ -85,16 +88,32 @@ def _rate(field: str, value: Any) -> float:
 
 def _encode(pictures: Iterator[NDArray[np.uint8]], path: Path, fps: float, size: tuple[int, int]) -> None:
     if path.suffix.lower() != ".gif":
-        _pipe(pictures, size, fps, ["-c:v", "libx264", "-preset", "superfast", "-crf", "18", "-pix_fmt", "yuv420p"], path)
+        _pipe(
+            _in_video_colours(pictures),
+            "yuv420p",
+            size,
+            fps,
+            ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "20", "-threads", "1", *HD],
+            path,
+        )
         return
     first = next(pictures)
     colours = path.with_name(f"{path.stem}.colours.png")
     try:
-        _pipe(iter([_swatches(first)]), (256, 256), 1.0, ["-vf", "palettegen=stats_mode=single"], colours)
+        _pipe(iter([_swatches(first)]), "rgb24", (256, 256), 1.0, ["-vf", "palettegen=stats_mode=single"], colours)
         chosen = ["-i", str(colours), "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]
-        _pipe(chain([first], pictures), size, fps, chosen, path)
+        _pipe(chain([first], pictures), "rgb24", size, fps, chosen, path)
     finally:
         colours.unlink(missing_ok=True)
+
+
+def _in_video_colours(pictures: Iterator[NDArray[np.uint8]]) -> Iterator[NDArray[np.uint8]]:
+    """``to_video`` of each; of a picture that comes again only once."""
+    last, made = None, np.empty(0, np.uint8)
+    for picture in pictures:
+        if picture is not last:
+            last, made = picture, to_video(picture)
+        yield made
 
 
 def _swatches(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -107,13 +126,13 @@ def _swatches(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return ((shades << 2) | 2).astype(np.uint8).reshape(256, 256, 3)
 
 
-def _pipe(pictures: Iterator[NDArray[np.uint8]], size: tuple[int, int], fps: float, wanted: list[str], path: Path) -> None:
+def _pipe(pictures: Iterator[NDArray[np.uint8]], kind: str, size: tuple[int, int], fps: float, wanted: list[str], path: Path) -> None:
     """Send pictures through ffmpeg into a file."""
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError as error:
         raise ImportError('films need ffmpeg; install it, in a clone of snooker_env, with: pip install -e ".[render]"') from error
-    given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
+    given = ["-f", "rawvideo", "-pix_fmt", kind, "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
     command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *given, *wanted, str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
         assert encoder.stdin is not None and encoder.stderr is not None
