@@ -16,16 +16,11 @@ const GONE = 0, ROLL = 2, SLIDE = 3, FALLING = 4, BEND = 5, BALL_BALL = 0;
 const EVENTS = ["touches", "meets a cushion", "meets a jaw", "is potted", "rolls", "rests", "drops", "comes back"];
 const { PI, abs, atan2, ceil, cos, floor, hypot, max, min, round, sign, sin, sqrt } = Math, TURN = 2 * PI;
 
-/** Colours of things that a scene does not name. */
-const PALETTE = {
-	floor: [17, 18, 21], cloth: [36, 148, 76], cloth_edge: [15, 78, 40], line: [214, 226, 190], cushion: [30, 124, 64], nose: [86, 186, 118],
-	wood: [104, 52, 26], wood_edge: [52, 25, 12], leather: [70, 46, 32], leather_edge: [112, 78, 54], hole: [5, 5, 6], aim: [255, 240, 150],
-	path_edge: [8, 30, 16], shadow: [0, 14, 5], lamp: [255, 252, 240], bar: [12, 15, 24], bar_edge: [58, 66, 88], bar_accent: [196, 32, 48],
-	text: [240, 240, 236], text_quiet: [164, 170, 184],
-};
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
 
 const css = (rgb, alpha = 1) => (rgb.map ? `rgba(${rgb.map(round)},${alpha})` : rgb);
+/** A colour, darker or lighter. */
+const lit = (rgb, light) => rgb.map(value => min(255, value * light));
 /** A colour on the way from one to another. */
 const mix = (a, b, share) => a.map((value, k) => value + (b[k] - value) * share);
 
@@ -159,11 +154,11 @@ function fill(pen, filling, ...stops) {
 	pen.fill();
 }
 
-/** The same with a soft shadow around it. */
+/** The same, or a line, with a soft shadow around it. */
 function cast(pen, colour, blur, ...filling) {
 	pen.shadowColor = colour;
 	pen.shadowBlur = blur;
-	fill(pen, ...filling);
+	if (filling.length) fill(pen, ...filling); else pen.stroke();
 	pen.shadowColor = "#0000";
 }
 
@@ -187,9 +182,11 @@ export class TableView {
 	constructor(canvas, scene) {
 		Object.assign(this, { canvas, scene, R: scene.ball_radius });
 		this.pen = canvas.getContext("2d", { alpha: false });
-		this.colours = { ...PALETTE, ...scene.palette };
+		this.colours = scene.palette;
 		this.ink = Object.fromEntries(Object.entries(this.colours).map(([name, rgb]) => [name, css(rgb)]));
-		this.lamp = css(this.colours.lamp, 0.9);
+		const [lamp, pen] = sheet(32, 32), glow = css(this.colours.lamp, 0);
+		disc(pen, 16, 16, 16, pen.createRadialGradient(16, 16, 0, 16, 16, 16), [0, this.ink.lamp], [0.3, css(this.colours.lamp, 0.8)], [0.6, css(this.colours.lamp, 0.2)], [1, glow]);
+		this.lamp = lamp;
 		this.resize();
 	}
 
@@ -239,38 +236,29 @@ export class TableView {
 		this.metres(pen);
 
 		if (framed) {
-			const { wood, wood_edge: edge, lamp } = colours, corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+			const { wood } = colours, corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
 			const at = ([x, y], out) => [x === x0 ? x - out : x + out, y === y0 ? y - out : y + out];
 			start(rail, 0.085);
 			cast(pen, "#000c", 0.04 * scale, ink.wood_edge);
-			start(rail - 0.004, 0.08);
+			start(rail - 0.003, 0.082);
 			pen.save();
 			pen.clip();
-			corners.forEach((one, k) => { // four boards, mitred
+			corners.forEach((one, k) => { // four boards, mitred; each rounded at its outer edge, and with a groove along its inner one
 				const next = corners[(k + 1) % 4], [ix, iy] = at(one, bed), [ox, oy] = at(one, rail), end = k % 2 === 0;
-				const board = pen.createLinearGradient(ix, iy, end ? ix : ox, end ? oy : iy);
 				polyline(pen, [at(one, 0), at(one, rail), at(next, rail), at(next, 0)]);
-				fill(pen, board, ...[edge, mix(wood, edge, 0.3), mix(wood, lamp, 0.07), wood, mix(wood, edge, 0.1), mix(wood, edge, 0.3), edge].map((rgb, m) => [m / 6, css(rgb)]));
-				texture(0.1, 24, 1.3, end);
+				fill(pen, pen.createLinearGradient(ix, iy, end ? ix : ox, end ? oy : iy), ...[[0, 0.5], [0.07, 1.1], [0.12, 1.4], [0.16, 1.1], [0.7, 1.2], [0.8, 1.6], [0.9, 1.2], [1, 0.4]].map(([part, light]) => [part, css(lit(wood, light))]));
+				texture(0.07, 30, 1.6, end);
 			});
 			pen.restore();
 		}
-		const hole = ([x, y, u, v, half], rim) => { // from a pocket's mouth to its back
-			const turn = atan2(v - y, u - x), ex = cos(turn), ey = sin(turn), wide = half + rim;
-			polyline(pen, [[x - ey * wide, y + ex * wide]]);
+		const pocket = ([x, y, u, v, half], rim, from = hypot(u - x, v - y)) => { // from its back so far to its mouth
+			const turn = atan2(v - y, u - x), ex = cos(turn), ey = sin(turn), wide = half + rim, bx = u - ex * from, by = v - ey * from;
+			polyline(pen, [[bx - ey * wide, by + ex * wide]]);
 			pen.arc(u, v, wide, turn + PI / 2, turn - PI / 2, true);
-			pen.lineTo(x + ey * wide, y - ex * wide);
-			return pen.createLinearGradient(u, v, u + ex * half, v + ey * half);
+			pen.lineTo(bx + ey * wide, by - ex * wide);
+			return pen.createRadialGradient(u, v, 0, u, v, half);
 		};
-		for (const throat of scene.throats) {
-			hole(throat, 0.017);
-			cast(pen, "#000b", 0.012 * scale, ink.leather);
-			hole(throat, 0.011);
-			pen.strokeStyle = ink.leather_edge;
-			pen.lineWidth = 0.005;
-			pen.stroke();
-			fill(pen, hole(throat, 0), [0.2, ink.hole], [1, css(mix(colours.hole, colours.leather, 0.8))]); // its leather, in the dark
-		}
+		for (const throat of scene.throats) fill(pen, pocket(throat, 0), [0.6, ink.hole], [1, css(lit(colours.leather, 0.6))]); // its inside, in the dark
 
 		pen.save();
 		start(bed);
@@ -282,8 +270,8 @@ export class TableView {
 		pen.clip("evenodd");
 		start(bed);
 		fill(pen, ink.cloth);
-		texture(0.09, 1.5, 0.8);
-		texture(0.04, 11, 2);
+		texture(0.025, 3, 1);
+		texture(0.018, 40, 5);
 		const chalk = css(colours.line, 0.9);
 		for (const points of lines ? [lines.baulk, lines.d] : []) polyline(pen, points, max(0.0035, 1.2 * px), chalk);
 		for (const [x, y] of lines?.spots ?? []) disc(pen, x, y, max(0.006, 1.4 * px), chalk);
@@ -294,13 +282,30 @@ export class TableView {
 			const nose = scene.noses[k], a = nose[(nose.length >> 1) - 1], b = nose[nose.length >> 1], [x, y] = points[0];
 			const slope = abs(a[0] - b[0]) > abs(a[1] - b[1]) ? pen.createLinearGradient(0, a[1], 0, y) : pen.createLinearGradient(a[0], 0, x, 0);
 			polyline(pen, points);
-			cast(pen, css(colours.shadow, 0.8), 0.024 * scale, slope, [0, css(mix(colours.cushion, colours.nose, 0.4))], [0.14, ink.cushion], [1, css(mix(colours.cushion, BLACK, 0.5))]);
-			polyline(pen, nose, max(0.0032, px), ink.nose);
+			cast(pen, css(colours.shadow, 0.9), 0.03 * scale, slope, [0, css(lit(colours.cushion, 1.2))], [1, css(lit(colours.cushion, 0.72))]);
+			pen.save();
+			pen.clip();
+			for (const [wide, alpha] of [[0.022, 0.15], [0.015, 0.3], [0.01, 0.6]]) polyline(pen, nose, max(wide, 2 * px), css(colours.nose, alpha)); // the light on its edge
+			pen.restore();
 		});
 		pen.restore();
+		for (const throat of scene.throats) { // round it the leather, cut off where both its ends lie on the cushions
+			const [x, y, u, v, half] = throat, long = hypot(u - x, v - y), ex = (x - u) / long, ey = (y - v) / long, over = (from, side) => {
+				const wide = side * (half + 0.02), dx = u + ex * from - ey * wide - (x0 + x1) / 2, dy = v + ey * from + ex * wide - (y0 + y1) / 2;
+				return max(abs(dx) - (x1 - x0) / 2, abs(dy) - (y1 - y0) / 2) > bed - 0.007;
+			};
+			let from = -0.05;
+			while (from < long && (over(from, 1) || over(from, -1))) from += 0.001;
+			for (const [rim, wide, light, edge, blur] of [[0.01, 0.02, 0.6, 0, 0.02], [0.01, 0.015, 1.1, 0], [0.009, 0.008, 1, 0.4], [0.0085, 0.004, 1, 0.8]]) {
+				pocket(throat, rim, from);
+				pen.lineWidth = wide;
+				pen.strokeStyle = css(lit(mix(colours.leather, colours.leather_edge, edge), light));
+				cast(pen, "#000c", (blur ?? 0) * scale);
+			}
+		}
 
 		pen.setTransform(scale * (y1 - y0), 0, 0, scale * (x1 - x0), ...this.pixel((x0 + x1) / 2, (y0 + y1) / 2)); // the lamps: brightest in the middle
-		disc(pen, 0, 0, 9, pen.createRadialGradient(0, 0, 0, 0, 0, 0.85), [0, "#ffffe018"], [0.4, "#ffffe008"], [0.55, "#0000"], [1, "#0006"]);
+		disc(pen, 0, 0, 9, pen.createRadialGradient(0, 0, 0, 0, 0, 0.85), [0, "#ffffe008"], [0.4, "#0000"], [1, "#0003"]);
 		return still;
 	}
 
@@ -310,27 +315,31 @@ export class TableView {
 		if (known) return known;
 		const reach = rgb ? radius : 1.7 * radius, half = ceil(reach) + 1, [canvas, pen] = sheet(2 * half, 2 * half);
 		const put = (r, ...stops) => disc(pen, half, half, r, pen.createRadialGradient(half, half, 0, half, half, r), ...stops.map(([at, colour, alpha]) => [at, css(colour, alpha)]));
-		const { cloth, lamp, shadow } = this.colours;
-		if (rgb) {
-			const lit = mix(rgb, WHITE, 0.16), dark = mix(rgb, BLACK, 0.52);
-			put(radius, [0, lit], [0.6, mix(rgb, BLACK, 0.06)], [0.9, mix(rgb, BLACK, 0.36)], [1, mix(dark, cloth, 0.16)]);
-			put(0.72 * radius, [0, lamp, 0.3], [0.5, lamp, 0.1], [1, lamp, 0]);
-		} else put(reach, [0.4, shadow, 0.8], [0.68, shadow, 0.4], [0.85, shadow, 0.12], [1, shadow, 0]);
+		const { cloth, shadow } = this.colours, dark = min(0.56, 0.02 * radius); // a small one stays its colour to its edge
+		if (rgb) put(radius, ...[0, 0.3, 0.5, 0.7, 0.85, 0.95, 1].map(d => { // lit from above, and by the cloth around it
+			const z = sqrt(1 - d * d), edge = (1 - z) ** 2.5;
+			return [d, lit(rgb, (1.06 - dark * (1 - z)) * (1 - dark * edge)).map((value, k) => min(255, value + 26 * z ** 6 + 0.22 * edge * cloth[k]))];
+		}));
+		else put(reach, [0.4, shadow, 0.65], [0.68, shadow, 0.3], [0.85, shadow, 0.1], [1, shadow, 0]);
 		this.sprites.set(key, [canvas, half]);
 		return [canvas, half];
 	}
 
-	/** The lamps in the mirror of a ball at (x, y): two rows along the table, 1 m above. */
+	/** The four lamps over the table in the mirror of a ball at (x, y), the far ones faint; in a small ball their light in one. */
 	lamps(x, y, px, py, radius) {
-		const { pen, scene: { extent: [[x0, x1], [y0, y1]] } } = this;
-		pen.beginPath();
-		for (let k = 0; k < 8; k++) {
-			const dx = (k % 2 - 0.5) * 0.5 * (x1 - x0) - x, dy = ((k >> 1) - 1.5) * 0.24 * (y1 - y0) - y;
-			const far = hypot(dx, dy, 1), norm = hypot(dx, dy, 1 + far), u = px + radius * dy / norm, v = py + radius * dx / norm;
-			pen.moveTo(u + 0.085 * radius, v);
-			pen.ellipse(u, v, 0.085 * radius, 0.06 * radius, 0, 0, TURN);
+		const { pen, lamp, scene: { extent: [[x0, x1], [y0, y1]] } } = this, clear = min(1, max(0, radius / 9 - 0.8));
+		const glow = (u, v, size, alpha) => {
+			pen.globalAlpha = alpha;
+			pen.drawImage(lamp, px + radius * (u - size), py + radius * (v - size), 2 * radius * size, 2 * radius * size);
+		};
+		let u = 0, v = 0, all = 0;
+		for (let k = 0; k < 4; k++) {
+			const dx = (x0 + x1) / 2 - x, dy = y0 + (y1 - y0) * (k + 0.5) / 4 - y, far = hypot(dx, dy, 0.95), norm = hypot(dx, dy, 0.95 + far), light = (0.95 / far) ** 2;
+			if (clear) glow(dy / norm, dx / norm, 0.22, clear * min(1, 0.2 + light));
+			u += light * dy / norm; v += light * dx / norm; all += light;
 		}
-		fill(pen, this.lamp);
+		glow(u / all, v / all, 0.55, 0.8 - 0.5 * clear);
+		pen.globalAlpha = 1;
 	}
 
 	/** Spots on a ball where its six half axes come out, turned with it. */
@@ -467,7 +476,7 @@ const COMMANDS = [
 	["ArrowRight", "next event", "next", "step", 1], ["Shift ArrowRight", "next stroke", "on", "skip", 1], ["ArrowDown", "slower", "−", "faster", -1], ["ArrowUp", "faster", "+", "faster", 1],
 	["p", "paths, dashed where a ball slides", "paths", "flip", "paths"], ["g", "cue ball where it met others", "ghosts", "flip", "ghosts"],
 	["s", "spots that show spin", "spin", "flip", "spin"], ["l", "letters on balls", "labels", "flip", "labels"],
-	["Home", "first moment", "", "seekTotal", 0], ["End", "last moment", "", "seekTotal", Infinity], ["?", "help", "?", "help"],
+	["Home", "first moment", "", "seekTotal", 0], ["End", "last moment", "", "seekTotal", Infinity], ["?", "help", "?", "help"], ["Escape", "close this", "", "help", true],
 ];
 const ICONS = { play: "M7 4v16l13-8z", pause: "M6 4h4v16H6zM14 4h4v16h-4z", on: "M4 5l8 7-8 7zM12 5l8 7-8 7z", next: "M9 5l8 7-8 7z",
 	back: "M20 5l-8 7 8 7zM12 5l-8 7 8 7z", last: "M15 5l-8 7 8 7z" };
@@ -477,21 +486,22 @@ font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
 .sn *{box-sizing:border-box}.sn>*{flex:none}.sn-fill{height:100%}
 .sn .sn-stage{position:relative;flex:0 1 auto;min-height:0}.sn-stage canvas{position:absolute;width:100%;height:100%;touch-action:manipulation}
 .sn-score{display:flex;background:var(--bar);border-top:3px solid var(--bar_accent);font-size:clamp(14px,1.5cqw,26px);line-height:2}
-.sn-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.sn-who{flex:1 1 20%;min-width:0;font-weight:600}.sn-now+.sn-who{flex-direction:row-reverse;text-align:right}
+.sn-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.sn-who{flex:1 1 0;min-width:0;font-weight:600}.sn-now+.sn-who{flex-direction:row-reverse;text-align:right}
 .sn-who span{flex:1;overflow:hidden;text-overflow:ellipsis;white-space:nowrap}.sn-who b{background:var(--text);color:var(--bar);line-height:1.5;min-width:2.6em;text-align:center}
-.sn-turn{background:var(--bar_edge)}.sn .sn-now{justify-content:center;flex-wrap:wrap;column-gap:1.4em;font-size:.8em}
+.sn-turn{background:var(--bar_edge)}.sn .sn-now{flex:0 0 39em;flex-wrap:wrap;column-gap:1em;font-size:.8em}.sn-now *{flex:0 0 4.4em;white-space:pre}.sn-now :first-child{flex:1}.sn-now span:last-child{flex:0 0 14em}
 .sn i{display:inline-block;width:.85em;height:.85em;border-radius:50%;margin:0 1px;vertical-align:-.08em;box-shadow:inset 0 0 0 1px #fff6}
 .sn-bar{position:relative;height:30px;margin:0 14px;cursor:pointer;touch-action:none}.sn-bar *{position:absolute;top:12px;height:6px;background:var(--bar_accent)}
 .sn-bar :first-child{width:100%;background:var(--bar_edge)}.sn-bar u{width:2px;background:var(--text_quiet)}.sn-bar b{z-index:1;top:6px;width:18px;height:18px;margin-left:-9px;border-radius:9px;background:var(--text)}
 .sn-foot{display:flex;flex-wrap:wrap;align-items:center;gap:6px 10px;padding:0 10px 8px}.sn-foot>*{flex:1 1 250px}.sn-words{text-align:right}
 .sn-about{display:flex;align-items:center;gap:10px;min-height:50px;color:var(--text_quiet)}.sn-about canvas{width:50px;height:50px}
-.sn-foot .sn-keys{flex:0 1 auto;display:flex;flex-wrap:wrap;justify-content:center;gap:4px}.sn output{width:3.4em;line-height:40px;text-align:center}
+.sn-foot .sn-keys{flex:0 1 auto;display:flex;flex-wrap:wrap;justify-content:center;gap:4px}.sn-keys span{display:flex;gap:4px}.sn output{width:3.4em;align-self:center;text-align:center}
 .sn button{min-width:42px;height:40px;padding:0 8px;border:0;border-radius:6px;background:#fff1;color:inherit;font:inherit;cursor:pointer}.sn button:hover{background:#fff3}
 .sn [aria-pressed=true]{box-shadow:inset 0 -3px var(--bar_accent)}.sn svg{width:22px;fill:currentColor;vertical-align:middle}
 .sn:focus-visible,.sn :focus-visible{outline:2px solid var(--aim)}
 .sn-help{position:absolute;inset:0;margin:auto;padding:12px;background:var(--bar);border:1px solid var(--bar_edge)}.sn-help td{padding:2px 8px}
 @media (max-height:500px){.sn .sn-about{min-height:0;zoom:.6;font-size:24px}.sn-score{line-height:1.5}.sn output{width:2.2em}.sn button{padding:0 4px;min-width:40px}}
-@container (max-width:900px){.sn-score{flex-wrap:wrap}.sn-who{flex-basis:30%}.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}`;
+@container (max-width:900px){.sn-score{flex-wrap:wrap}.sn-who{flex-basis:40%}.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}
+@container (max-width:500px){.sn .sn-now :first-child{flex-basis:100%}.sn-foot .sn-keys{flex:1 0 100%}.sn button{flex:1;height:clamp(40px,7vh,60px)}.sn output{width:2.6em}}`;
 
 /** A new element at the end of its parent. */
 const put = (parent, tag) => parent.appendChild(document.createElement(tag));
@@ -550,14 +560,15 @@ export class Player {
 		sheet.onclick = () => this.help();
 		this.buttons = {};
 		for (const [key, what, shows, act, way] of COMMANDS) {
-			const row = put(sheet, "tr");
-			put(row, "td").textContent = key;
+			const row = put(sheet, "tr"), named = key.replace("Shift ", "Shift+").replace(/Arrow(.)\w+/, (_, way) => "←→↑↓"["LRUD".indexOf(way)]).replace("ape", "");
+			put(row, "td").textContent = named;
 			put(row, "td").textContent = what;
 			if (!shows) continue;
-			const button = (this.buttons[shows] = put(keys, "button"));
-			setAll(button, { type: "button", title: `${what} (${key})`, "aria-label": what });
+			if (shows === "−") this.pace = put(keys, "span"); // on one row with its buttons
+			const button = (this.buttons[shows] = put(act === "faster" ? this.pace : keys, "button"));
+			setAll(button, { type: "button", title: `${what} (${named})`, "aria-label": what });
 			if (ICONS[shows]) this.icon(button, shows); else button.textContent = shows;
-			if (shows === "−") this.pace = put(keys, "output");
+			if (shows === "−") put(this.pace, "output");
 			button.onclick = () => this[act](way);
 		}
 		this.keys = options.keys ?? root;
@@ -573,13 +584,13 @@ export class Player {
 		const { target, shiftKey, key: one } = event, named = one === " " ? "Space" : one.length > 1 ? one : one.toLowerCase();
 		const found = COMMANDS.find(([key]) => key === (shiftKey && one.startsWith("Arrow") ? `Shift ${named}` : named));
 		if (!found || event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName)) return;
-		if (named === "Space" && target.tagName === "BUTTON") return; // it presses that button
+		if (named === "Space" && target.tagName === "BUTTON" || named === "Escape" && this.part("help").hidden) return; // for that button, for others
 		this[found[3]](found[4]);
 		event.preventDefault();
 	}
 
 	toggle() { if (this.playing) this.pause(); else this.play(); }
-	help() { this.part("help").toggleAttribute("hidden"); }
+	help(hide) { this.part("help").toggleAttribute("hidden", hide); }
 
 	faster(way) {
 		this.speed = (way > 0 ? SPEEDS.find(speed => speed > this.speed) : SPEEDS.findLast(speed => speed < this.speed)) ?? this.speed;
@@ -694,7 +705,7 @@ export class Player {
 		this.said = key;
 		this.icon(this.buttons.play, playing ? "pause" : "play");
 		this.buttons.play.setAttribute("aria-label", playing ? "pause" : "play");
-		this.pace.textContent = `${speed}×`;
+		this.pace.lastChild.previousSibling.textContent = `${speed}×`;
 		for (const name in show) this.buttons[name].setAttribute("aria-pressed", ![false, "off"].includes(show[name]));
 		const about = [`${k + 1} of ${this.strokes.length}`, cue && `${cue.speed.toFixed(2)} m/s`, cue?.elevation > 0.1 && `raised ${round(cue.elevation * 360 / TURN)}°`];
 		this.part("about").lastChild.textContent = about.filter(Boolean).join(" · ");
@@ -730,10 +741,11 @@ export class Player {
 			for (const ball of dots) put(one, "i").style.background = css(balls[ball].rgb);
 			one.append(after);
 		};
-		say(`break ${run} `, pots);
+		say(`break ${run} `, pots.slice(-12));
 		if (stroke.n === 22) say(`reds ${reds}`, []);
-		const on = balls.findIndex(one => one.name.startsWith(stroke.ball_on));
-		if (stroke.ball_on) say("on ", on < 0 ? [] : [on], ` ${stroke.ball_on}`);
+		const next = over && stroke.points ? strokes[this.k + 1] : !over && stroke, what = next?.player === mine && next.ball_on; // nothing once the visit is over
+		const on = what === "any colour" ? [16, 17, 18, 19, 20, 21] : [balls.findIndex(one => one.name.startsWith(what))];
+		say(what ? "on " : "", on[0] < 0 ? [] : on, ` ${what || ""}`);
 	}
 
 	/** Stop, and leave the element as it was. */
