@@ -6,9 +6,9 @@
  *
  * Frame: origin at the table's centre, +x to the yellow side, +y to the black end, SI units. On screen +y goes right and +x down.
  *
- * For hosts and tests: a frame may have `depth` (0 on the cloth to 1 gone into a pocket), a line a `path` (Path2D in metres); a player has `time`,
- * `stroke`, `playing`, `speed`, `positions()`, `skip(strokes)`, `seekTotal(s)`, `flip(name)`; its options are `autoplay`, `speed`, `paths`, `ghosts`,
- * `spin` ("cue", "all", "off"), `labels`, `fill` (as high as its parent), `keys` (what listens), `onstroke(stroke)`, `ontime(t, stroke)`, `onend()`.
+ * Beyond the obvious: a frame may have `depth` (0 on the cloth to 1 gone into a pocket), a line a `path` (Path2D in metres); a player's options are
+ * `autoplay`, `speed`, `paths`, `ghosts`, `spin` ("cue", "all", "off"), `labels`, `fill` (as high as its parent), `keys` (what listens),
+ * `onstroke(stroke)`, `ontime(t, stroke)`, `onend()`.
  */
 
 const GONE = 0, ROLL = 2, SLIDE = 3, FALLING = 4, BEND = 5, BALL_BALL = 0;
@@ -24,7 +24,7 @@ const lit = (rgb, light) => rgb.map(value => min(255, value * light));
 /** A colour on the way from one to another. */
 const mix = (a, b, share) => a.map((value, k) => value + (b[k] - value) * share);
 
-/** Numbers from base64, little-endian as in all browsers. */
+/** Numbers from base64. */
 const numbers = (text, Type) => new Type(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 
 /** The rotation q, then one by the vector (x, y, z) [rad]; quaternions are [w, x, y, z]. */
@@ -58,7 +58,7 @@ class Stroke {
 		this.later = { x: places.filter((_, k) => k % 2 === 0), y: places.filter((_, k) => k % 2), on: flags(after.on_table) };
 	}
 
-	/** Which segment of a ball's log holds at time t; -1 before the first. There are tens: no need to halve. */
+	/** Which segment of a ball's log holds at time t; -1 before the first. */
 	find(ball, t) { return this.logs[ball].findLastIndex(segment => segment.t0 <= t); }
 
 	/** [x, y, vx, vy, wx, wy, wz] at time t of a segment; the order of the arithmetic is that of the simulation. */
@@ -70,7 +70,7 @@ class Stroke {
 
 	/** All balls at time t [s]: x, y, vx, vy, wx, wy, wz, `on` the table (1 or 0), `depth` in a pocket. */
 	at(t) {
-		const out = { on: this.here.slice(), depth: Float64Array.from(this.here, here => 1 - here) }, names = ["x", "y", "vx", "vy", "wx", "wy", "wz"];
+		const out = { on: this.here.slice(), depth: Float64Array.from(this.here, here => 1 - here) }, names = "x y vx vy wx wy wz".split(" ");
 		for (const name of names) out[name] = new Float64Array(this.n);
 		this.logs.forEach((log, i) => {
 			const k = this.find(i, t), still = this.decel > 0 && t >= this.duration, values = k < 0 ? this.first.subarray(2 * i, 2 * i + 2) : this.moving(log[k], t);
@@ -84,7 +84,7 @@ class Stroke {
 		return out;
 	}
 
-	/** The table when everything has come to rest. */
+	/** The table at rest. */
 	get end() { return this.at(this.duration); }
 
 	/** The orientation of a ball at time t, a quaternion: the same whichever way a time is come to. */
@@ -130,7 +130,6 @@ export function decode(replay) {
 	return { ...replay, strokes: replay.strokes.map(data => (last = new Stroke(data, replay, last))) };
 }
 
-/** A canvas of its own, and its pen. */
 function sheet(width, height) {
 	const canvas = Object.assign(document.createElement("canvas"), { width: ceil(width), height: ceil(height) });
 	return [canvas, canvas.getContext("2d")];
@@ -147,7 +146,7 @@ function unrest(strength) {
 	return canvas;
 }
 
-/** Fill what a pen has drawn; a gradient comes with its stops [place, colour]. */
+/** Fill what a pen has drawn, with a gradient by its stops [place, colour]. */
 function fill(pen, filling, ...stops) {
 	for (const [at, colour] of stops) filling.addColorStop(at, colour);
 	pen.fillStyle = filling;
@@ -168,13 +167,17 @@ function disc(pen, x, y, radius, filling, ...stops) {
 	if (filling) fill(pen, filling, ...stops); else pen.stroke();
 }
 
+/** A disc with a gradient from its middle to its edge. */
+function glow(pen, x, y, radius, ...stops) { disc(pen, x, y, radius, pen.createRadialGradient(x, y, 0, x, y, radius), ...stops); }
+
+/** A pen that draws such lines from here on. */
+const nib = (pen, strokeStyle, lineWidth) => Object.assign(pen, { strokeStyle, lineWidth });
+
 function polyline(pen, points, width, colour) {
 	pen.beginPath();
 	for (const point of points) pen.lineTo(...point);
 	if (!width) return;
-	pen.lineWidth = width;
-	pen.strokeStyle = colour;
-	pen.stroke();
+	nib(pen, colour, width).stroke();
 }
 
 /** Draws a table; what never moves, once for each size. */
@@ -184,19 +187,19 @@ export class TableView {
 		this.pen = canvas.getContext("2d", { alpha: false });
 		this.colours = scene.palette;
 		this.ink = Object.fromEntries(Object.entries(this.colours).map(([name, rgb]) => [name, css(rgb)]));
-		const [lamp, pen] = sheet(32, 32), glow = css(this.colours.lamp, 0);
-		disc(pen, 16, 16, 16, pen.createRadialGradient(16, 16, 0, 16, 16, 16), [0, this.ink.lamp], [0.3, css(this.colours.lamp, 0.8)], [0.6, css(this.colours.lamp, 0.2)], [1, glow]);
+		const [lamp, pen] = sheet(32, 32);
+		glow(pen, 16, 16, 16, ...[[0, 1], [0.3, 0.8], [0.6, 0.2], [1, 0]].map(([at, alpha]) => [at, css(this.colours.lamp, alpha)]));
 		this.lamp = lamp;
 		this.resize();
 	}
 
-	/** Breadth and height [m] of what is shown. */
+	/** Breadth, height [m]. */
 	static size(scene) {
 		const [[x0, x1], [y0, y1]] = scene.extent, out = scene.cushions.length ? 2 * scene.rail + 0.04 : 0.1;
 		return [y1 - y0 + out, x1 - x0 + out];
 	}
 
-	/** Fit the table into the canvas as it is laid out now. */
+	/** Fit the canvas as it is laid out now. */
 	resize() {
 		const { canvas, scene } = this, [[x0, x1], [y0, y1]] = scene.extent, [wide, high] = TableView.size(scene);
 		this.ratio = min(devicePixelRatio, 3);
@@ -224,8 +227,10 @@ export class TableView {
 	paint() {
 		const { scene, scene: { rail, lines }, colours, ink, scale, canvas: { width, height } } = this, [[x0, x1], [y0, y1]] = scene.extent, px = 1 / scale;
 		const [still, pen] = sheet(width, height), framed = scene.cushions.length > 0, bed = framed ? scene.cushion : 9;
-		const box = (out, round = 0) => pen.roundRect(x0 - out, y0 - out, x1 - x0 + 2 * out, y1 - y0 + 2 * out, round);
-		const start = (...shape) => { pen.beginPath(); box(...shape); };
+		const start = (out, round = 0) => {
+			pen.beginPath();
+			pen.roundRect(x0 - out, y0 - out, x1 - x0 + 2 * out, y1 - y0 + 2 * out, round);
+		};
 		const texture = (strength, along, across, swap) => { // stretched along y, or along x
 			const pattern = pen.createPattern(unrest(strength), "repeat"), a = along * px, b = across * px;
 			pattern.setTransform(new DOMMatrix(swap ? [a, 0, 0, b, 0, 0] : [0, a, b, 0, 0, 0]));
@@ -237,15 +242,15 @@ export class TableView {
 
 		if (framed) {
 			const { wood } = colours, corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
-			const at = ([x, y], out) => [x === x0 ? x - out : x + out, y === y0 ? y - out : y + out];
+			const at = ([x, y], out) => [x + sign(x) * out, y + sign(y) * out];
 			start(rail, 0.085);
 			cast(pen, "#000c", 0.04 * scale, ink.wood_edge);
 			start(rail - 0.003, 0.082);
 			pen.save();
 			pen.clip();
-			corners.forEach((one, k) => { // four boards, mitred; each rounded at its outer edge, and with a groove along its inner one
+			corners.forEach((one, k) => { // four boards, mitred, round outside, with a groove inside
 				const next = corners[(k + 1) % 4], [ix, iy] = at(one, bed), [ox, oy] = at(one, rail), end = k % 2 === 0;
-				polyline(pen, [at(one, 0), at(one, rail), at(next, rail), at(next, 0)]);
+				polyline(pen, [one, at(one, rail), at(next, rail), next]);
 				fill(pen, pen.createLinearGradient(ix, iy, end ? ix : ox, end ? oy : iy), ...[[0, 0.5], [0.07, 1.1], [0.12, 1.4], [0.16, 1.1], [0.7, 1.2], [0.8, 1.6], [0.9, 1.2], [1, 0.4]].map(([part, light]) => [part, css(lit(wood, light))]));
 				texture(0.07, 30, 1.6, end);
 			});
@@ -276,7 +281,7 @@ export class TableView {
 		for (const points of lines ? [lines.baulk, lines.d] : []) polyline(pen, points, max(0.0035, 1.2 * px), chalk);
 		for (const [x, y] of lines?.spots ?? []) disc(pen, x, y, max(0.006, 1.4 * px), chalk);
 		for (const [x, y, r] of scene.falls) // the cloth bends down
-			disc(pen, x, y, r + 0.014, pen.createRadialGradient(x, y, r, x, y, r + 0.014), [0, ink.cloth_edge], [1, css(colours.cloth_edge, 0)]);
+			glow(pen, x, y, r + 0.014, [r / (r + 0.014), ink.cloth_edge], [1, css(colours.cloth_edge, 0)]);
 		pen.restore();
 		scene.cushions.forEach((points, k) => {
 			const nose = scene.noses[k], a = nose[(nose.length >> 1) - 1], b = nose[nose.length >> 1], [x, y] = points[0];
@@ -285,27 +290,25 @@ export class TableView {
 			cast(pen, css(colours.shadow, 0.9), 0.03 * scale, slope, [0, css(lit(colours.cushion, 1.2))], [1, css(lit(colours.cushion, 0.72))]);
 			pen.save();
 			pen.clip();
-			for (const [wide, alpha] of [[0.022, 0.15], [0.015, 0.3], [0.01, 0.6]]) polyline(pen, nose, max(wide, 2 * px), css(colours.nose, alpha)); // the light on its edge
+			for (const [wide, alpha] of [[0.02, 0.3], [0.011, 0.7]]) polyline(pen, nose, max(wide, 2 * px), css(colours.nose, alpha)); // the light on its edge
 			pen.restore();
 		});
 		pen.restore();
-		for (const throat of scene.throats) { // round it the leather, cut off where both its ends lie on the cushions
-			const [x, y, u, v, half] = throat, long = hypot(u - x, v - y), ex = (x - u) / long, ey = (y - v) / long, over = (from, side) => {
-				const wide = side * (half + 0.02), dx = u + ex * from - ey * wide - (x0 + x1) / 2, dy = v + ey * from + ex * wide - (y0 + y1) / 2;
-				return max(abs(dx) - (x1 - x0) / 2, abs(dy) - (y1 - y0) / 2) > bed - 0.007;
+		for (const throat of scene.throats) { // its leather, cut off where both ends lie on the cushions
+			const [x, y, u, v, half] = throat, long = hypot(u - x, v - y), over = (side, at) => {
+				const dx = (x - u) / long, dy = (y - v) / long, wide = side * (half + 0.02), a = u + dx * at - dy * wide, b = v + dy * at + dx * wide;
+				return max(abs(a) - x1, abs(b) - y1) > bed - 0.007;
 			};
 			let from = -0.05;
-			while (from < long && (over(from, 1) || over(from, -1))) from += 0.001;
-			for (const [rim, wide, light, edge, blur] of [[0.01, 0.02, 0.6, 0, 0.02], [0.01, 0.015, 1.1, 0], [0.009, 0.008, 1, 0.4], [0.0085, 0.004, 1, 0.8]]) {
+			while (from < long && (over(1, from) || over(-1, from))) from += 0.001;
+			for (const [rim, wide, light, shadow] of [[0.01, 0.02, 0.7, 0.02], [0.01, 0.014, 1.2, 0], [0.0085, 0.006, 2.1, 0]]) { // bright along its ridge
 				pocket(throat, rim, from);
-				pen.lineWidth = wide;
-				pen.strokeStyle = css(lit(mix(colours.leather, colours.leather_edge, edge), light));
-				cast(pen, "#000c", (blur ?? 0) * scale);
+				cast(nib(pen, css(lit(colours.leather, light)), wide), "#000c", shadow * scale);
 			}
 		}
 
 		pen.setTransform(scale * (y1 - y0), 0, 0, scale * (x1 - x0), ...this.pixel((x0 + x1) / 2, (y0 + y1) / 2)); // the lamps: brightest in the middle
-		disc(pen, 0, 0, 9, pen.createRadialGradient(0, 0, 0, 0, 0, 0.85), [0, "#ffffe008"], [0.4, "#0000"], [1, "#0003"]);
+		glow(pen, 0, 0, 2, [0, "#ffffe008"], [0.17, "#0000"], [0.42, "#0003"]);
 		return still;
 	}
 
@@ -314,31 +317,29 @@ export class TableView {
 		const key = `${rgb} ${radius}`, known = this.sprites.get(key);
 		if (known) return known;
 		const reach = rgb ? radius : 1.7 * radius, half = ceil(reach) + 1, [canvas, pen] = sheet(2 * half, 2 * half);
-		const put = (r, ...stops) => disc(pen, half, half, r, pen.createRadialGradient(half, half, 0, half, half, r), ...stops.map(([at, colour, alpha]) => [at, css(colour, alpha)]));
-		const { cloth, shadow } = this.colours, dark = min(0.56, 0.02 * radius); // a small one stays its colour to its edge
-		if (rgb) put(radius, ...[0, 0.3, 0.5, 0.7, 0.85, 0.95, 1].map(d => { // lit from above, and by the cloth around it
+		const { cloth, shadow } = this.colours, dark = min(0.56, 0.02 * radius); // small ones keep their colour
+		glow(pen, half, half, reach, ...(rgb ? [0, 0.3, 0.5, 0.7, 0.85, 0.95, 1].map(d => { // lit from above and by the cloth
 			const z = sqrt(1 - d * d), edge = (1 - z) ** 2.5;
-			return [d, lit(rgb, (1.06 - dark * (1 - z)) * (1 - dark * edge)).map((value, k) => min(255, value + 26 * z ** 6 + 0.22 * edge * cloth[k]))];
-		}));
-		else put(reach, [0.4, shadow, 0.65], [0.68, shadow, 0.3], [0.85, shadow, 0.1], [1, shadow, 0]);
+			return [d, css(lit(rgb, (1.06 - dark * (1 - z)) * (1 - dark * edge)).map((value, k) => min(255, value + 26 * z ** 6 + 0.22 * edge * cloth[k])))];
+		}) : [[0.4, 0.65], [0.68, 0.3], [0.85, 0.1], [1, 0]].map(([at, alpha]) => [at, css(shadow, alpha)])));
 		this.sprites.set(key, [canvas, half]);
 		return [canvas, half];
 	}
 
-	/** The four lamps over the table in the mirror of a ball at (x, y), the far ones faint; in a small ball their light in one. */
+	/** The four lamps over the table in the mirror of a ball at (x, y), the far ones faint; in a small ball one light. */
 	lamps(x, y, px, py, radius) {
-		const { pen, lamp, scene: { extent: [[x0, x1], [y0, y1]] } } = this, clear = min(1, max(0, radius / 9 - 0.8));
-		const glow = (u, v, size, alpha) => {
+		const { pen, lamp, scene: { extent: [, [, y1]] } } = this, clear = min(1, max(0, radius / 9 - 0.8));
+		const shine = (u, v, size, alpha) => {
 			pen.globalAlpha = alpha;
 			pen.drawImage(lamp, px + radius * (u - size), py + radius * (v - size), 2 * radius * size, 2 * radius * size);
 		};
 		let u = 0, v = 0, all = 0;
 		for (let k = 0; k < 4; k++) {
-			const dx = (x0 + x1) / 2 - x, dy = y0 + (y1 - y0) * (k + 0.5) / 4 - y, far = hypot(dx, dy, 0.95), norm = hypot(dx, dy, 0.95 + far), light = (0.95 / far) ** 2;
-			if (clear) glow(dy / norm, dx / norm, 0.22, clear * min(1, 0.2 + light));
-			u += light * dy / norm; v += light * dx / norm; all += light;
+			const dy = (k - 1.5) * y1 / 2 - y, far = hypot(x, dy, 0.95), norm = hypot(x, dy, 0.95 + far), light = (0.95 / far) ** 2;
+			if (clear) shine(dy / norm, -x / norm, 0.22, clear * min(1, 0.2 + light));
+			u += light * dy / norm; v -= light * x / norm; all += light;
 		}
-		glow(u / all, v / all, 0.55, 0.8 - 0.5 * clear);
+		shine(u / all, v / all, 0.55, 0.8 - 0.5 * clear);
 		pen.globalAlpha = 1;
 	}
 
@@ -368,8 +369,7 @@ export class TableView {
 			pen.globalAlpha = alpha;
 			if (ball !== undefined) this.stamp(scene.balls[ball].rgb, px, py, radius);
 			pen.globalAlpha = min(1, alpha + 0.3);
-			pen.strokeStyle = ink.text;
-			pen.lineWidth = 1.5 * ratio;
+			nib(pen, ink.text, 1.5 * ratio);
 			disc(pen, px, py, radius);
 			pen.globalAlpha = 1;
 		}
@@ -379,8 +379,7 @@ export class TableView {
 			this.stamp(null, px + radius * y / (y1 - y0) / 2, py + radius * (0.14 + x / (x1 - x0) / 2), radius);
 		}
 		for (const i of here) if (depth(i)) this.falling(frame.x[i], frame.y[i], depth(i), scene.balls[i].rgb); else this.ball(frame, i, radius);
-		pen.strokeStyle = ink.aim;
-		pen.lineWidth = 2 * ratio;
+		nib(pen, ink.aim, 2 * ratio);
 		for (const i of frame.highlight ?? []) disc(pen, ...this.pixel(frame.x[i], frame.y[i]), radius + 3 * ratio);
 		if (frame.cue) this.cue(frame.cue);
 	}
@@ -393,8 +392,9 @@ export class TableView {
 	/** A ball on its way into the pocket at hand: darker, smaller, further in. */
 	falling(x, y, depth, rgb) {
 		const [u, v] = this.scene.falls.find(fall => hypot(fall[0] - x, fall[1] - y) < 0.2) ?? [x, y];
+		const part = sqrt(depth) / 2;
 		this.pen.globalAlpha = 1 - depth;
-		this.stamp(rgb, ...this.pixel(x + (u - x) * sqrt(depth) / 2, y + (v - y) * sqrt(depth) / 2), this.R * this.scale, 1 - 0.3 * depth);
+		this.stamp(rgb, ...this.pixel(x + (u - x) * part, y + (v - y) * part), this.R * this.scale, 1 - 0.3 * depth);
 		this.pen.globalAlpha = 1;
 	}
 
@@ -403,16 +403,14 @@ export class TableView {
 		const pale = 0.3 * rgb[0] + 0.59 * rgb[1] + 0.11 * rgb[2] > 110, [ink, edge] = pale ? [BLACK, WHITE] : [WHITE, BLACK];
 		this.stamp(rgb, ...at, radius);
 		if (turn) this.spots(turn, i ? css(ink, 0.32) : this.ink.bar_accent, ...at, radius);
-		if (radius > 3) this.lamps(x, y, ...at, radius);
+		this.lamps(x, y, ...at, radius);
 		if (!frame.labels) return;
 		const size = max(1.25 * radius, 9 * this.ratio);
 		at[1] += 0.36 * size; // half a capital letter
 		pen.font = `700 ${size}px system-ui,sans-serif`;
 		pen.textAlign = "center";
 		pen.lineJoin = "round";
-		pen.lineWidth = 0.3 * radius;
-		pen.strokeStyle = css(edge, 0.75);
-		pen.strokeText(letter, ...at);
+		nib(pen, css(edge, 0.75), 0.3 * radius).strokeText(letter, ...at);
 		pen.fillStyle = css(ink);
 		pen.fillText(letter, ...at);
 	}
@@ -429,9 +427,7 @@ export class TableView {
 		pen.lineJoin = pen.lineCap = "round";
 		pen.setLineDash(dash);
 		for (const [style, thick] of [[css(this.colours.path_edge, 0.55), wide + 2 * px], [css(colour), wide]]) {
-			pen.strokeStyle = style;
-			pen.lineWidth = thick;
-			pen.stroke(way);
+			nib(pen, style, thick).stroke(way);
 		}
 		pen.setLineDash([]);
 		pen.resetTransform();
@@ -472,12 +468,14 @@ const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 const LEAD = 0.9, PAUSE = 1.4;
 /** Key, what it does, its button's icon or word (none: no button), method, argument. */
 const COMMANDS = [
-	["Shift ArrowLeft", "previous stroke", "back", "skip", -1], ["ArrowLeft", "previous event", "last", "step", -1], ["Space", "play or pause", "play", "toggle"],
-	["ArrowRight", "next event", "next", "step", 1], ["Shift ArrowRight", "next stroke", "on", "skip", 1], ["ArrowDown", "slower", "−", "faster", -1], ["ArrowUp", "faster", "+", "faster", 1],
+	["Shift+←", "previous stroke", "back", "skip", -1], ["←", "previous event", "last", "step", -1], ["Space", "play or pause", "play", "toggle"],
+	["→", "next event", "next", "step", 1], ["Shift+→", "next stroke", "on", "skip", 1], ["↓", "slower", "−", "faster", -1], ["↑", "faster", "+", "faster", 1],
 	["p", "paths, dashed where a ball slides", "paths", "flip", "paths"], ["g", "cue ball where it met others", "ghosts", "flip", "ghosts"],
 	["s", "spots that show spin", "spin", "flip", "spin"], ["l", "letters on balls", "labels", "flip", "labels"],
-	["Home", "first moment", "", "seekTotal", 0], ["End", "last moment", "", "seekTotal", Infinity], ["?", "help", "?", "help"], ["Escape", "close this", "", "help", true],
+	["Home", "first moment", "", "seekTotal", 0], ["End", "last moment", "", "seekTotal", Infinity], ["?", "help", "?", "help"], ["Esc", "close this", "", "help", true],
 ];
+/** What keys are called above. */
+const NAMES = { " ": "Space", Escape: "Esc", ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓" };
 const ICONS = { play: "M7 4v16l13-8z", pause: "M6 4h4v16H6zM14 4h4v16h-4z", on: "M4 5l8 7-8 7zM12 5l8 7-8 7z", next: "M9 5l8 7-8 7z",
 	back: "M20 5l-8 7 8 7zM12 5l-8 7 8 7z", last: "M15 5l-8 7 8 7z" };
 const STYLE = `
@@ -501,9 +499,8 @@ font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
 .sn-help{position:absolute;inset:0;margin:auto;padding:12px;background:var(--bar);border:1px solid var(--bar_edge)}.sn-help td{padding:2px 8px}
 @media (max-height:500px){.sn .sn-about{min-height:0;zoom:.6;font-size:24px}.sn-score{line-height:1.5}.sn output{width:2.2em}.sn button{padding:0 4px;min-width:40px}}
 @container (max-width:900px){.sn-score{flex-wrap:wrap}.sn-who{flex-basis:40%}.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}
-@container (max-width:500px){.sn .sn-now :first-child{flex-basis:100%}.sn-foot .sn-keys{flex:1 0 100%}.sn button{flex:1;height:clamp(40px,7vh,60px)}.sn output{width:2.6em}}`;
+@container (max-width:500px){.sn-score{font-size:16px}.sn .sn-now :first-child{flex-basis:100%}.sn-foot .sn-keys{flex:1 0 100%}.sn button{flex:1;height:clamp(40px,7vh,60px)}.sn output{width:2.6em}}`;
 
-/** A new element at the end of its parent. */
 const put = (parent, tag) => parent.appendChild(document.createElement(tag));
 
 const setAll = (element, attributes) => Object.entries(attributes).forEach(([name, value]) => element.setAttribute(name, value));
@@ -531,7 +528,6 @@ export class Player {
 		if (this.options.autoplay) this.play();
 	}
 
-	/** Which stroke is shown, from 0. */
 	get stroke() { return this.k; }
 	/** Time within the stroke [s]; below 0 before it. */
 	get time() { return this.t; }
@@ -558,17 +554,18 @@ export class Player {
 		bar.onpointerdown = event => { this.pause(); bar.setPointerCapture(event.pointerId); drag(event); };
 		bar.onpointermove = event => { if (bar.hasPointerCapture(event.pointerId)) drag(event); };
 		sheet.onclick = () => this.help();
+		let both;
 		this.buttons = {};
 		for (const [key, what, shows, act, way] of COMMANDS) {
-			const row = put(sheet, "tr"), named = key.replace("Shift ", "Shift+").replace(/Arrow(.)\w+/, (_, way) => "←→↑↓"["LRUD".indexOf(way)]).replace("ape", "");
-			put(row, "td").textContent = named;
+			const row = put(sheet, "tr");
+			put(row, "td").textContent = key;
 			put(row, "td").textContent = what;
 			if (!shows) continue;
-			if (shows === "−") this.pace = put(keys, "span"); // on one row with its buttons
-			const button = (this.buttons[shows] = put(act === "faster" ? this.pace : keys, "button"));
-			setAll(button, { type: "button", title: `${what} (${named})`, "aria-label": what });
+			if (shows === "−") both = put(keys, "span"); // stay on one row
+			const button = (this.buttons[shows] = put(act === "faster" ? both : keys, "button"));
+			setAll(button, { type: "button", title: `${what} (${key})`, "aria-label": what });
 			if (ICONS[shows]) this.icon(button, shows); else button.textContent = shows;
-			if (shows === "−") put(this.pace, "output");
+			if (shows === "−") this.pace = put(both, "output");
 			button.onclick = () => this[act](way);
 		}
 		this.keys = options.keys ?? root;
@@ -581,10 +578,10 @@ export class Player {
 	icon(button, name) { button.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg>`; }
 
 	key(event) {
-		const { target, shiftKey, key: one } = event, named = one === " " ? "Space" : one.length > 1 ? one : one.toLowerCase();
-		const found = COMMANDS.find(([key]) => key === (shiftKey && one.startsWith("Arrow") ? `Shift ${named}` : named));
+		const { target, shiftKey, key: one } = event, named = NAMES[one] ?? (one.length > 1 ? one : one.toLowerCase());
+		const found = COMMANDS.find(([key]) => key === (shiftKey && one.startsWith("Arrow") ? `Shift+${named}` : named));
 		if (!found || event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName)) return;
-		if (named === "Space" && target.tagName === "BUTTON" || named === "Escape" && this.part("help").hidden) return; // for that button, for others
+		if (named === "Space" && target.tagName === "BUTTON" || named === "Esc" && this.part("help").hidden) return; // for that button, for others
 		this[found[3]](found[4]);
 		event.preventDefault();
 	}
@@ -657,7 +654,6 @@ export class Player {
 		if (this.playing) this.waiting = requestAnimationFrame(this.tick); else this.options.onend?.();
 	}
 
-	/** What is to be seen now. */
 	frame() {
 		const stroke = this.strokes[this.k], { t, show, replay: { scene } } = this, over = t > stroke.duration + PAUSE / 2 && stroke.later;
 		const frame = over ? { ...stroke.later } : stroke.at(t);
@@ -685,7 +681,6 @@ export class Player {
 	/** [[x, y], ...] [m] of all balls as they are on screen. */
 	positions() { return Array.from(this.shown.x, (x, k) => [x, this.shown.y[k]]); }
 
-	/** Draw and say all anew. */
 	update() {
 		const sum = this.starts[this.k] + this.t;
 		this.shown = this.frame();
@@ -705,7 +700,7 @@ export class Player {
 		this.said = key;
 		this.icon(this.buttons.play, playing ? "pause" : "play");
 		this.buttons.play.setAttribute("aria-label", playing ? "pause" : "play");
-		this.pace.lastChild.previousSibling.textContent = `${speed}×`;
+		this.pace.textContent = `${speed}×`;
 		for (const name in show) this.buttons[name].setAttribute("aria-pressed", ![false, "off"].includes(show[name]));
 		const about = [`${k + 1} of ${this.strokes.length}`, cue && `${cue.speed.toFixed(2)} m/s`, cue?.elevation > 0.1 && `raised ${round(cue.elevation * 360 / TURN)}°`];
 		this.part("about").lastChild.textContent = about.filter(Boolean).join(" · ");
@@ -733,7 +728,7 @@ export class Player {
 			one.classList.toggle("sn-turn", mine === k);
 		});
 		const pots = [], run = seen?.player === mine ? seen?.break : 0, now = this.part("now");
-		for (let k = upTo; run > 0 && k >= 0 && strokes[k].player === mine && strokes[k].points > 0; k--) pots.unshift(...strokes[k].pots);
+		for (let k = upTo; run && strokes[k]?.player === mine && strokes[k].points; k--) pots.unshift(...strokes[k].pots);
 		now.textContent = "";
 		const say = (what, dots, after = "") => {
 			const one = put(now, "span");
@@ -743,12 +738,11 @@ export class Player {
 		};
 		say(`break ${run} `, pots.slice(-12));
 		if (stroke.n === 22) say(`reds ${reds}`, []);
-		const next = over && stroke.points ? strokes[this.k + 1] : !over && stroke, what = next?.player === mine && next.ball_on; // nothing once the visit is over
+		const next = over && stroke.points ? strokes[this.k + 1] : !over && stroke, what = next?.player === mine && next.ball_on; // nothing after the visit
 		const on = what === "any colour" ? [16, 17, 18, 19, 20, 21] : [balls.findIndex(one => one.name.startsWith(what))];
 		say(what ? "on " : "", on[0] < 0 ? [] : on, ` ${what || ""}`);
 	}
 
-	/** Stop, and leave the element as it was. */
 	destroy() {
 		this.playing = false;
 		cancelAnimationFrame(this.waiting);
@@ -758,5 +752,4 @@ export class Player {
 	}
 }
 
-/** A player of a replay in an element. */
 export function mount(element, replay, options) { return new Player(element, replay, options); }
