@@ -25,10 +25,8 @@ with needs("agents.watch"):
     from .entrants import Entrant
     from .rollouts import HELD_OUT_SEED
 
-SUFFIXES = (".html", ".json", ".mp4", ".gif")
-SIZES = {".mp4": (1920, 1080), ".gif": (640, 360)}
-RATES = {".mp4": 30.0, ".gif": 15.0}
-"""Size [pixels] and pictures a second of films unless told."""
+FILMS = (".mp4", ".gif")
+SUFFIXES = (".html", ".json", *FILMS)
 
 
 def visit(player, seed, **options):
@@ -78,18 +76,17 @@ def _film(args):
     """The options of the film that is wanted, {} for a page."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     choice("out", suffix, SUFFIXES)
-    if suffix not in SIZES:
-        if args.size or args.fps or args.speed != 1.0:
-            raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
-        return {}
-    width, x, height = (args.size or "x".join(map(str, SIZES[suffix]))).partition("x")
-    if not (x and width.isdigit() and height.isdigit()):
-        raise refuse("size", args.size, "must be WIDTHxHEIGHT, such as 1280x720")
-    if int(width) % 2 or int(height) % 2:
-        raise refuse("size", args.size, "must be WIDTHxHEIGHT, both even, as video encoders want them")
-    rate = RATES[suffix] if args.fps is None else number("fps", args.fps, 0.0, 240.0, open_low=True)
-    speed = number("speed", args.speed, 0.0, 100.0, open_low=True)
-    return {"size": (int(width), int(height)), "fps": rate, "speed": speed}
+    film = {"speed": number("speed", args.speed, 0.0, 100.0, open_low=True)} if args.speed != 1.0 else {}
+    if args.fps is not None:
+        film["fps"] = number("fps", args.fps, 0.0, 240.0, open_low=True)
+    if args.size is not None:
+        width, _, height = args.size.partition("x")
+        if not (width.isdigit() and height.isdigit()) or int(width) % 2 or int(height) % 2:
+            raise refuse("size", args.size, "must be WIDTHxHEIGHT such as 1280x720, both even, as video encoders want them")
+        film["size"] = int(width), int(height)
+    if film and suffix not in FILMS:
+        raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
+    return film
 
 
 def found(args):

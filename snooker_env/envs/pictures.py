@@ -16,6 +16,8 @@ from .films import PictureSource
 
 MODES = ("human", "rgb_array", "ansi")
 FPS = 30
+HOLD = 15
+"""Pictures of the table after each stroke of a film, with what the referee said."""
 SIZE = (1920, 1080)
 """Width and height of pictures [pixels] unless told: those of render.view."""
 
@@ -79,7 +81,7 @@ class Pictures:
         if self._window is None:
             self._window = Window(size=None if self.size == SIZE else self.size)
         if played:
-            film = next(self._films(history, 1))
+            film, _ = next(self._films(history, 1))
             self._window.play(film, FPS)
         self._window.draw(self._scene(tables, 0, history))
 
@@ -97,21 +99,23 @@ class Pictures:
             self._window = None
 
     def _films(self, history: list[Played], recent: int) -> Iterator[Any]:
-        """The last strokes as films."""
-        from ..render.scene import Film
+        """The last strokes: each as a film, and the table after it."""
         from ..replays.bars import bars
+        from ..replays.film import filmed
 
         told = bars(history, self.players)
         for k in range(len(history) - recent, len(history)):
-            shot = history[k].shot
-            yield Film(self.table, shot, trail=trail_of(shot), spots=(0,), faded=(0,), bar=told[k][0])
+            yield filmed(self.table, history[k], *told[k])
 
     def _motion(self, history: list[Played], recent: int) -> Iterator[NDArray[np.uint8]]:
         from ..render.pygame_view import rgb_array
 
-        for film in self._films(history, recent):
+        for film, after in self._films(history, recent):
             for scene in film.scenes(FPS):
                 yield rgb_array(scene, size=self.size)
+            still = rgb_array(after, size=self.size)
+            for _ in range(HOLD):
+                yield still
 
     def _still(self, tables, k, history):
         from ..render.pygame_view import rgb_array

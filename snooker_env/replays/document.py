@@ -131,7 +131,7 @@ class Replay:
         Returns
         -------
         iterator of uint8 (height, width, 3)
-            A fresh array each.
+            To be read only: where nothing moves the same array comes again.
         """
         from .film import frames
 
@@ -146,7 +146,7 @@ class Replay:
             ``.html``: the page; ``.json``: the data; ``.mp4``, ``.gif``: a film, which needs the extra ``render``. It is written whole or
             not at all.
         **film
-            ``fps``, ``speed``, ``size`` of a film, as ``frames`` takes them.
+            ``fps``, ``speed``, ``size`` of a film, as ``frames`` takes them; a .gif is 640 x 360 at 15 pictures a second unless told.
 
         Returns
         -------

@@ -2,6 +2,7 @@
 
 import subprocess
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,9 @@ from numpy.typing import NDArray
 
 from .._check import number, refuse
 from .._files import write_whole
-from ..render.scene import Film, Scene, scene
+from ..physics.table import Table
+from ..render.scene import Film, Scene, ScoreBar, scene
+from ..simulation import Shot
 from ..tasks.played import Played
 from .bars import bars
 from .words import pots_of
@@ -20,38 +23,52 @@ if TYPE_CHECKING:
 
 PAUSE = 0.8
 """How long the table is shown after each stroke [s of the film]."""
+UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 SIZE = (1920, 1080)
-GIF_COLOURS = 128
+USUAL = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 15.0)}
+"""Size [pixels] and pictures a second of a film unless told: a GIF that fits into a page."""
 
 
-def scenes(replay: "Replay", fps: float, speed: float) -> Iterator[Scene]:
-    """What the film shows, one ``Scene`` a picture."""
+def shown(replay: "Replay") -> Iterator[tuple[Film, Scene]]:
+    """For each stroke its film, and the table after it with what the referee said."""
     judged = [stroke for stroke in replay.strokes if isinstance(stroke, Played)]
     told = iter(bars(judged, replay.players))
     for stroke in replay.strokes:
-        shot = stroke if not isinstance(stroke, Played) else stroke.shot
         during, after = next(told) if isinstance(stroke, Played) else (None, None)
-        text = "" if during else replay.title
-        film = Film(replay.table, shot, trail=(0, *pots_of(shot)), spots=(0,), faded=(0,), bar=during, text=text)
-        yield from film.scenes(fps, speed)
-        last = film.at(shot.duration)
-        rest = {"ball_radius": shot.physics.R, "paths": last.paths, "turns": last.turns, "ghosts": last.ghosts, "bar": after, "text": text}
-        where, there = (shot.positions, shot.on_table) if not isinstance(stroke, Played) else (stroke.positions, stroke.on_table)
-        still = scene(replay.table, where, there, **rest)
-        for _ in range(round(PAUSE * fps)):
-            yield still
+        yield filmed(replay.table, stroke, during, after, "" if during else replay.title)
+
+
+def filmed(table: Table, stroke: Shot | Played, during: ScoreBar | None, after: ScoreBar | None, text: str = "") -> tuple[Film, Scene]:
+    """A stroke as a film, and the table after it; the bars are those of ``bars``."""
+    shot, judged = (stroke.shot, True) if isinstance(stroke, Played) else (stroke, False)
+    film = Film(table, shot, trail=(0, *pots_of(shot)), spots=(0,), faded=(0,), bar=during, text=text)
+    last = film.at(shot.duration)
+    where, there = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
+    placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
+    turns = {0: UNTURNED} if placed else last.turns
+    over = {"ball_radius": shot.physics.R, "paths": last.paths, "ghosts": last.ghosts, "turns": turns, "bar": after, "text": text}
+    return film, scene(table, where, there, **over)
 
 
 def frames(replay: "Replay", fps: float, speed: float, size: tuple[int, int]) -> Iterator[NDArray[np.uint8]]:
     """See ``Replay.frames``."""
     from ..render.pygame_view import rgb_array
 
-    for picture in scenes(replay, _rate("fps", fps), _rate("speed", speed)):
-        yield rgb_array(picture, size=size)
+    fps, speed = _rate("fps", fps), _rate("speed", speed)
+    for film, after in shown(replay):
+        for picture in film.scenes(fps, speed):
+            yield rgb_array(picture, size=size)
+        still = rgb_array(after, size=size)
+        for _ in range(round(PAUSE * fps)):
+            yield still
 
 
-def write_film(replay: "Replay", target: Path, *, fps: float = 30.0, speed: float = 1.0, size: tuple[int, int] = SIZE) -> None:
+def write_film(
+    replay: "Replay", target: Path, *, fps: float | None = None, speed: float = 1.0, size: tuple[int, int] | None = None
+) -> None:
     """Write ``frames`` to an .mp4 or .gif file."""
+    usual_size, usual_fps = USUAL[target.suffix.lower()]
+    size, fps = usual_size if size is None else size, usual_fps if fps is None else _rate("fps", fps)
     if len(size) != 2 or any(side % 2 for side in size):
         raise refuse("size", size, "must be (width, height), both even, as video encoders want them")
     pictures = replay.frames(fps=fps, speed=speed, size=size)
@@ -63,23 +80,42 @@ def _rate(field: str, value: Any) -> float:
 
 
 def _encode(pictures: Iterator[NDArray[np.uint8]], path: Path, fps: float, size: tuple[int, int]) -> None:
+    if path.suffix.lower() != ".gif":
+        _pipe(pictures, size, fps, ["-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p"], path)
+        return
+    first = next(pictures)
+    colours = path.with_name(f"{path.stem}.colours.png")
+    try:
+        _pipe(iter([_swatches(first)]), (256, 256), 1.0, ["-vf", "palettegen=stats_mode=single"], colours)
+        chosen = ["-i", str(colours), "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]
+        _pipe(chain([first], pictures), size, fps, chosen, path)
+    finally:
+        colours.unlink(missing_ok=True)
+
+
+def _swatches(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """The colours of a picture as a picture (256, 256, 3), the rare ones much enlarged: a ball is small, and its colour matters."""
+    coarse = (picture >> 2).astype(np.uint32)
+    codes, counts = np.unique((coarse[..., 0] << 12) | (coarse[..., 1] << 6) | coarse[..., 2], return_counts=True)
+    share = np.cumsum(counts**0.25)
+    taken = codes[np.searchsorted(share, np.linspace(0.0, share[-1], 256 * 256, endpoint=False), side="right")]
+    shades = np.stack([taken >> 12, (taken >> 6) & 63, taken & 63], axis=-1)
+    return ((shades << 2) | 2).astype(np.uint8).reshape(256, 256, 3)
+
+
+def _pipe(pictures: Iterator[NDArray[np.uint8]], size: tuple[int, int], fps: float, wanted: list[str], path: Path) -> None:
+    """Send pictures through ffmpeg into a file."""
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError as error:
         raise ImportError('films need ffmpeg; install it, in a clone of snooker_env, with: pip install -e ".[render]"') from error
     given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
-    wanted = ["-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p", "-movflags", "+faststart"]
-    if path.suffix == ".gif":
-        palette = (
-            f"[0:v]split[a][b];[a]palettegen=max_colors={GIF_COLOURS}:stats_mode=diff[p];[b][p]paletteuse=dither=none:diff_mode=rectangle"
-        )
-        wanted = ["-filter_complex", palette, "-loop", "0"]
     command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *given, *wanted, str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
         assert encoder.stdin is not None and encoder.stderr is not None
         try:
             for picture in pictures:
-                encoder.stdin.write(picture.data)
+                encoder.stdin.write(np.ascontiguousarray(picture).data)
             encoder.stdin.close()
             complaint = encoder.stderr.read().decode(errors="replace")
         except BrokenPipeError:

@@ -77,7 +77,11 @@ def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
     if not hasattr(env, "history"):
         raise refuse_what("source", f"a {type(source).__name__}", _ALLOWED)
     if not env.keep_history:
-        raise refuse_what("source", "an environment that keeps no history", "must have keep_history = True before it plays")
+        raise refuse_what(
+            "source",
+            "an environment that keeps no history",
+            "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in sn.RecordReplay",
+        )
     if not env.history:
         raise refuse_what("source", "an environment without a stroke since its reset", "must have played at least one")
     return env.history

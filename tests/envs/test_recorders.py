@@ -17,9 +17,12 @@ FPS = 30
 SMALL = {"render_size": (320, 180)}
 
 
+HOLD = 15
+
+
 def pictures_of(seconds):
-    """How many pictures a shot has: one every 1/30 s, and its end."""
-    return len(np.arange(0.0, seconds, 1 / FPS)) + 1
+    """How many pictures a shot has: one every 1/30 s, its end, and half a second of the table after it."""
+    return len(np.arange(0.0, seconds, 1 / FPS)) + 1 + HOLD
 
 
 def made(**options):
