@@ -1,17 +1,20 @@
 """How is a file written so that nobody ever sees half of it? Beside its place first, then moved there."""
 
+import itertools
 import os
 from collections.abc import Callable
 from pathlib import Path
+
+_NUMBERS = itertools.count()
 
 
 def write_whole(path: str | Path, write: Callable[[Path], object]) -> None:
     """Have ``write(temporary)`` make a file beside ``path`` and put it in its place: after a crash the old file is there, or the new one.
 
-    The temporary file has the suffix of ``path`` and belongs to this process alone; if anything fails, nothing is left of it.
+    The temporary file has the suffix of ``path`` and belongs to this call alone; if anything fails, nothing is left of it.
     """
     target = Path(os.path.realpath(path))
-    temporary = target.with_name(f".{target.stem}.{os.getpid()}.part{target.suffix}")
+    temporary = target.with_name(f".{os.getpid()}-{next(_NUMBERS)}{target.suffix}")
     try:
         write(temporary)
         with temporary.open("rb+") as file:

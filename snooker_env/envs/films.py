@@ -4,6 +4,8 @@
 once after each step, in a method named ``_capture_frame``, and append what comes back to their film. A step here is a whole shot, so
 that a visit would be a film of a fifth of a second. None of them takes a list of pictures. So when ``render()`` is asked by such a method,
 it asks back: the method is called once for each picture of the motion, and gets the last one when it goes on itself.
+
+Several tables of ``SyncVectorEnv`` or ``DummyVecEnv`` are filmed one after the other; those of ``SnookerVectorEnv`` together.
 """
 
 import sys
@@ -17,8 +19,8 @@ def recorder_asking() -> Any:
     """The recorder that asks for a picture at this moment; None if nobody does, or if it is already being handed a film."""
     found, frame = [], sys._getframe(1)
     while frame is not None:
-        if frame.f_code.co_name == _CAPTURE:
-            found.append(frame.f_locals.get("self"))
+        if frame.f_code.co_name == _CAPTURE and hasattr(frame.f_locals.get("self"), "recorded_frames"):
+            found.append(frame.f_locals["self"])
         frame = frame.f_back
     return found[0] if len(found) == 1 else None
 

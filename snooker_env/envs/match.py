@@ -112,7 +112,6 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
         self._seeded = False
         self._record, self._last = Record(full=render_mode is not None), None
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, ("Player 1", "Player 2"))
-        self._pictures.require_display()
 
     @property
     def positions(self) -> Floats:
@@ -358,7 +357,7 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
         uint8 (H, W, 3), str or None
             By the render mode: "rgb_array", "ansi", another.
         """
-        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent)
+        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent())
 
     def _show(self, *, played=False):
         self._pictures.show(self.tables, self._record.strokes, played=played)

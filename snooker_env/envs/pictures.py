@@ -1,7 +1,7 @@
 """How does an environment show itself? One picture for "rgb_array", text for "ansi", a window with the moving shot for "human"."""
 
 from collections.abc import Iterator, Sequence
-from itertools import zip_longest
+from itertools import chain, zip_longest
 from typing import Any, TypeAlias
 
 import gymnasium
@@ -39,19 +39,24 @@ class Pictures:
         self.table, self.mode, self.players = table, mode, players
         self.size = checked_size(size)
         self._window, self._source = None, PictureSource()
+        if mode == "human":  # refused now, not at the first stroke
+            from ..render.window import require_display
+
+            require_display()
 
     def __getstate__(self) -> dict[str, Any]:
         return self.__dict__ | {"_window": None, "_source": PictureSource()}
 
-    def render(self, tables: Tables, k: int, history: list[Played], recent: int) -> Picture:
+    def render(self, tables: Tables, k: int, history: list[Played], recent: list[tuple[list[Played], int]]) -> Picture:
         """Table k with the paths of the last stroke of its ``history``: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise.
 
-        A recorder gets the motion of the last ``recent`` strokes first, see ``films``.
+        A recorder gets the motion of the ``recent`` strokes first, see ``films``: of each episode so many of its last.
         """
         if self.mode is None:
             gymnasium.logger.warn('render() without render_mode; make the environment with render_mode="rgb_array", "ansi" or "human"')
         if self.mode == "rgb_array":
-            return self._source.picture(lambda: self._motion(history, recent), lambda: self._still(tables, k, history))
+            motion = lambda: chain.from_iterable(self._motion(*some) for some in recent)  # noqa: E731
+            return self._source.picture(motion, lambda: self._still(tables, k, history))
         if self.mode == "ansi":
             from ..render.ascii_view import ansi
 
@@ -61,7 +66,7 @@ class Pictures:
     def render_all(self, tables: Tables, recent: list[list[Played]]) -> tuple[Picture, ...]:
         """``render`` of many tables at once; they move at the same time, and wait for the one that moves longest."""
         if self.mode != "rgb_array":
-            return tuple(self.render(tables, k, strokes, 0) for k, strokes in enumerate(recent))
+            return tuple(self.render(tables, k, strokes, []) for k, strokes in enumerate(recent))
 
         def still():
             return tuple(self._still(tables, k, strokes) for k, strokes in enumerate(recent))
@@ -84,13 +89,6 @@ class Pictures:
             film, _ = next(self._films(history, 1))
             self._window.play(film, FPS)
         self._window.draw(self._scene(tables, 0, history))
-
-    def require_display(self) -> None:
-        """Raise RuntimeError if a window is wanted and there is no display to show it on."""
-        if self.mode == "human":
-            from ..render.window import require_display
-
-            require_display()
 
     def close(self) -> None:
         """Close the window, if there is one."""
@@ -129,7 +127,7 @@ class Pictures:
 
         paths = ghosts = last = None
         turns = {0: np.array([1.0, 0.0, 0.0, 0.0])}  # spots as in films
-        if history:
+        if history and np.array_equal(history[-1].positions, tables.positions[k]):  # else it did not lead to this table
             shot = history[-1].shot
             paths, ghosts = ball_paths(shot, trail_of(shot)), {0: contacts(shot)}
             last = bars(history, self.players)[-1][1]

@@ -17,23 +17,27 @@ class Record:
     last_shot: Shot | None
     """The agent's own last shot; with ``full`` that of either player."""
 
-    def __init__(self, *, full: bool):
+    def __init__(self, *, full: bool, last_shot: Shot | None = None):
         self.full = full
         self.buffers = ShotBuffers(1, path=full)
-        self.strokes, self.last_shot, self._before = [], None, 0
+        self.strokes, self.last_shot = [], last_shot
+        self._before, self._seen = 0, False
+        self._ended: tuple[list[Played], int] = [], 0
 
     def begin_episode(self) -> None:
-        """A new episode: what was kept of the last one goes."""
-        self.strokes, self.last_shot, self._before = [], None, 0
+        """A new episode: what was kept of the last one goes, but for strokes that nobody has had the time to see: some vector environments
+        reset within a step, before they render."""
+        self._ended = ([], 0) if self._seen else (self.strokes, len(self.strokes) - self._before)
+        self.strokes, self.last_shot, self._before, self._seen = [], None, 0, False
 
     def begin_step(self) -> None:
         """A new step: the strokes to come are the recent ones."""
-        self._before = len(self.strokes)
+        self._before, self._ended, self._seen = len(self.strokes), ([], 0), False
 
-    @property
-    def recent(self) -> int:
-        """How many of the strokes are of the last step or reset."""
-        return len(self.strokes) - self._before
+    def recent(self) -> list[tuple[list[Played], int]]:
+        """Episodes, and how many of their last strokes are of the last step or reset; asked by who shows them."""
+        self._seen = True
+        return [self._ended, (self.strokes, len(self.strokes) - self._before)]
 
     def saw(self, tables: Tables, k: int, buffers: ShotBuffers, j: int, own: bool) -> None:
         """Table k has just been played on: shot j of the buffers; ``own``: by the agent."""
@@ -63,14 +67,15 @@ class HasHistory:
 
     @property
     def keep_history(self) -> bool:
-        """Whether the ``history`` is kept, with the path of every stroke: with a render mode always, else from when it is set to True."""
+        """Whether the ``history`` is kept, with the path of every stroke: with a render mode always, else from when it is set to True.
+        Set to False, it forgets what it has."""
         return self._record.full
 
     @keep_history.setter
     def keep_history(self, value: bool) -> None:
         full = truth("keep_history", value) or self.render_mode is not None
         if full != self._record.full:
-            self._record = Record(full=full)
+            self._record = Record(full=full, last_shot=self._record.last_shot)
 
 
 class Recent:

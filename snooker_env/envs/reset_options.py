@@ -124,7 +124,7 @@ def _position(field, given, tables):
     if given.get("over", False) is True:
         raise refuse(f"{field}.over", True, "must be False: the visit has ended, there is no stroke to play")
     try:
-        arrays = Position(**given, table=tables.rules.table).arrays()
+        arrays = Position.from_dict(given, table=tables.rules.table).arrays()
     except ValueError as error:
         raise ValueError(f"{field}.{error}") from None
     _, on_table, game = arrays

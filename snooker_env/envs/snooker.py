@@ -151,7 +151,6 @@ class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
         self.render_mode = render_mode
         names = (("Agent",), ("Agent", "Opponent"))[self.options.task == "frame"]
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
-        self._pictures.require_display()
         self._record, self._seeded = Record(full=render_mode is not None), False
 
     # the state of the table ------------------------------------------------------------------------------------------------
@@ -251,6 +250,7 @@ class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
             If it is not sound; then nothing has changed.
         """
         self._take(Start(state=self.tables.checked(state, self.np_random)), seed=None)
+        self._record.begin_episode()
 
     def _take(self, start: Start, *, seed: int | None) -> None:
         """Begin from there; the random numbers that come with a state are taken over unless there is a seed."""
@@ -390,7 +390,7 @@ class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
         uint8 (H, W, 3), str or None
             By the render mode: "rgb_array", "ansi", another.
         """
-        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent)
+        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent())
 
     def close(self) -> None:
         """Close the window, if there is one."""

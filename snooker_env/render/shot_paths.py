@@ -57,7 +57,7 @@ class Meeting(NamedTuple):
 def check_path(shot: Shot) -> None:
     """Raise ValueError unless the shot has its path."""
     if not len(shot.segments):
-        raise refuse("shot.segments", "none", 'must be there: simulate() keeps them, an environment only with a render_mode ("rgb_array")')
+        raise refuse("shot.segments", "none", "must be there: simulate() keeps them, environments with keep_history = True")
 
 
 def pieces(shot: Shot, ball: int) -> list[Piece]:

@@ -13,28 +13,30 @@ from .words import on_words, pots_of, sentence
 
 def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreBar, ScoreBar]]:
     """For each stroke of one episode, in their order: the bar during it and the bar after it. ``players``: their names."""
-    made, potted, striker, names = [], [], None, tuple(players)
+    made, names = [], tuple(players)
+    potted: list[int] | None = []  # in this break; None: it began before the first stroke that was seen
+    run = 0
     for played in strokes:
         gains = {played.player: played.points, 1 - played.player: played.penalty}
         scores = tuple(score - gains.get(k, 0) for k, score in enumerate(played.scores))
-        goes_on = striker == played.player
-        potted = potted if goes_on else []
-        so_far = played.break_points - played.points if played.points else made[-1][1].break_points if goes_on and made else 0
+        if played.break_before != run or not run:
+            potted = [] if not played.break_before else None
+        here = _start(played)
         before = {
             "players": names, "scores": scores if names else (), "striker": played.player if names else None,
-            "break_points": so_far, "potted": tuple(potted),
-            "reds_left": int(_start(played)[1 : N_REDS + 1].sum()), "points_on": _left(_start(played), played.ball_on),
-            "ball_on": "free ball" if played.free_ball else on_words(played.ball_on),
+            "break_points": played.break_before, "potted": tuple(potted or ()), "reds_left": int(here[1 : N_REDS + 1].sum()),
+            "points_on": _left(here, played.ball_on), "ball_on": "free ball" if played.free_ball else on_words(played.ball_on),
         }  # fmt: skip
-        if played.points:
+        if played.points and potted is not None:
             potted = potted + pots_of(played.shot)
+        run = played.break_before + played.points
         after = before | {
-            "scores": played.scores if names else (), "break_points": so_far + played.points, "potted": tuple(potted),
+            "scores": played.scores if names else (), "break_points": run, "potted": tuple(potted or ()),
             "reds_left": int(played.on_table[1 : N_REDS + 1].sum()), "points_on": _left(played.on_table, played.next_on),
-            "ball_on": on_words(played.next_on), "words": sentence(played, names),
+            "ball_on": "free ball" if played.next_free_ball else on_words(played.next_on), "words": sentence(played, names),
         }  # fmt: skip
         made.append((ScoreBar(**before), ScoreBar(**after)))
-        striker = played.player if played.points else None
+        run = run if played.points else 0
     return made
 
 
@@ -46,7 +48,8 @@ def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar 
     return ScoreBar(
         players=tuple(players), scores=standing["scores"] if players else (), striker=standing["next_player"] if players else None,
         break_points=standing["break_points"], potted=last.potted if last is not None and goes_on else (),
-        reds_left=int(on_table[1 : N_REDS + 1].sum()), points_on=_left(on_table, ball_on), ball_on=on_words(ball_on),
+        reds_left=int(on_table[1 : N_REDS + 1].sum()), points_on=_left(on_table, ball_on),
+        ball_on="free ball" if standing["next_free_ball"] else on_words(ball_on),
         words=last.words if last is not None else "",
     )  # fmt: skip
 

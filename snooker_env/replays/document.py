@@ -2,6 +2,7 @@
 
 import html
 import json
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -46,12 +47,15 @@ class Replay:
                 raise refuse_what(f"strokes[{k}]", f"a {type(stroke).__name__}", "must be a Shot, or a stroke of env.history")
         if not self.strokes:
             raise refuse("strokes", [], "must hold at least one stroke")
-        if not isinstance(title, str):
-            raise refuse("title", title, "must be a str")
-        names = (players,) if isinstance(players, str) else tuple(players)
-        if len(names) > 2 or not all(isinstance(name, str) for name in names):
-            raise refuse("players", players, "must be at most two names")
-        self.title, self.players = title, names or self._usual_players()
+        self.title, names = checked_text("title", title), checked_players(players)
+        usual = self._usual_players()
+        if names and len(names) != len(usual):
+            allowed = "must be two names for a frame, one for a visit, none for bare shots"
+            raise refuse_what("players", f"{len(names)} names", allowed)
+        self.players = names or usual
+        for k, shot in enumerate(self.shots):
+            if (shot.physics.R, shot.physics.spin_decel) != (self.shots[0].physics.R, self.shots[0].physics.spin_decel):
+                raise refuse_what(f"strokes[{k}]", "a shot in another world", "must have the R and the spin_decel of the first")
         tables = [shot.table for shot in self.shots if shot.table is not None]
         if table is not None:
             self.table = Table.of(table)
@@ -104,10 +108,7 @@ class Replay:
         data = json.dumps(self.to_dict(), separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
         parts = {"title": html.escape(self.title or "Snooker replay"), "module": (WEB / "table.js").read_text("utf-8"), "data": data}
         page = (WEB / "replay.html").read_text("utf-8")
-        for name in ("title", "module", "data"):  # the data last: nothing in it is read as a place to fill in
-            before, mark, after = page.partition("{{" + name + "}}")
-            page = before + parts[name] + after if mark else page
-        return page
+        return re.sub(r"\{\{(title|module|data)\}\}", lambda place: parts[place[1]], page)
 
     def _repr_html_(self) -> str:
         """In a notebook: the page in a frame of its own."""
@@ -172,6 +173,21 @@ class Replay:
         text = self.html() if suffix == ".html" else json.dumps(self.to_dict(), allow_nan=False)
         write_whole(target, lambda temporary: temporary.write_text(text, "utf-8"))
         return target
+
+
+def checked_text(field: str, text: Any) -> str:
+    """A text that a file can hold."""
+    if not isinstance(text, str) or any(0xD800 <= ord(letter) < 0xE000 for letter in text):
+        raise refuse(field, text, "must be a str, without halves of surrogate pairs")
+    return text
+
+
+def checked_players(players: Any) -> tuple[str, ...]:
+    """Names of players: one alone may be a str."""
+    names = (players,) if isinstance(players, str) else tuple(players)
+    if len(names) > 2:
+        raise refuse("players", players, "must be at most two names")
+    return tuple(checked_text("players", name) for name in names)
 
 
 def _same(a: Table, b: Table) -> bool:

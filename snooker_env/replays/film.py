@@ -69,7 +69,11 @@ def write_film(
     """Write ``frames`` to an .mp4 or .gif file."""
     usual_size, usual_fps = USUAL[target.suffix.lower()]
     size, fps = usual_size if size is None else size, usual_fps if fps is None else _rate("fps", fps)
-    if len(size) != 2 or any(side % 2 for side in size):
+    if (
+        not isinstance(size, tuple | list)
+        or len(size) != 2
+        or not all(isinstance(side, int) and side > 0 and not side % 2 for side in size)
+    ):
         raise refuse("size", size, "must be (width, height), both even, as video encoders want them")
     pictures = replay.frames(fps=fps, speed=speed, size=size)
     write_whole(target, lambda path: _encode(pictures, path, fps, size))
@@ -81,7 +85,7 @@ def _rate(field: str, value: Any) -> float:
 
 def _encode(pictures: Iterator[NDArray[np.uint8]], path: Path, fps: float, size: tuple[int, int]) -> None:
     if path.suffix.lower() != ".gif":
-        _pipe(pictures, size, fps, ["-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p"], path)
+        _pipe(pictures, size, fps, ["-c:v", "libx264", "-preset", "superfast", "-crf", "18", "-pix_fmt", "yuv420p"], path)
         return
     first = next(pictures)
     colours = path.with_name(f"{path.stem}.colours.png")

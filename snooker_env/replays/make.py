@@ -53,7 +53,11 @@ def replay(source: Any, path: str | Path | None = None, *, title: str = "", play
     >>> sn.replay(env, title="one stroke")
     Replay(1 strokes, 'one stroke')
     """
-    made = source if isinstance(source, Replay) else Replay(_strokes(source, table), title=title, players=players, table=table)
+    if isinstance(source, Replay):
+        strokes, title, players, table = source.strokes, title or source.title, players or source.players, table or source.table
+    else:
+        strokes = _strokes(source, table)
+    made = Replay(strokes, title=title, players=players, table=table)
     if path is not None:
         made.save(path)
     return made

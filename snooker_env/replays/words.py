@@ -43,8 +43,8 @@ def sentence(played: Played, players: tuple[str, ...]) -> str:
     elif played.points:
         balls = " and ".join(ball_name(ball) for ball in pots_of(played.shot))
         said = f"{balls[:1].upper()}{balls[1:]} potted, {played.points}"
-        if played.break_points > played.points:
-            said += f", break of {played.break_points}"
+        if played.break_before:
+            said += f", break of {played.break_before + played.points}"
     else:
         said = "Nothing potted"
     if played.winner is not None and len(players) > played.winner:

@@ -6,8 +6,8 @@ from typing import Any
 
 import gymnasium
 
-from .._check import choice, refuse_what
-from .document import SUFFIXES, Replay
+from .._check import choice, refuse, refuse_what
+from .document import SUFFIXES, Replay, checked_players
 
 
 class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
@@ -59,7 +59,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         name_prefix: str = "snooker", suffix: str = ".html", players: Iterable[str] = (),
     ):  # fmt: skip
         gymnasium.utils.RecordConstructorArgs.__init__(
-            self, folder=str(folder), episode_trigger=episode_trigger, name_prefix=name_prefix, suffix=suffix, players=tuple(players)
+            self, folder=str(folder), episode_trigger=episode_trigger, name_prefix=name_prefix, suffix=suffix, players=players
         )
         super().__init__(env)
         inner = env.unwrapped
@@ -68,7 +68,12 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         inner.keep_history = True  # type: ignore[attr-defined]
         self.paths: list[Path] = []
         self._folder, self._prefix, self._suffix = Path(folder), name_prefix, choice("suffix", suffix, SUFFIXES)
-        self._wanted, self._players = episode_trigger, tuple(players)
+        if not isinstance(name_prefix, str) or Path(name_prefix + suffix).name != name_prefix + suffix:
+            raise refuse("name_prefix", name_prefix, "must be the beginning of a file's name, without folders")
+        frame = inner.options.task == "frame"  # type: ignore[attr-defined]
+        self._wanted, self._players = episode_trigger, checked_players(players)
+        if len(self._players) not in (0, 1 + frame):
+            raise refuse("players", players, f"must be {1 + frame} names" if frame else "must be one name")
         self._number, self._written = -1, True
         self._folder.mkdir(parents=True, exist_ok=True)
 
@@ -103,6 +108,8 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         observation, reward, terminated, truncated, info
         """
         result = super().step(action)
+        if self._written:  # a wrapper beneath has begun another episode
+            self._number, self._written = self._number + 1, False
         if result[2] or result[3]:
             self._write()
         return result

@@ -263,7 +263,7 @@ class Frames(Tables):
         frame = self.frame(k)
         return {
             "next_player": frame.striker, "scores": frame.scores, "break_points": frame.break_points, "choice": frame.phase == "choice",
-            "winner": frame.winner,
+            "winner": frame.winner, "next_free_ball": frame.free_ball,
         }  # fmt: skip
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:

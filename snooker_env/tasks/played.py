@@ -7,7 +7,7 @@ from .._types import Bools, Floats
 from ..game.balls import BallOn, ids_of
 from ..game.ruling import Foul
 from ..simulation import Shot
-from .stroke import COST, CUE_SPEED, FIRST, FOULS, FREE, PLAYER, SCORED, WAS_ON, ShotBuffers
+from .stroke import BREAK, COST, CUE_SPEED, FIRST, FOULS, FREE, PLAYER, SCORED, WAS_ON, ShotBuffers
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -38,10 +38,14 @@ class Played:
         Which balls are on the table then.
     next_on : BallOn
         What is on next; NOTHING when it is over.
+    next_free_ball : bool
+        Whether the next player has a free ball.
     next_player : int
         Whose turn it is next.
     scores : tuple of int
         Of a frame, after the stroke; of a visit its points so far.
+    break_before : int
+        Points of the break before this stroke.
     break_points : int
         Points of the break with this stroke, 0 if it scored nothing; of a visit its points so far.
     in_hand : bool
@@ -66,8 +70,10 @@ class Played:
     positions: Floats
     on_table: Bools
     next_on: BallOn
+    next_free_ball: bool
     next_player: int
     scores: tuple[int, ...]
+    break_before: int
     break_points: int
     in_hand: bool
     choice: bool
@@ -80,6 +86,7 @@ def judged(seen: list[int]) -> dict[str, Any]:
     return {
         "player": seen[PLAYER], "ball_on": BallOn(seen[WAS_ON]), "free_ball": bool(seen[FREE]), "first": ids_of(seen[FIRST]),
         "points": seen[SCORED], "penalty": seen[COST], "fouls": Foul(seen[FOULS]),
+        "break_before": seen[BREAK] - seen[SCORED],
     }  # fmt: skip
 
 

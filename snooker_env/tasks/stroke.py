@@ -166,8 +166,8 @@ class ShotBuffers:
     n_segments: Ints
     duration: Floats
     """(m,) how each shot ended, and how long it took [s]."""
-    enlarged: "ShotBuffers | None"
-    """Where the last shot is that needed more room."""
+    enlarged: "dict[int, ShotBuffers]"
+    """Where the shots of the last run are that needed more room, alone each: row -> its own buffers."""
 
     def __init__(self, m: int, log: int = 512, *, path: bool = False):
         self.log = log
@@ -178,7 +178,7 @@ class ShotBuffers:
         self.segments = np.zeros((m, 2 * log + N_BALLS + 2 if path else 0, cloth.COLUMNS + 2))
         self.status, self.n_events, self.n_segments = (np.zeros(m, np.int64) for _ in range(3))
         self.duration = np.zeros(m)
-        self.enlarged = None
+        self.enlarged = {}
 
     def __len__(self) -> int:
         return len(self.duration)
@@ -205,7 +205,7 @@ class ShotBuffers:
 def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
     """Play the first m shots of the buffers until all balls are at rest; ``phys``: the packed ``rules.physics``."""
     table, (fidelity, n_steps) = rules.table, rules.fidelity
-    buffers.enlarged = None
+    buffers.enlarged = {}
     engine.run_batch(
         buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted, phys, table.noses, table.jaws, table.falls, fidelity, n_steps,
         MAX_EVENTS, buffers.event_time, buffers.event_what, buffers.segments, buffers.status, buffers.n_events, buffers.n_segments,
@@ -226,5 +226,5 @@ def run_again(buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table:
         status = one.status[0]
     if status != Status.OK:
         raise SimulationError(f"the shot on table {k} {_WHY[Status(status)]}")
-    buffers.enlarged = one
+    buffers.enlarged[j] = one
     return one

@@ -128,9 +128,9 @@ class Crew:
     def saw(self, which: Ints, buffers: stroke.ShotBuffers, own: bool) -> None:
         """The strokes of the tables ``which`` have just been played."""
         if self.watch is not None:
-            enlarged = buffers.enlarged
             for j, k in enumerate(which.tolist()):
-                self.watch(k, enlarged or buffers, 0 if enlarged else j, own)
+                alone = buffers.enlarged.get(j)
+                self.watch(k, buffers if alone is None else alone, j if alone is None else 0, own)
 
 
 _T = TypeVar("_T", bound="Tables")
@@ -290,7 +290,7 @@ class Tables(ABC):
 
     @abstractmethod
     def standing(self, k: int) -> dict[str, Any]:
-        """Of a ``Played`` on table k what only the task knows: next_player, scores, break_points, choice, winner."""
+        """Of a ``Played`` on table k what only the task knows: next_player, next_free_ball, scores, break_points, choice, winner."""
 
     @abstractmethod
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:

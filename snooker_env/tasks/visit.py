@@ -168,7 +168,7 @@ class Visits(Tables):
     def standing(self, k: int) -> dict[str, Any]:
         """Of a ``Played`` on table k: there is one player, whose break is his score."""
         points = int(self.game[k, POINTS])
-        return {"next_player": 0, "scores": (points,), "break_points": points, "choice": False, "winner": None}
+        return {"next_player": 0, "scores": (points,), "break_points": points, "choice": False, "winner": None, "next_free_ball": False}
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """Begin a visit on table k with a sound position, ``game`` being its row; its random numbers go on."""

@@ -104,6 +104,8 @@ def test_a_recorder_that_is_being_handed_a_film_is_not_asked_again():
     source, kept = PictureSource(), []
 
     class Recorder:
+        recorded_frames = kept
+
         def _capture_frame(self):
             kept.append(source.picture(lambda: iter("abc"), lambda: "still"))
 
@@ -115,7 +117,7 @@ def test_a_film_that_breaks_off_leaves_no_picture_behind():
     source = PictureSource()
 
     class Recorder:
-        asked = 0
+        recorded_frames, asked = (), 0
 
         def _capture_frame(self):
             self.asked += 1
@@ -126,3 +128,56 @@ def test_a_film_that_breaks_off_leaves_no_picture_behind():
     with pytest.raises(KeyboardInterrupt):
         Recorder()._capture_frame()
     assert source.picture(lambda: iter(""), lambda: "still") == "still"
+
+
+def test_the_stroke_that_ends_an_episode_is_filmed_where_the_reset_is_inside_the_step(tmp_path):
+    sb3 = pytest.importorskip("stable_baselines3.common.vec_env")
+    env = sb3.VecVideoRecorder(sb3.DummyVecEnv([made]), str(tmp_path), lambda step: step == 0, video_length=10**6)
+    env.seed(1)
+    env.reset()
+    single = sn.SnookerEnv(action="discrete")
+    single.reset(seed=1)
+    expected, ended = 1, False
+    while not ended:
+        seconds, ended = (lambda r: (r[4]["seconds"], r[2]))(single.step(67))
+        assert env.step(np.array([67]))[2][0] == ended
+        expected += pictures_of(seconds) + 1
+        assert len(env.recorded_frames) == expected
+    env.close()
+
+
+def test_shots_with_long_logs_are_kept_each_on_its_own_table(monkeypatch):
+    """A shot that is played again with more room leaves its neighbours' strokes alone."""
+    from snooker_env.tasks import stroke
+
+    def strokes(log):
+        with monkeypatch.context() as patched:
+            patched.setattr(stroke.ShotBuffers.__init__, "__defaults__", (log,))
+            envs = sn.SnookerVectorEnv(4, render_mode="ansi", action="discrete", threads=1)
+            envs.reset(seed=1)
+            envs.step(np.full(4, 67))
+            return [[(p.shot.positions, len(p.shot.events), p.points) for p in table] for table in envs._recent.strokes]
+
+    long, short = strokes(512), strokes(8)
+    assert len({table[0][1] for table in long}) > 1 and max(table[0][1] for table in long) > 8
+    for a, b in zip(long, short, strict=True):
+        assert len(a) == len(b) == 1 and a[0][1:] == b[0][1:] and np.array_equal(a[0][0], b[0][0])
+
+
+def test_a_picture_shows_no_stroke_of_another_table():
+    """After set_state, and where a new episode has begun within the step, nothing is drawn of the last stroke."""
+    env = made()
+    env.reset(seed=1)
+    state, plain = env.unwrapped.get_state(), env.render()
+    env.step(67)
+    env.unwrapped.set_state(state)
+    assert np.array_equal(env.render(), plain) and env.unwrapped.history == []
+
+
+def test_keeping_history_later_keeps_the_last_shot():
+    env = sn.SnookerEnv(action="discrete")
+    env.reset(seed=1)
+    env.step(67)
+    shot = env.last_shot
+    env.keep_history = True
+    assert env.last_shot is shot and env.history == []

@@ -132,6 +132,17 @@ def test_the_page_holds_everything_and_asks_for_nothing(strokes):
     assert json.loads(data[1])["players"] == ["</script>"]
 
 
+def test_places_to_fill_in_that_a_title_names_are_left_alone(strokes):
+    page = sn.replay(strokes[:1], title="{{data}} {{module}}").html()
+    assert page.count("{{data}}") == 2 and page.count('"format":"snooker-replay"') == 1  # in the title and in the data
+
+
+def test_a_replay_of_a_replay_takes_another_title(strokes):
+    first = sn.replay(strokes[:2], title="one", players=["A"])
+    second = sn.replay(first, title="two")
+    assert (second.title, second.players, len(second)) == ("two", ("A",), 2) and sn.replay(first).title == "one"
+
+
 def test_a_bare_shot_and_other_tables():
     shot = sn.simulate([(0.0, -0.5), (0.1, 0.3)], [(0.4, 3.0), (0, 0)], [(0, 0, 0)] * 2, table="pool9", physics={"R": 0.028575})
     replay = sn.replay(shot, title="pool")
@@ -221,6 +232,10 @@ def test_bad_arguments_are_refused(strokes, tmp_path):
     other = sn.simulate([(0.0, 0.0)], [(1.0, 0)], [(0, 0, 0)], table="tight")
     refused(lambda: sn.replay([strokes[0], other]), "strokes[1]", "another table", "must be on the table of the first")
     refused(lambda: sn.replay(strokes, players=["a", "b", "c"]), "players", "'c'", "at most two")
+    refused(lambda: sn.replay(strokes, players=["a", "b"]), "players", "2 names", "one for a visit")
+    refused(lambda: sn.replay(strokes, title="\ud800"), "title", "ud800", "surrogate")
+    slower = sn.simulate([(0.0, 0.0)], [(1.0, 0)], [(0, 0, 0)], physics={"spin_decel": 5.0})
+    refused(lambda: sn.replay([strokes[0], slower]), "strokes[1]", "another world", "spin_decel")
     refused(lambda: sn.replay(strokes, title=3), "title", "3", "must be a str")
     refused(lambda: sn.replay(strokes, tmp_path / "break.exe"), "suffix", ".exe", ".html")
     refused(lambda: sn.replay(strokes[0]).save(tmp_path / "a.html", fps=3), "path", "a.html", "must end in .mp4 or .gif")
@@ -248,6 +263,27 @@ def test_the_wrapper_writes_each_wanted_episode(tmp_path):
     env.close()
     assert [p.name for p in env.paths] == ["snooker-episode-0.json", "snooker-episode-2.json"]
     assert [len(json.loads(p.read_text())["strokes"]) for p in env.paths] == [lengths[0], lengths[2]]
+
+
+def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
+    env = sn.RecordReplay(gymnasium.wrappers.Autoreset(gymnasium.make("Snooker-v0", action="discrete")), tmp_path, suffix=".json")
+    env.reset(seed=1)
+    ends = 0
+    while ends < 3:
+        _, _, terminated, truncated, _ = env.step(67)
+        ends += terminated or truncated
+    assert [p.name for p in env.paths] == [f"snooker-episode-{k}.json" for k in range(3)]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"players": ["a", "b"]}, ("players", "'a', 'b'", "one name")), ({"name_prefix": "a/b"}, ("name_prefix", "a/b", "without folders")),
+        ({"suffix": ".txt"}, ("suffix", ".txt", ".html")),
+    ],
+)  # fmt: skip
+def test_the_wrapper_refuses_at_once_what_it_could_not_write(tmp_path, wrong, words):
+    refused(lambda: sn.RecordReplay(gymnasium.make("Snooker-v0"), tmp_path, **wrong), *words)
 
 
 def test_the_wrapper_writes_what_was_cut_short(tmp_path):
