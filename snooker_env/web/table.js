@@ -6,9 +6,9 @@
  *
  * Frame: origin at the table's centre, +x to the yellow side, +y to the black end, SI units. On screen +y goes right and +x down.
  *
- * For hosts and tests: a frame may have `depth` (0 on the cloth to 1 gone into a pocket), a line a `path` (Path2D in metres); a player has `time`,
- * `stroke`, `playing`, `speed`, `positions()`, `skip(strokes)`, `seekTotal(s)`, `flip(name)`; its options are `autoplay`, `speed`, `paths`, `ghosts`,
- * `spin` ("cue", "all", "off"), `labels`, `fill` (as high as its parent), `keys` (what listens), `onstroke(stroke)`, `ontime(t, stroke)`, `onend()`.
+ * Beyond the obvious: a frame may have `depth` (0 on the cloth to 1 gone into a pocket), a line a `path` (Path2D in metres); a player's options are
+ * `autoplay`, `speed`, `paths`, `ghosts`, `spin` ("cue", "all", "off"), `labels`, `fill` (as high as its parent), `keys` (what listens),
+ * `onstroke(stroke)`, `ontime(t, stroke)`, `onend()`.
  */
 
 const GONE = 0, ROLL = 2, SLIDE = 3, FALLING = 4, BEND = 5, BALL_BALL = 0;
@@ -16,20 +16,15 @@ const GONE = 0, ROLL = 2, SLIDE = 3, FALLING = 4, BEND = 5, BALL_BALL = 0;
 const EVENTS = ["touches", "meets a cushion", "meets a jaw", "is potted", "rolls", "rests", "drops", "comes back"];
 const { PI, abs, atan2, ceil, cos, floor, hypot, max, min, round, sign, sin, sqrt } = Math, TURN = 2 * PI;
 
-/** Colours of things that a scene does not name. */
-const PALETTE = {
-	floor: [17, 18, 21], cloth: [36, 148, 76], cloth_edge: [15, 78, 40], line: [214, 226, 190], cushion: [30, 124, 64], nose: [86, 186, 118],
-	wood: [104, 52, 26], wood_edge: [52, 25, 12], leather: [70, 46, 32], leather_edge: [112, 78, 54], hole: [5, 5, 6], aim: [255, 240, 150],
-	path_edge: [8, 30, 16], shadow: [0, 14, 5], lamp: [255, 252, 240], bar: [12, 15, 24], bar_edge: [58, 66, 88], bar_accent: [196, 32, 48],
-	text: [240, 240, 236], text_quiet: [164, 170, 184],
-};
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
 
 const css = (rgb, alpha = 1) => (rgb.map ? `rgba(${rgb.map(round)},${alpha})` : rgb);
+/** A colour, darker or lighter. */
+const lit = (rgb, light) => rgb.map(value => min(255, value * light));
 /** A colour on the way from one to another. */
 const mix = (a, b, share) => a.map((value, k) => value + (b[k] - value) * share);
 
-/** Numbers from base64, little-endian as in all browsers. */
+/** Numbers from base64. */
 const numbers = (text, Type) => new Type(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 
 /** The rotation q, then one by the vector (x, y, z) [rad]; quaternions are [w, x, y, z]. */
@@ -63,7 +58,7 @@ class Stroke {
 		this.later = { x: places.filter((_, k) => k % 2 === 0), y: places.filter((_, k) => k % 2), on: flags(after.on_table) };
 	}
 
-	/** Which segment of a ball's log holds at time t; -1 before the first. There are tens: no need to halve. */
+	/** Which segment of a ball's log holds at time t; -1 before the first. */
 	find(ball, t) { return this.logs[ball].findLastIndex(segment => segment.t0 <= t); }
 
 	/** [x, y, vx, vy, wx, wy, wz] at time t of a segment; the order of the arithmetic is that of the simulation. */
@@ -75,7 +70,7 @@ class Stroke {
 
 	/** All balls at time t [s]: x, y, vx, vy, wx, wy, wz, `on` the table (1 or 0), `depth` in a pocket. */
 	at(t) {
-		const out = { on: this.here.slice(), depth: Float64Array.from(this.here, here => 1 - here) }, names = ["x", "y", "vx", "vy", "wx", "wy", "wz"];
+		const out = { on: this.here.slice(), depth: Float64Array.from(this.here, here => 1 - here) }, names = "x y vx vy wx wy wz".split(" ");
 		for (const name of names) out[name] = new Float64Array(this.n);
 		this.logs.forEach((log, i) => {
 			const k = this.find(i, t), still = this.decel > 0 && t >= this.duration, values = k < 0 ? this.first.subarray(2 * i, 2 * i + 2) : this.moving(log[k], t);
@@ -89,7 +84,7 @@ class Stroke {
 		return out;
 	}
 
-	/** The table when everything has come to rest. */
+	/** The table at rest. */
 	get end() { return this.at(this.duration); }
 
 	/** The orientation of a ball at time t, a quaternion: the same whichever way a time is come to. */
@@ -135,7 +130,6 @@ export function decode(replay) {
 	return { ...replay, strokes: replay.strokes.map(data => (last = new Stroke(data, replay, last))) };
 }
 
-/** A canvas of its own, and its pen. */
 function sheet(width, height) {
 	const canvas = Object.assign(document.createElement("canvas"), { width: ceil(width), height: ceil(height) });
 	return [canvas, canvas.getContext("2d")];
@@ -152,18 +146,18 @@ function unrest(strength) {
 	return canvas;
 }
 
-/** Fill what a pen has drawn; a gradient comes with its stops [place, colour]. */
+/** Fill what a pen has drawn, with a gradient by its stops [place, colour]. */
 function fill(pen, filling, ...stops) {
 	for (const [at, colour] of stops) filling.addColorStop(at, colour);
 	pen.fillStyle = filling;
 	pen.fill();
 }
 
-/** The same with a soft shadow around it. */
+/** The same, or a line, with a soft shadow around it. */
 function cast(pen, colour, blur, ...filling) {
 	pen.shadowColor = colour;
 	pen.shadowBlur = blur;
-	fill(pen, ...filling);
+	if (filling.length) fill(pen, ...filling); else pen.stroke();
 	pen.shadowColor = "#0000";
 }
 
@@ -173,13 +167,17 @@ function disc(pen, x, y, radius, filling, ...stops) {
 	if (filling) fill(pen, filling, ...stops); else pen.stroke();
 }
 
+/** A disc with a gradient from its middle to its edge. */
+function glow(pen, x, y, radius, ...stops) { disc(pen, x, y, radius, pen.createRadialGradient(x, y, 0, x, y, radius), ...stops); }
+
+/** A pen that draws such lines from here on. */
+const nib = (pen, strokeStyle, lineWidth) => Object.assign(pen, { strokeStyle, lineWidth });
+
 function polyline(pen, points, width, colour) {
 	pen.beginPath();
 	for (const point of points) pen.lineTo(...point);
 	if (!width) return;
-	pen.lineWidth = width;
-	pen.strokeStyle = colour;
-	pen.stroke();
+	nib(pen, colour, width).stroke();
 }
 
 /** Draws a table; what never moves, once for each size. */
@@ -187,19 +185,21 @@ export class TableView {
 	constructor(canvas, scene) {
 		Object.assign(this, { canvas, scene, R: scene.ball_radius });
 		this.pen = canvas.getContext("2d", { alpha: false });
-		this.colours = { ...PALETTE, ...scene.palette };
+		this.colours = scene.palette;
 		this.ink = Object.fromEntries(Object.entries(this.colours).map(([name, rgb]) => [name, css(rgb)]));
-		this.lamp = css(this.colours.lamp, 0.9);
+		const [lamp, pen] = sheet(32, 32);
+		glow(pen, 16, 16, 16, ...[[0, 1], [0.3, 0.8], [0.6, 0.2], [1, 0]].map(([at, alpha]) => [at, css(this.colours.lamp, alpha)]));
+		this.lamp = lamp;
 		this.resize();
 	}
 
-	/** Breadth and height [m] of what is shown. */
+	/** Breadth, height [m]. */
 	static size(scene) {
 		const [[x0, x1], [y0, y1]] = scene.extent, out = scene.cushions.length ? 2 * scene.rail + 0.04 : 0.1;
 		return [y1 - y0 + out, x1 - x0 + out];
 	}
 
-	/** Fit the table into the canvas as it is laid out now. */
+	/** Fit the canvas as it is laid out now. */
 	resize() {
 		const { canvas, scene } = this, [[x0, x1], [y0, y1]] = scene.extent, [wide, high] = TableView.size(scene);
 		this.ratio = min(devicePixelRatio, 3);
@@ -227,8 +227,10 @@ export class TableView {
 	paint() {
 		const { scene, scene: { rail, lines }, colours, ink, scale, canvas: { width, height } } = this, [[x0, x1], [y0, y1]] = scene.extent, px = 1 / scale;
 		const [still, pen] = sheet(width, height), framed = scene.cushions.length > 0, bed = framed ? scene.cushion : 9;
-		const box = (out, round = 0) => pen.roundRect(x0 - out, y0 - out, x1 - x0 + 2 * out, y1 - y0 + 2 * out, round);
-		const start = (...shape) => { pen.beginPath(); box(...shape); };
+		const start = (out, round = 0) => {
+			pen.beginPath();
+			pen.roundRect(x0 - out, y0 - out, x1 - x0 + 2 * out, y1 - y0 + 2 * out, round);
+		};
 		const texture = (strength, along, across, swap) => { // stretched along y, or along x
 			const pattern = pen.createPattern(unrest(strength), "repeat"), a = along * px, b = across * px;
 			pattern.setTransform(new DOMMatrix(swap ? [a, 0, 0, b, 0, 0] : [0, a, b, 0, 0, 0]));
@@ -239,38 +241,29 @@ export class TableView {
 		this.metres(pen);
 
 		if (framed) {
-			const { wood, wood_edge: edge, lamp } = colours, corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
-			const at = ([x, y], out) => [x === x0 ? x - out : x + out, y === y0 ? y - out : y + out];
+			const { wood } = colours, corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+			const at = ([x, y], out) => [x + sign(x) * out, y + sign(y) * out];
 			start(rail, 0.085);
 			cast(pen, "#000c", 0.04 * scale, ink.wood_edge);
-			start(rail - 0.004, 0.08);
+			start(rail - 0.003, 0.082);
 			pen.save();
 			pen.clip();
-			corners.forEach((one, k) => { // four boards, mitred
+			corners.forEach((one, k) => { // four boards, mitred, round outside, with a groove inside
 				const next = corners[(k + 1) % 4], [ix, iy] = at(one, bed), [ox, oy] = at(one, rail), end = k % 2 === 0;
-				const board = pen.createLinearGradient(ix, iy, end ? ix : ox, end ? oy : iy);
-				polyline(pen, [at(one, 0), at(one, rail), at(next, rail), at(next, 0)]);
-				fill(pen, board, ...[edge, mix(wood, edge, 0.3), mix(wood, lamp, 0.07), wood, mix(wood, edge, 0.1), mix(wood, edge, 0.3), edge].map((rgb, m) => [m / 6, css(rgb)]));
-				texture(0.1, 24, 1.3, end);
+				polyline(pen, [one, at(one, rail), at(next, rail), next]);
+				fill(pen, pen.createLinearGradient(ix, iy, end ? ix : ox, end ? oy : iy), ...[[0, 0.5], [0.07, 1.1], [0.12, 1.4], [0.16, 1.1], [0.7, 1.2], [0.8, 1.6], [0.9, 1.2], [1, 0.4]].map(([part, light]) => [part, css(lit(wood, light))]));
+				texture(0.07, 30, 1.6, end);
 			});
 			pen.restore();
 		}
-		const hole = ([x, y, u, v, half], rim) => { // from a pocket's mouth to its back
-			const turn = atan2(v - y, u - x), ex = cos(turn), ey = sin(turn), wide = half + rim;
-			polyline(pen, [[x - ey * wide, y + ex * wide]]);
+		const pocket = ([x, y, u, v, half], rim, from = hypot(u - x, v - y)) => { // from its back so far to its mouth
+			const turn = atan2(v - y, u - x), ex = cos(turn), ey = sin(turn), wide = half + rim, bx = u - ex * from, by = v - ey * from;
+			polyline(pen, [[bx - ey * wide, by + ex * wide]]);
 			pen.arc(u, v, wide, turn + PI / 2, turn - PI / 2, true);
-			pen.lineTo(x + ey * wide, y - ex * wide);
-			return pen.createLinearGradient(u, v, u + ex * half, v + ey * half);
+			pen.lineTo(bx + ey * wide, by - ex * wide);
+			return pen.createRadialGradient(u, v, 0, u, v, half);
 		};
-		for (const throat of scene.throats) {
-			hole(throat, 0.017);
-			cast(pen, "#000b", 0.012 * scale, ink.leather);
-			hole(throat, 0.011);
-			pen.strokeStyle = ink.leather_edge;
-			pen.lineWidth = 0.005;
-			pen.stroke();
-			fill(pen, hole(throat, 0), [0.2, ink.hole], [1, css(mix(colours.hole, colours.leather, 0.8))]); // its leather, in the dark
-		}
+		for (const throat of scene.throats) fill(pen, pocket(throat, 0), [0.6, ink.hole], [1, css(lit(colours.leather, 0.6))]); // its inside, in the dark
 
 		pen.save();
 		start(bed);
@@ -282,25 +275,40 @@ export class TableView {
 		pen.clip("evenodd");
 		start(bed);
 		fill(pen, ink.cloth);
-		texture(0.09, 1.5, 0.8);
-		texture(0.04, 11, 2);
+		texture(0.025, 3, 1);
+		texture(0.018, 40, 5);
 		const chalk = css(colours.line, 0.9);
 		for (const points of lines ? [lines.baulk, lines.d] : []) polyline(pen, points, max(0.0035, 1.2 * px), chalk);
 		for (const [x, y] of lines?.spots ?? []) disc(pen, x, y, max(0.006, 1.4 * px), chalk);
 		for (const [x, y, r] of scene.falls) // the cloth bends down
-			disc(pen, x, y, r + 0.014, pen.createRadialGradient(x, y, r, x, y, r + 0.014), [0, ink.cloth_edge], [1, css(colours.cloth_edge, 0)]);
+			glow(pen, x, y, r + 0.014, [r / (r + 0.014), ink.cloth_edge], [1, css(colours.cloth_edge, 0)]);
 		pen.restore();
 		scene.cushions.forEach((points, k) => {
 			const nose = scene.noses[k], a = nose[(nose.length >> 1) - 1], b = nose[nose.length >> 1], [x, y] = points[0];
 			const slope = abs(a[0] - b[0]) > abs(a[1] - b[1]) ? pen.createLinearGradient(0, a[1], 0, y) : pen.createLinearGradient(a[0], 0, x, 0);
 			polyline(pen, points);
-			cast(pen, css(colours.shadow, 0.8), 0.024 * scale, slope, [0, css(mix(colours.cushion, colours.nose, 0.4))], [0.14, ink.cushion], [1, css(mix(colours.cushion, BLACK, 0.5))]);
-			polyline(pen, nose, max(0.0032, px), ink.nose);
+			cast(pen, css(colours.shadow, 0.9), 0.03 * scale, slope, [0, css(lit(colours.cushion, 1.2))], [1, css(lit(colours.cushion, 0.72))]);
+			pen.save();
+			pen.clip();
+			for (const [wide, alpha] of [[0.02, 0.3], [0.011, 0.7]]) polyline(pen, nose, max(wide, 2 * px), css(colours.nose, alpha)); // the light on its edge
+			pen.restore();
 		});
 		pen.restore();
+		for (const throat of scene.throats) { // its leather, cut off where both ends lie on the cushions
+			const [x, y, u, v, half] = throat, long = hypot(u - x, v - y), over = (side, at) => {
+				const dx = (x - u) / long, dy = (y - v) / long, wide = side * (half + 0.02), a = u + dx * at - dy * wide, b = v + dy * at + dx * wide;
+				return max(abs(a) - x1, abs(b) - y1) > bed - 0.007;
+			};
+			let from = -0.05;
+			while (from < long && (over(1, from) || over(-1, from))) from += 0.001;
+			for (const [rim, wide, light, shadow] of [[0.01, 0.02, 0.7, 0.02], [0.01, 0.014, 1.2, 0], [0.0085, 0.006, 2.1, 0]]) { // bright along its ridge
+				pocket(throat, rim, from);
+				cast(nib(pen, css(lit(colours.leather, light)), wide), "#000c", shadow * scale);
+			}
+		}
 
 		pen.setTransform(scale * (y1 - y0), 0, 0, scale * (x1 - x0), ...this.pixel((x0 + x1) / 2, (y0 + y1) / 2)); // the lamps: brightest in the middle
-		disc(pen, 0, 0, 9, pen.createRadialGradient(0, 0, 0, 0, 0, 0.85), [0, "#ffffe018"], [0.4, "#ffffe008"], [0.55, "#0000"], [1, "#0006"]);
+		glow(pen, 0, 0, 2, [0, "#ffffe008"], [0.17, "#0000"], [0.42, "#0003"]);
 		return still;
 	}
 
@@ -309,28 +317,30 @@ export class TableView {
 		const key = `${rgb} ${radius}`, known = this.sprites.get(key);
 		if (known) return known;
 		const reach = rgb ? radius : 1.7 * radius, half = ceil(reach) + 1, [canvas, pen] = sheet(2 * half, 2 * half);
-		const put = (r, ...stops) => disc(pen, half, half, r, pen.createRadialGradient(half, half, 0, half, half, r), ...stops.map(([at, colour, alpha]) => [at, css(colour, alpha)]));
-		const { cloth, lamp, shadow } = this.colours;
-		if (rgb) {
-			const lit = mix(rgb, WHITE, 0.16), dark = mix(rgb, BLACK, 0.52);
-			put(radius, [0, lit], [0.6, mix(rgb, BLACK, 0.06)], [0.9, mix(rgb, BLACK, 0.36)], [1, mix(dark, cloth, 0.16)]);
-			put(0.72 * radius, [0, lamp, 0.3], [0.5, lamp, 0.1], [1, lamp, 0]);
-		} else put(reach, [0.4, shadow, 0.8], [0.68, shadow, 0.4], [0.85, shadow, 0.12], [1, shadow, 0]);
+		const { cloth, shadow } = this.colours, dark = min(0.56, 0.02 * radius); // small ones keep their colour
+		glow(pen, half, half, reach, ...(rgb ? [0, 0.3, 0.5, 0.7, 0.85, 0.95, 1].map(d => { // lit from above and by the cloth
+			const z = sqrt(1 - d * d), edge = (1 - z) ** 2.5;
+			return [d, css(lit(rgb, (1.06 - dark * (1 - z)) * (1 - dark * edge)).map((value, k) => min(255, value + 26 * z ** 6 + 0.22 * edge * cloth[k])))];
+		}) : [[0.4, 0.65], [0.68, 0.3], [0.85, 0.1], [1, 0]].map(([at, alpha]) => [at, css(shadow, alpha)])));
 		this.sprites.set(key, [canvas, half]);
 		return [canvas, half];
 	}
 
-	/** The lamps in the mirror of a ball at (x, y): two rows along the table, 1 m above. */
+	/** The four lamps over the table in the mirror of a ball at (x, y), the far ones faint; in a small ball one light. */
 	lamps(x, y, px, py, radius) {
-		const { pen, scene: { extent: [[x0, x1], [y0, y1]] } } = this;
-		pen.beginPath();
-		for (let k = 0; k < 8; k++) {
-			const dx = (k % 2 - 0.5) * 0.5 * (x1 - x0) - x, dy = ((k >> 1) - 1.5) * 0.24 * (y1 - y0) - y;
-			const far = hypot(dx, dy, 1), norm = hypot(dx, dy, 1 + far), u = px + radius * dy / norm, v = py + radius * dx / norm;
-			pen.moveTo(u + 0.085 * radius, v);
-			pen.ellipse(u, v, 0.085 * radius, 0.06 * radius, 0, 0, TURN);
+		const { pen, lamp, scene: { extent: [, [, y1]] } } = this, clear = min(1, max(0, radius / 9 - 0.8));
+		const shine = (u, v, size, alpha) => {
+			pen.globalAlpha = alpha;
+			pen.drawImage(lamp, px + radius * (u - size), py + radius * (v - size), 2 * radius * size, 2 * radius * size);
+		};
+		let u = 0, v = 0, all = 0;
+		for (let k = 0; k < 4; k++) {
+			const dy = (k - 1.5) * y1 / 2 - y, far = hypot(x, dy, 0.95), norm = hypot(x, dy, 0.95 + far), light = (0.95 / far) ** 2;
+			if (clear) shine(dy / norm, -x / norm, 0.22, clear * min(1, 0.2 + light));
+			u += light * dy / norm; v -= light * x / norm; all += light;
 		}
-		fill(pen, this.lamp);
+		shine(u / all, v / all, 0.55, 0.8 - 0.5 * clear);
+		pen.globalAlpha = 1;
 	}
 
 	/** Spots on a ball where its six half axes come out, turned with it. */
@@ -359,8 +369,7 @@ export class TableView {
 			pen.globalAlpha = alpha;
 			if (ball !== undefined) this.stamp(scene.balls[ball].rgb, px, py, radius);
 			pen.globalAlpha = min(1, alpha + 0.3);
-			pen.strokeStyle = ink.text;
-			pen.lineWidth = 1.5 * ratio;
+			nib(pen, ink.text, 1.5 * ratio);
 			disc(pen, px, py, radius);
 			pen.globalAlpha = 1;
 		}
@@ -370,8 +379,7 @@ export class TableView {
 			this.stamp(null, px + radius * y / (y1 - y0) / 2, py + radius * (0.14 + x / (x1 - x0) / 2), radius);
 		}
 		for (const i of here) if (depth(i)) this.falling(frame.x[i], frame.y[i], depth(i), scene.balls[i].rgb); else this.ball(frame, i, radius);
-		pen.strokeStyle = ink.aim;
-		pen.lineWidth = 2 * ratio;
+		nib(pen, ink.aim, 2 * ratio);
 		for (const i of frame.highlight ?? []) disc(pen, ...this.pixel(frame.x[i], frame.y[i]), radius + 3 * ratio);
 		if (frame.cue) this.cue(frame.cue);
 	}
@@ -384,8 +392,9 @@ export class TableView {
 	/** A ball on its way into the pocket at hand: darker, smaller, further in. */
 	falling(x, y, depth, rgb) {
 		const [u, v] = this.scene.falls.find(fall => hypot(fall[0] - x, fall[1] - y) < 0.2) ?? [x, y];
+		const part = sqrt(depth) / 2;
 		this.pen.globalAlpha = 1 - depth;
-		this.stamp(rgb, ...this.pixel(x + (u - x) * sqrt(depth) / 2, y + (v - y) * sqrt(depth) / 2), this.R * this.scale, 1 - 0.3 * depth);
+		this.stamp(rgb, ...this.pixel(x + (u - x) * part, y + (v - y) * part), this.R * this.scale, 1 - 0.3 * depth);
 		this.pen.globalAlpha = 1;
 	}
 
@@ -394,16 +403,14 @@ export class TableView {
 		const pale = 0.3 * rgb[0] + 0.59 * rgb[1] + 0.11 * rgb[2] > 110, [ink, edge] = pale ? [BLACK, WHITE] : [WHITE, BLACK];
 		this.stamp(rgb, ...at, radius);
 		if (turn) this.spots(turn, i ? css(ink, 0.32) : this.ink.bar_accent, ...at, radius);
-		if (radius > 3) this.lamps(x, y, ...at, radius);
+		this.lamps(x, y, ...at, radius);
 		if (!frame.labels) return;
 		const size = max(1.25 * radius, 9 * this.ratio);
 		at[1] += 0.36 * size; // half a capital letter
 		pen.font = `700 ${size}px system-ui,sans-serif`;
 		pen.textAlign = "center";
 		pen.lineJoin = "round";
-		pen.lineWidth = 0.3 * radius;
-		pen.strokeStyle = css(edge, 0.75);
-		pen.strokeText(letter, ...at);
+		nib(pen, css(edge, 0.75), 0.3 * radius).strokeText(letter, ...at);
 		pen.fillStyle = css(ink);
 		pen.fillText(letter, ...at);
 	}
@@ -420,9 +427,7 @@ export class TableView {
 		pen.lineJoin = pen.lineCap = "round";
 		pen.setLineDash(dash);
 		for (const [style, thick] of [[css(this.colours.path_edge, 0.55), wide + 2 * px], [css(colour), wide]]) {
-			pen.strokeStyle = style;
-			pen.lineWidth = thick;
-			pen.stroke(way);
+			nib(pen, style, thick).stroke(way);
 		}
 		pen.setLineDash([]);
 		pen.resetTransform();
@@ -463,12 +468,14 @@ const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 const LEAD = 0.9, PAUSE = 1.4;
 /** Key, what it does, its button's icon or word (none: no button), method, argument. */
 const COMMANDS = [
-	["Shift ArrowLeft", "previous stroke", "back", "skip", -1], ["ArrowLeft", "previous event", "last", "step", -1], ["Space", "play or pause", "play", "toggle"],
-	["ArrowRight", "next event", "next", "step", 1], ["Shift ArrowRight", "next stroke", "on", "skip", 1], ["ArrowDown", "slower", "−", "faster", -1], ["ArrowUp", "faster", "+", "faster", 1],
+	["Shift+←", "previous stroke", "back", "skip", -1], ["←", "previous event", "last", "step", -1], ["Space", "play or pause", "play", "toggle"],
+	["→", "next event", "next", "step", 1], ["Shift+→", "next stroke", "on", "skip", 1], ["↓", "slower", "−", "faster", -1], ["↑", "faster", "+", "faster", 1],
 	["p", "paths, dashed where a ball slides", "paths", "flip", "paths"], ["g", "cue ball where it met others", "ghosts", "flip", "ghosts"],
 	["s", "spots that show spin", "spin", "flip", "spin"], ["l", "letters on balls", "labels", "flip", "labels"],
-	["Home", "first moment", "", "seekTotal", 0], ["End", "last moment", "", "seekTotal", Infinity], ["?", "help", "?", "help"],
+	["Home", "first moment", "", "seekTotal", 0], ["End", "last moment", "", "seekTotal", Infinity], ["?", "help", "?", "help"], ["Esc", "close this", "", "help", true],
 ];
+/** What keys are called above. */
+const NAMES = { " ": "Space", Escape: "Esc", ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓" };
 const ICONS = { play: "M7 4v16l13-8z", pause: "M6 4h4v16H6zM14 4h4v16h-4z", on: "M4 5l8 7-8 7zM12 5l8 7-8 7z", next: "M9 5l8 7-8 7z",
 	back: "M20 5l-8 7 8 7zM12 5l-8 7 8 7z", last: "M15 5l-8 7 8 7z" };
 const STYLE = `
@@ -477,23 +484,23 @@ font:15px/1.3 system-ui,sans-serif;font-variant-numeric:tabular-nums}
 .sn *{box-sizing:border-box}.sn>*{flex:none}.sn-fill{height:100%}
 .sn .sn-stage{position:relative;flex:0 1 auto;min-height:0}.sn-stage canvas{position:absolute;width:100%;height:100%;touch-action:manipulation}
 .sn-score{display:flex;background:var(--bar);border-top:3px solid var(--bar_accent);font-size:clamp(14px,1.5cqw,26px);line-height:2}
-.sn-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.sn-who{flex:1 1 20%;min-width:0;font-weight:600}.sn-now+.sn-who{flex-direction:row-reverse;text-align:right}
+.sn-score>*{display:flex;column-gap:.6em;padding:.1em .8em;align-items:center}.sn-who{flex:1 1 0;min-width:0;font-weight:600}.sn-now+.sn-who{flex-direction:row-reverse;text-align:right}
 .sn-who span{flex:1;overflow:hidden;text-overflow:ellipsis;white-space:nowrap}.sn-who b{background:var(--text);color:var(--bar);line-height:1.5;min-width:2.6em;text-align:center}
-.sn-turn{background:var(--bar_edge)}.sn .sn-now{justify-content:center;flex-wrap:wrap;column-gap:1.4em;font-size:.8em}
+.sn-turn{background:var(--bar_edge)}.sn .sn-now{flex:0 0 39em;flex-wrap:wrap;column-gap:1em;font-size:.8em}.sn-now *{flex:0 0 4.4em;white-space:pre}.sn-now :first-child{flex:1}.sn-now span:last-child{flex:0 0 14em}
 .sn i{display:inline-block;width:.85em;height:.85em;border-radius:50%;margin:0 1px;vertical-align:-.08em;box-shadow:inset 0 0 0 1px #fff6}
 .sn-bar{position:relative;height:30px;margin:0 14px;cursor:pointer;touch-action:none}.sn-bar *{position:absolute;top:12px;height:6px;background:var(--bar_accent)}
 .sn-bar :first-child{width:100%;background:var(--bar_edge)}.sn-bar u{width:2px;background:var(--text_quiet)}.sn-bar b{z-index:1;top:6px;width:18px;height:18px;margin-left:-9px;border-radius:9px;background:var(--text)}
 .sn-foot{display:flex;flex-wrap:wrap;align-items:center;gap:6px 10px;padding:0 10px 8px}.sn-foot>*{flex:1 1 250px}.sn-words{text-align:right}
 .sn-about{display:flex;align-items:center;gap:10px;min-height:50px;color:var(--text_quiet)}.sn-about canvas{width:50px;height:50px}
-.sn-foot .sn-keys{flex:0 1 auto;display:flex;flex-wrap:wrap;justify-content:center;gap:4px}.sn output{width:3.4em;line-height:40px;text-align:center}
+.sn-foot .sn-keys{flex:0 1 auto;display:flex;flex-wrap:wrap;justify-content:center;gap:4px}.sn-keys span{display:flex;gap:4px}.sn output{width:3.4em;align-self:center;text-align:center}
 .sn button{min-width:42px;height:40px;padding:0 8px;border:0;border-radius:6px;background:#fff1;color:inherit;font:inherit;cursor:pointer}.sn button:hover{background:#fff3}
 .sn [aria-pressed=true]{box-shadow:inset 0 -3px var(--bar_accent)}.sn svg{width:22px;fill:currentColor;vertical-align:middle}
 .sn:focus-visible,.sn :focus-visible{outline:2px solid var(--aim)}
 .sn-help{position:absolute;inset:0;margin:auto;padding:12px;background:var(--bar);border:1px solid var(--bar_edge)}.sn-help td{padding:2px 8px}
 @media (max-height:500px){.sn .sn-about{min-height:0;zoom:.6;font-size:24px}.sn-score{line-height:1.5}.sn output{width:2.2em}.sn button{padding:0 4px;min-width:40px}}
-@container (max-width:900px){.sn-score{flex-wrap:wrap}.sn-who{flex-basis:30%}.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}`;
+@container (max-width:900px){.sn-score{flex-wrap:wrap}.sn-who{flex-basis:40%}.sn-now,.sn-keys{order:1}.sn .sn-now{flex:1 0 100%}.sn-words{text-align:left}}
+@container (max-width:500px){.sn-score{font-size:16px}.sn .sn-now :first-child{flex-basis:100%}.sn-foot .sn-keys{flex:1 0 100%}.sn button{flex:1;height:clamp(40px,7vh,60px)}.sn output{width:2.6em}}`;
 
-/** A new element at the end of its parent. */
 const put = (parent, tag) => parent.appendChild(document.createElement(tag));
 
 const setAll = (element, attributes) => Object.entries(attributes).forEach(([name, value]) => element.setAttribute(name, value));
@@ -521,7 +528,6 @@ export class Player {
 		if (this.options.autoplay) this.play();
 	}
 
-	/** Which stroke is shown, from 0. */
 	get stroke() { return this.k; }
 	/** Time within the stroke [s]; below 0 before it. */
 	get time() { return this.t; }
@@ -548,16 +554,18 @@ export class Player {
 		bar.onpointerdown = event => { this.pause(); bar.setPointerCapture(event.pointerId); drag(event); };
 		bar.onpointermove = event => { if (bar.hasPointerCapture(event.pointerId)) drag(event); };
 		sheet.onclick = () => this.help();
+		let both;
 		this.buttons = {};
 		for (const [key, what, shows, act, way] of COMMANDS) {
 			const row = put(sheet, "tr");
 			put(row, "td").textContent = key;
 			put(row, "td").textContent = what;
 			if (!shows) continue;
-			const button = (this.buttons[shows] = put(keys, "button"));
+			if (shows === "−") both = put(keys, "span"); // stay on one row
+			const button = (this.buttons[shows] = put(act === "faster" ? both : keys, "button"));
 			setAll(button, { type: "button", title: `${what} (${key})`, "aria-label": what });
 			if (ICONS[shows]) this.icon(button, shows); else button.textContent = shows;
-			if (shows === "−") this.pace = put(keys, "output");
+			if (shows === "−") this.pace = put(both, "output");
 			button.onclick = () => this[act](way);
 		}
 		this.keys = options.keys ?? root;
@@ -570,16 +578,16 @@ export class Player {
 	icon(button, name) { button.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg>`; }
 
 	key(event) {
-		const { target, shiftKey, key: one } = event, named = one === " " ? "Space" : one.length > 1 ? one : one.toLowerCase();
-		const found = COMMANDS.find(([key]) => key === (shiftKey && one.startsWith("Arrow") ? `Shift ${named}` : named));
+		const { target, shiftKey, key: one } = event, named = NAMES[one] ?? (one.length > 1 ? one : one.toLowerCase());
+		const found = COMMANDS.find(([key]) => key === (shiftKey && one.startsWith("Arrow") ? `Shift+${named}` : named));
 		if (!found || event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName)) return;
-		if (named === "Space" && target.tagName === "BUTTON") return; // it presses that button
+		if (named === "Space" && target.tagName === "BUTTON" || named === "Esc" && this.part("help").hidden) return; // for that button, for others
 		this[found[3]](found[4]);
 		event.preventDefault();
 	}
 
 	toggle() { if (this.playing) this.pause(); else this.play(); }
-	help() { this.part("help").toggleAttribute("hidden"); }
+	help(hide) { this.part("help").toggleAttribute("hidden", hide); }
 
 	faster(way) {
 		this.speed = (way > 0 ? SPEEDS.find(speed => speed > this.speed) : SPEEDS.findLast(speed => speed < this.speed)) ?? this.speed;
@@ -646,7 +654,6 @@ export class Player {
 		if (this.playing) this.waiting = requestAnimationFrame(this.tick); else this.options.onend?.();
 	}
 
-	/** What is to be seen now. */
 	frame() {
 		const stroke = this.strokes[this.k], { t, show, replay: { scene } } = this, over = t > stroke.duration + PAUSE / 2 && stroke.later;
 		const frame = over ? { ...stroke.later } : stroke.at(t);
@@ -674,7 +681,6 @@ export class Player {
 	/** [[x, y], ...] [m] of all balls as they are on screen. */
 	positions() { return Array.from(this.shown.x, (x, k) => [x, this.shown.y[k]]); }
 
-	/** Draw and say all anew. */
 	update() {
 		const sum = this.starts[this.k] + this.t;
 		this.shown = this.frame();
@@ -722,7 +728,7 @@ export class Player {
 			one.classList.toggle("sn-turn", mine === k);
 		});
 		const pots = [], run = seen?.player === mine ? seen?.break : 0, now = this.part("now");
-		for (let k = upTo; run > 0 && k >= 0 && strokes[k].player === mine && strokes[k].points > 0; k--) pots.unshift(...strokes[k].pots);
+		for (let k = upTo; run && strokes[k]?.player === mine && strokes[k].points; k--) pots.unshift(...strokes[k].pots);
 		now.textContent = "";
 		const say = (what, dots, after = "") => {
 			const one = put(now, "span");
@@ -730,13 +736,13 @@ export class Player {
 			for (const ball of dots) put(one, "i").style.background = css(balls[ball].rgb);
 			one.append(after);
 		};
-		say(`break ${run} `, pots);
+		say(`break ${run} `, pots.slice(-12));
 		if (stroke.n === 22) say(`reds ${reds}`, []);
-		const on = balls.findIndex(one => one.name.startsWith(stroke.ball_on));
-		if (stroke.ball_on) say("on ", on < 0 ? [] : [on], ` ${stroke.ball_on}`);
+		const next = over && stroke.points ? strokes[this.k + 1] : !over && stroke, what = next?.player === mine && next.ball_on; // nothing after the visit
+		const on = what === "any colour" ? [16, 17, 18, 19, 20, 21] : [balls.findIndex(one => one.name.startsWith(what))];
+		say(what ? "on " : "", on[0] < 0 ? [] : on, ` ${what || ""}`);
 	}
 
-	/** Stop, and leave the element as it was. */
 	destroy() {
 		this.playing = false;
 		cancelAnimationFrame(this.waiting);
@@ -746,5 +752,4 @@ export class Player {
 	}
 }
 
-/** A player of a replay in an element. */
 export function mount(element, replay, options) { return new Player(element, replay, options); }

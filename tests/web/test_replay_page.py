@@ -198,7 +198,13 @@ def test_keys(open_page, shown):
         assert seen[-1] == first and len({str(one) for one in seen}) == states
     press("?")
     assert p.page.locator(".sn-help").is_visible()
+    assert p.page.locator(".sn-help tr").first.inner_text().split("\t") == ["Shift+←", "previous stroke"]
     press("?")
+    assert not p.page.locator(".sn-help").is_visible()
+    press("?")
+    press("Escape")
+    assert not p.page.locator(".sn-help").is_visible()
+    press("Escape")  # closes only what is open
     assert not p.page.locator(".sn-help").is_visible()
     before = p("[p.stroke, p.time]")
     press("Control+p")
@@ -268,6 +274,44 @@ def test_the_score_bar_says_what_the_referee_says(open_page, shown):
     assert "break 0" in bar()[1] and "sn-turn" in p.page.locator(".sn-who").nth(1).get_attribute("class")
     assert p.page.locator(".sn-who span").first.inner_text() == "Ada <b>Lovelace</b>"  # words are words, not HTML
     assert "3.00 m/s" in p.page.locator(".sn-about").inner_text()
+
+
+@pytest.mark.parametrize("width", [390, 700, 1440])
+def test_the_score_bar_stands_still(open_page, width):
+    p = open_page(viewport={"width": width, "height": 900})
+    places = """[...document.querySelectorAll(".sn-score, .sn-who, .sn-who b, .sn-now, .sn-now span, .sn-keys")].map(one => {
+      const {left, top, height} = one.getBoundingClientRect();
+      return [left, top, height];
+    })"""
+    seen = []
+    for on, run, pots in (("red", 0, []), ("any colour", 1, [1]), ("black", 147, [1, 21] * 15)):
+        p("Object.assign(p.strokes[1], {ball_on: argument, player: 0})", on)
+        p("Object.assign(p.strokes[0], {break: argument[0], pots: argument[1], points: 1})", [run, pots])
+        p("(p.said = null, p.seek(1, 0.5))")
+        assert f"break {run}" in p.page.locator(".sn-now").inner_text()
+        assert p.page.locator(".sn-now span").last.locator("i").count() == (6 if on == "any colour" else 1)
+        seen.append(p(places))
+    assert np.allclose(seen[0], seen[1], atol=0.6) and np.allclose(seen[0], seen[2], atol=0.6)
+
+
+def test_nothing_is_on_once_a_visit_is_over(open_page):
+    p = open_page()
+
+    def on():
+        return p.page.locator(".sn-now span").last.inner_text().strip()
+
+    for stroke, after in ((0, "on black"), (1, ""), (2, "")):  # the first goes on, the second's player does not, the third is the last
+        p("p.seek(argument, p.strokes[argument].duration - 0.1)", stroke)
+        assert " ".join(on().split()) == ("on black" if stroke == 1 else "on red")
+        p("p.seek(argument, p.strokes[argument].duration)", stroke)
+        assert " ".join(on().split()) == after
+
+
+def test_the_speed_stays_on_one_row_on_a_phone(open_page):
+    p = open_page(viewport={"width": 390, "height": 844})
+    boxes = [one.bounding_box() for one in p.page.locator(".sn-keys span > *").all()]
+    rows = [box["y"] + box["height"] / 2 for box in boxes]
+    assert len(rows) == 3 and max(rows) - min(rows) < 1
 
 
 def test_nothing_overlaps_or_overflows_at_any_size(open_page):
