@@ -158,7 +158,6 @@ class Page {
   }
 
   begin() {
-    this.aimed = null;
     this.held = false;
     this.try(() => ask("new", { layout: by("layout").value, seed: Math.floor(Math.random() * 2 ** 48) }));
   }
@@ -190,9 +189,9 @@ class Page {
   /** A first aim where the table is another one; not while the player places the ball: then what was advised from its own place stays. */
   firstAim(state) {
     const key = JSON.stringify([state.ball_on, state.striker, state.strokes, Object.entries(state.positions).filter(([name]) => name !== "cue")]);
-    if (key === this.aimed && state.in_hand) { this.advisor.placed(); return; }
+    if (key === this.aimed && (this.placing.busy || this.aim.held === "ball")) { this.advisor.placed(); return; }
     this.advisor.clear();
-    if (key === this.aimed || state.phase !== "stroke") return;
+    if (state.phase !== "stroke") return;
     this.aimed = key;
     const aim = firstAim(state, this.balls, this.names, this.scene.extent, this.view.R, this.aim.wish.aim);
     this.aim.set({ aim, side: 0, top: 0, elevation: 0 });

@@ -91,7 +91,7 @@ export class Advisor {
 
   take(found, input) {
     const { app } = this;
-    if (found.stale || !app.aiming || input.own && this.hover) return;
+    if (found.stale || input.revision !== app.state.revision || !app.aiming || input.own && this.hover) return;
     found.heat = [cloud(pairs(found.ball), app.scene.extent, BALL_CLOUD), cloud(pairs(found.cue), app.scene.extent, CUE_CLOUD)];
     this.found = found;
     this.say();

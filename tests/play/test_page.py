@@ -275,7 +275,7 @@ def test_what_came_of_a_stroke_is_told_when_its_balls_rest(shown):
     shown.set_up(EASY)
     seen = "document.getElementById(%r).innerText"
     shown(
-        "(window.told = [], new MutationObserver(() => window.told.push([page.state.strokes < 2 && page.behind, "
+        "(window.told = [], new MutationObserver(() => window.told.push([Boolean(page.moving || page.played < page.state.strokes), "
         + ", ".join(seen % one for one in ("side-0", "now", "asked", "last"))
         + "])).observe(document.body, {subtree: true, childList: true, characterData: true, attributes: true}), 0)"
     )
