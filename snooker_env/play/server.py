@@ -182,7 +182,7 @@ class PlayHandler(BaseHTTPRequestHandler):
             raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
         parts = urlsplit(self.path)
         token, _, name = parts.path.removeprefix("/").partition("/")
-        name = name.lstrip("/")  # the printed address ends with "/", and so "/api/state" is often put behind it
+        name = re.sub("^/+(?=api/)", "", name)  # the printed address ends with "/", and so "/api/state" is often put behind it
         if not parts.path.startswith("/") or not hmac.compare_digest(token.encode(), self.server.token.encode()):
             raise self._last(403, "the address must hold the token that was printed when the server started")
         if self.command not in ("GET", "POST"):

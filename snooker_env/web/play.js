@@ -30,7 +30,7 @@ class Page {
     this.kind = "play";
     for (const [name, rgb] of Object.entries(this.scene.palette)) document.documentElement.style.setProperty(`--${name}`, `rgb(${rgb})`);
     this.view = new TableView(by("table"), this.scene);
-    this.placing = new Latest("place", ({ state }, event) => { this.take(state); this.advisor.changed(event); }, error => this.trouble(error));
+    this.placing = new Latest("place", ({ state }, event) => { Object.assign(this, { chosen: state.revision, dragged: event }); this.take(state); }, error => this.trouble(error));
     this.aim = new Aim(this, event => { this.advisor.changed(event); this.redraw(); }, (x, y, event) => this.placing.ask({ place: [x, y] }, event));
     this.advisor = new Advisor(this);
     this.advisor.offer(facts);
@@ -179,6 +179,7 @@ class Page {
     if (this.settled !== state.revision) {
       const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes]);
       if (moved !== this.lay) this.firstAim(state);
+      else if (this.chosen === state.revision) this.advisor.changed(this.dragged);
       this.lay = moved;
       this.settled = state.revision;
       this.show();
@@ -189,7 +190,11 @@ class Page {
   /** A first aim where the table is another one; not while the player places the ball: then what was advised from its own place stays. */
   firstAim(state) {
     const key = JSON.stringify([state.ball_on, state.striker, state.strokes, Object.entries(state.positions).filter(([name]) => name !== "cue")]);
-    if (key === this.aimed && (this.placing.busy || this.aim.held === "ball")) { this.advisor.placed(); return; }
+    if (key === this.aimed && (this.placing.busy || this.chosen === state.revision || this.aim.held === "ball")) {
+      this.advisor.placed();
+      this.advisor.changed(this.dragged);
+      return;
+    }
     this.advisor.clear();
     if (state.phase !== "stroke") return;
     this.aimed = key;
@@ -362,7 +367,7 @@ class Page {
     if (!on) put("n-on", "frame over");
     else {
       const dots = on === "red" ? ["red 1"] : this.names.includes(on) ? [on] : this.names.slice(16);
-      put("n-on", "on", ...dots.map(dot), make("b", { textContent: on + (!busy && state.free_ball ? " + free ball" : "") }));
+      put("n-on", "on ", ...dots.map(dot), make("b", { textContent: on + (!busy && state.free_ball ? " + free ball" : "") }));
     }
     put("n-reds", "reds ", make("b", { textContent: told.reds }));
     put("n-left", "left ", make("b", { textContent: told.left }));

@@ -70,7 +70,7 @@ export class Advisor {
     marks.hidden = !(aiming && this.list.length);
     if (marks.hidden) return;
     pockets.forEach(({ x, y }, k) => {
-      const [px, py] = view.toScreen(x + Math.sign(x) * RAIL, Math.abs(y) > 1 ? y - Math.sign(y) * 0.27 : 0.24);
+      const [px, py] = view.toScreen(x + Math.sign(x) * RAIL, Math.abs(y) > 1 ? y - Math.sign(y) * 0.29 : 0.3);
       Object.assign(marks.children[k].style, { left: `${px}px`, top: `${py}px` });
     });
   }
