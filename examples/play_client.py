@@ -31,7 +31,9 @@ def ask(address, name, fields=None):
             said = f"{address} answers {error.code}, and is no server of snooker_env.play"
         raise SystemExit(f"{name}: {said}") from None
     except (urllib.error.URLError, http.client.HTTPException, OSError) as error:
-        raise SystemExit(f"{address}: no answer ({getattr(error, 'reason', error)}); is python -m snooker_env.play running there?") from None
+        raise SystemExit(
+            f"{address}: no answer ({getattr(error, 'reason', error)}); is python -m snooker_env.play running there?"
+        ) from None
     except ValueError:
         raise SystemExit(f"{address}: this is no address of python -m snooker_env.play, as http://127.0.0.1:41234/TOKEN/") from None
 

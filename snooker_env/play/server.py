@@ -26,7 +26,10 @@ from .service import BusyError, Service
 WEB = Path(__file__).resolve().parent.parent / "web"
 FILES = {
     "": ("play.html", "text/html"), "play.css": ("play.css", "text/css"),
-    **{name: (name, "text/javascript") for name in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js")},
+    **{
+        name: (name, "text/javascript")
+        for name in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js")
+    },
 }  # fmt: skip
 """What is served besides the protocol: path -> file of ``WEB`` and its type. Nothing else is ever read."""
 MOST_HEAD = 16_384

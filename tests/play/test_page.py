@@ -331,7 +331,8 @@ def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
     assert not shown.page.is_visible("#pockets")
     shown.page.click("#advise")
     shown.until("document.querySelectorAll('#advice button').length")
-    assert "order of preference" in shown.page.inner_text("#advice-order") and "right is the lower side" in shown.page.inner_text("#advice-sides")
+    assert "order of preference" in shown.page.inner_text("#advice-order")
+    assert "right is the lower side" in shown.page.inner_text("#advice-sides")
     assert "95 % interval" in shown.page.inner_text("#advice li:first-child")
     names = shown("[...document.querySelectorAll('#pockets span')].map(one => [one.textContent, one.offsetLeft, one.offsetTop])")
     places = {name: (x, y) for name, x, y in names}
