@@ -209,9 +209,9 @@ class Page {
     this.last = data;
     this.told = { ...this.told, player: data.player, on: data.ball_on };
     const stroke = decode({ format: "snooker-replay", version: 1, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
-    this.show();
     return new Promise(done => {
       this.moving = { stroke, start: null, done };
+      this.show();
       this.redraw();
     });
   }
