@@ -8,6 +8,7 @@ full at the nearest ball on. ``docs/protocol.md`` describes every field.
 """
 
 import argparse
+import http.client
 import json
 import math
 import sys
@@ -18,12 +19,23 @@ import urllib.request
 def ask(address, name, fields=None):
     """GET, or POST with fields: the answer. Ends the program with the server's own words if it refuses."""
     body = None if fields is None else json.dumps(fields).encode()
-    request = urllib.request.Request(f"{address.rstrip('/')}/api/{name}", body, {"Content-Type": "application/json"})
     try:
+        request = urllib.request.Request(f"{address.rstrip('/')}/api/{name}", body, {"Content-Type": "application/json"})
         with urllib.request.urlopen(request, timeout=60) as reply:
             return json.load(reply)
     except urllib.error.HTTPError as error:
-        raise SystemExit(f"{name}: {json.load(error)['error']}") from None
+        said = error.read().decode(errors="replace")
+        try:
+            said = json.loads(said)["error"]
+        except (ValueError, TypeError, KeyError):
+            said = f"{address} answers {error.code}, and is no server of snooker_env.play"
+        raise SystemExit(f"{name}: {said}") from None
+    except (urllib.error.URLError, http.client.HTTPException, OSError) as error:
+        raise SystemExit(
+            f"{address}: no answer ({getattr(error, 'reason', error)}); is python -m snooker_env.play running there?"
+        ) from None
+    except ValueError:
+        raise SystemExit(f"{address}: this is no address of python -m snooker_env.play, as http://127.0.0.1:41234/TOKEN/") from None
 
 
 def chosen(state):

@@ -4,10 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from ..advice import POCKET_WORDS
 from ..advice.strokes import FARTHEST
 from ..game.balls import CUE, NAMES, REDS_MASK, YELLOW, BallOn, ids_of
 from ..game.frame import Frame
 from ..game.snookered import is_snookered
+from ..geometry import POCKET_AIMS
 from ..render.scene import scene_data
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 from ..tasks.noise import LEVELS
@@ -26,6 +28,7 @@ def scene(service: Service) -> dict[str, Any]:
             "speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, MAX_ELEVATION], "samples": MOST_SAMPLES,
             "suggestions": MOST_SUGGESTIONS,
         },
+        "pockets": [{"name": name, "x": float(x), "y": float(y)} for name, (x, y) in zip(POCKET_WORDS, POCKET_AIMS[:, :2], strict=True)],
         "agents": service.seats.agents, "players": service.seats.names, "noise": list(LEVELS),
     }  # fmt: skip
 

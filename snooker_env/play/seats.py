@@ -8,11 +8,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from .._check import choice, refuse
-from ..advice import CueStroke, player_of, stroke_of
+from ..advice import CueStroke, names, player_of, stroke_of
 from ..advice.players import BUILT_IN
 from .session import Session
 
 PERSON = "person"
+TRAINED = "ppo_foresight"
+"""The pre-trained agent that is offered where the repository has it; it is loaded when it is first asked."""
 
 
 class Seats:
@@ -28,7 +30,8 @@ class Seats:
     """``PERSON`` or an agent's name, of each seat."""
 
     def __init__(self, agents: Mapping[str, Any]):
-        self._players: dict[str, Any] = {**agents, **{name: None for name in BUILT_IN if name not in agents}}
+        offered = [*BUILT_IN, *(name for name in names() if name == TRAINED)]
+        self._players: dict[str, Any] = {**agents, **{name: None for name in offered if name not in agents}}
         self.who = [PERSON, PERSON]
 
     @property
@@ -54,7 +57,8 @@ class Seats:
     def label(self, seat: int) -> str:
         """How a player is called."""
         if self.is_agent(seat):
-            return self.who[seat] if self.who[0] != self.who[1] else f"{self.who[seat]} {seat + 1}"
+            name = self.who[seat].replace("_", " ")  # as the page lists it
+            return name if self.who[0] != self.who[1] else f"{name} {seat + 1}"
         return "You" if self.is_agent(1 - seat) else f"Player {seat + 1}"
 
     def player(self, name: str) -> Any:

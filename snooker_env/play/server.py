@@ -26,7 +26,10 @@ from .service import BusyError, Service
 WEB = Path(__file__).resolve().parent.parent / "web"
 FILES = {
     "": ("play.html", "text/html"), "play.css": ("play.css", "text/css"),
-    **{name: (name, "text/javascript") for name in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_setup.js", "play_parts.js")},
+    **{
+        name: (name, "text/javascript")
+        for name in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js")
+    },
 }  # fmt: skip
 """What is served besides the protocol: path -> file of ``WEB`` and its type. Nothing else is ever read."""
 MOST_HEAD = 16_384
@@ -182,6 +185,7 @@ class PlayHandler(BaseHTTPRequestHandler):
             raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
         parts = urlsplit(self.path)
         token, _, name = parts.path.removeprefix("/").partition("/")
+        name = re.sub("^/+(?=api/)", "", name)  # the printed address ends with "/", and so "/api/state" is often put behind it
         if not parts.path.startswith("/") or not hmac.compare_digest(token.encode(), self.server.token.encode()):
             raise self._last(403, "the address must hold the token that was printed when the server started")
         if self.command not in ("GET", "POST"):
@@ -211,6 +215,9 @@ class PlayHandler(BaseHTTPRequestHandler):
 
     def _body(self) -> dict[str, Any]:
         length = self.headers.get_all("Content-Length") or []
+        if not length or length == ["0"]:  # as ``curl -X POST`` sends it
+            self.close_connection = self.close_connection or not length  # there might be a body whose end nobody knows
+            return {}
         if len(length) != 1 or not re.fullmatch(r"\d{1,12}", length[0]):
             raise self._last(411, "must be one number of bytes", "Content-Length", ", ".join(length))
         if int(length[0]) > MOST_BODY:

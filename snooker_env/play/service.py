@@ -101,6 +101,8 @@ class Service:
     def go_on(self) -> None:
         """Let the agent play whose turn it is."""
         with self._changed:
+            if not self.paused:
+                return  # it thinks already: another page said so first
             self.paused, self.trouble = False, ""
             self._moved()
 

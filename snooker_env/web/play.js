@@ -8,7 +8,8 @@
 import { decode, TableView } from "./table.js";
 import { Aim } from "./play_aim.js";
 import { Advisor } from "./play_ask.js";
-import { ask, by, fill, firstContact, keep, Latest, make } from "./play_parts.js";
+import { firstAim } from "./play_first.js";
+import { ask, by, confirmed, fill, keep, Latest, make } from "./play_parts.js";
 import { SetUp } from "./play_setup.js";
 
 const LAYOUTS = ["break_off", "opened", "line_up", "colours", "snookered", "random:3", "random:6", "random:10", "pots:easy", "pots:medium", "pots:hard"];
@@ -24,11 +25,12 @@ class Page {
     this.known = new Map();
     this.moving = null;
     this.last = null;
+    this.held = false;
     this.drawn = [];
     this.kind = "play";
     for (const [name, rgb] of Object.entries(this.scene.palette)) document.documentElement.style.setProperty(`--${name}`, `rgb(${rgb})`);
     this.view = new TableView(by("table"), this.scene);
-    this.placing = new Latest("place", ({ state }, event) => { this.take(state); this.advisor.changed(event); }, error => this.trouble(error));
+    this.placing = new Latest("place", ({ state }, event) => { Object.assign(this, { chosen: state.revision, dragged: event }); this.take(state); }, error => this.trouble(error));
     this.aim = new Aim(this, event => { this.advisor.changed(event); this.redraw(); }, (x, y, event) => this.placing.ask({ place: [x, y] }, event));
     this.advisor = new Advisor(this);
     this.advisor.offer(facts);
@@ -45,15 +47,15 @@ class Page {
       const folded = by("panel").classList.toggle("folded");
       by("fold").setAttribute("aria-expanded", String(!folded));
     };
-    act("go", () => ask("go", {}));
+    by("go").onclick = () => this.goOn();
     act("undo", () => ask("undo", {}));
     act("redo", () => ask("redo", {}));
-    act("concede", () => ask("concede", {}));
-    act("new", () => ask("new", { layout: by("layout").value, seed: Math.floor(Math.random() * 2 ** 48) }));
+    by("concede").onclick = () => this.sure("Concede the frame?", "Concede", () => this.try(() => ask("concede", {})));
+    by("new").onclick = () => this.sure("Leave this frame and begin a new one? It cannot be undone.", "New frame", () => this.begin());
     by("again").onclick = () => this.again();
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", JSON.stringify(await ask("save", {})), "application/json"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
-    by("load").onclick = () => by("file").click();
+    by("load").onclick = () => this.sure("Leave this frame and load a file?", "Load", () => by("file").click());
     by("file").onchange = () => this.try(() => this.load());
     by("labels").onchange = () => this.redraw();
     fill(by("layout"), LAYOUTS);
@@ -64,6 +66,8 @@ class Page {
       by(`noise-${k}`).onchange = () => this.seats();
     }
     by("practice").onchange = () => this.seats();
+    by("help-open").onclick = () => this.help();
+    for (const one of document.querySelectorAll("#panel details")) one.ontoggle = () => one.open && one.scrollIntoView({ block: "nearest" });
     document.addEventListener("keydown", event => this.key(event));
   }
 
@@ -128,11 +132,40 @@ class Page {
       if (!stroke) { this.played = this.state.strokes; break; }
       await this.move(stroke);
       if (this.played < this.state.strokes) await new Promise(done => setTimeout(done, 500));
-      if (this.state.paused && this.agents()) this.try(() => ask("go", {}));
+      const { state } = this;
+      if (state.paused && !state.trouble && this.played >= state.strokes && this.agentsAlone && !this.held) await this.try(() => ask("go", {}));
     }
   }
 
-  agents() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
+  /** Do two agents play, with a stroke to come? They go on by themselves, each when the stroke before has been seen. */
+  get agentsAlone() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
+
+  /** Does the game wait for Continue? Otherwise, between two agents, the button is Pause. */
+  get waits() { return this.agentsAlone && this.held || !this.behind && this.state.paused; }
+
+  /** Are there strokes that have not been seen yet? What came of them is not told before. */
+  get behind() { return Boolean(this.moving || this.busy || this.played < this.state.strokes); }
+
+  goOn() {
+    this.held = !this.waits;
+    if (!this.held && this.state.paused && !this.behind) this.try(() => ask("go", {}));
+    this.show();
+  }
+
+  /** Ask before strokes that were played are left behind. */
+  async sure(question, yes, then) {
+    if (!this.state?.strokes || await confirmed(question, yes)) then();
+  }
+
+  begin() {
+    this.held = false;
+    this.try(() => ask("new", { layout: by("layout").value, seed: Math.floor(Math.random() * 2 ** 48) }));
+  }
+
+  help() {
+    if (by("help").open) by("help").close();
+    else by("help").showModal();
+  }
 
   /** The balls as the state has them, and a first aim. */
   settle() {
@@ -146,6 +179,7 @@ class Page {
     if (this.settled !== state.revision) {
       const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes]);
       if (moved !== this.lay) this.firstAim(state);
+      else if (this.chosen === state.revision) this.advisor.changed(this.dragged);
       this.lay = moved;
       this.settled = state.revision;
       this.show();
@@ -153,18 +187,18 @@ class Page {
     this.redraw();
   }
 
-  /** Aim at the widest pot, or full at the nearest ball on; not while the player places the ball. */
+  /** A first aim where the table is another one; not while the player places the ball: then what was advised from its own place stays. */
   firstAim(state) {
     const key = JSON.stringify([state.ball_on, state.striker, state.strokes, Object.entries(state.positions).filter(([name]) => name !== "cue")]);
+    if (key === this.aimed && (this.placing.busy || this.chosen === state.revision || this.aim.held === "ball")) {
+      this.advisor.placed();
+      this.advisor.changed(this.dragged);
+      return;
+    }
     this.advisor.clear();
-    if (key === this.aimed || state.phase !== "stroke") return;
+    if (state.phase !== "stroke") return;
     this.aimed = key;
-    const open = state.lines.filter(line => line.open).sort((a, b) => b.tolerance - a.tolerance)[0], [cx, cy] = state.positions.cue;
-    const ways = state.balls_on.map(name => [...state.positions[name], this.names.indexOf(name)]).map(([x, y, ball]) => {
-      const aim = Math.atan2(y - cy, x - cx);
-      return { aim, far: Math.hypot(x - cx, y - cy) + (firstContact(this.balls, 0, aim, this.scene.extent, this.view.R).ball === ball ? 0 : 9) };
-    }).sort((a, b) => a.far - b.far);
-    const { aim } = open ?? ways[0] ?? this.aim.wish;
+    const aim = firstAim(state, this.balls, this.names, this.scene.extent, this.view.R, this.aim.wish.aim);
     this.aim.set({ aim, side: 0, top: 0, elevation: 0 });
   }
 
@@ -175,20 +209,18 @@ class Page {
     this.last = data;
     this.told = { ...this.told, player: data.player, on: data.ball_on };
     const stroke = decode({ format: "snooker-replay", version: 1, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
-    this.show();
     return new Promise(done => {
       this.moving = { stroke, start: null, done };
-      by("skip").hidden = false;
+      this.show();
       this.redraw();
     });
   }
 
   skip() {
     if (!this.moving) return;
-    const { done } = this.moving, { score, words, player } = this.last;
+    const { done } = this.moving, { score, words, player, pots } = this.last, reds = this.told.reds - pots.filter(ball => ball < 16).length;
     this.moving = null;
-    by("skip").hidden = true;
-    this.told = { ...this.told, scores: score, break: this.last.break, last: `${this.state.labels[player]}: ${words}` };
+    this.told = { ...this.told, scores: score, break: this.last.break, reds, last: `${this.state.labels[player]}: ${words}` };
     this.show();
     done();
   }
@@ -201,9 +233,12 @@ class Page {
   }
 
   async again() {
-    if (!this.last || this.moving || this.busy || this.setup.open) return;
+    if (!this.state.strokes || this.behind || this.setup.open) return;
     this.busy = true;
-    await this.move(this.last);
+    try {
+      const { strokes } = await ask("strokes", undefined, `?from=${this.state.strokes - 1}`);
+      if (strokes.length) await this.move(strokes[0]);
+    } catch (error) { this.trouble(error); }
     this.busy = false;
     this.catchUp();
   }
@@ -213,7 +248,7 @@ class Page {
   /** May this person play a stroke now? */
   get aiming() {
     const { state } = this;
-    return Boolean(state) && !this.moving && !this.busy && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";
+    return Boolean(state) && !this.behind && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";
   }
 
   async play() {
@@ -248,6 +283,7 @@ class Page {
   seats(changed = -1) {
     if (changed >= 0) by(`noise-${changed}`).value = by(`who-${changed}`).value === "person" ? "none" : by("errors").value;
     const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
+    this.held = false;
     this.try(() => ask("players", { players, noise, practice: by("practice").checked }));
   }
 
@@ -265,9 +301,9 @@ class Page {
     }
     if ((key === "Enter" || key === " ") && ["BUTTON", "SUMMARY"].includes(tag)) return;
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, { side, top } = aim.wish;
-    const acts = this.setup.open ? { Escape: () => this.setup.end() } : {
+    const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end() } : {
       " ": () => this.skip(), Escape: () => this.skip(), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(),
-      "?": () => { by("help").open = !by("help").open; by("help").scrollIntoView({ block: "nearest" }); },
+      "?": () => this.help(),
       ...this.aiming && {
         ArrowLeft: () => aim.turn(turn, event), ArrowRight: () => aim.turn(-turn, event), ArrowUp: () => aim.faster(push, event),
         ArrowDown: () => aim.faster(-push, event), w: () => aim.tip(side, top + 0.05, event), s: () => aim.tip(side, top - 0.05, event),
@@ -284,11 +320,11 @@ class Page {
 
   /** Words, score and controls. */
   show(before) {
-    const { state } = this, busy = Boolean(this.moving || this.busy), mine = this.aiming, setup = this.setup.open;
+    const { state } = this, busy = this.behind, mine = this.aiming, setup = this.setup.open;
     for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
-    if (!busy) this.told = { scores: state.scores, break: state.break, player: state.striker, last: state.last };
+    if (!busy) this.told = { scores: state.scores, break: state.break, player: state.striker, last: state.last, reds: state.reds, left: state.available, on: state.ball_on?.replace("_", " ") };
     const { told } = this, who = state.labels[told.player];
-    by("asked").textContent = setup ? "Set up a position" : busy ? `${who} ${who === "You" ? "play" : "plays"}: ${told.on}` : state.words;
+    by("asked").textContent = setup ? "Set up a position" : !busy ? state.words : this.moving ? `${who} ${who === "You" ? "play" : "plays"}: ${told.on}` : by("asked").textContent;
     if (by("last").className !== "trouble") by("last").textContent = told.last;
     const choosing = state.phase === "choice" && !busy && !setup && state.players[state.striker] === "person";
     by("choices").hidden = !choosing;
@@ -301,13 +337,16 @@ class Page {
         return button;
       }));
     }
-    by("go").hidden = busy || setup || !state.paused;
+    by("go").hidden = setup || !this.waits && !this.agentsAlone;
+    by("go").textContent = this.waits ? "Continue" : "Pause";
     by("play").disabled = !mine;
+    by("skip").hidden = !this.moving;
+    by("play").hidden = Boolean(this.moving);
     if (!mine) by("odds").textContent = "";
     by("advise").disabled = !mine;
     by("undo").disabled = !state.undo;
     by("redo").disabled = !state.redo;
-    by("again").disabled = !this.last || busy;
+    by("again").disabled = !state.strokes || busy;
     by("concede").disabled = !mine && !choosing;
     by("nominate-row").hidden = !state.nominations.length;
     if (state.nominations.length) fill(by("nominate"), ["", ...state.nominations], by("nominate").value, value => value || "colour first struck");
@@ -323,16 +362,15 @@ class Page {
 
   score(busy) {
     const { state, told } = this, dot = name => { const one = make("i"); one.style.background = `rgb(${this.scene.balls[this.names.indexOf(name)].rgb})`; return one; };
-    const put = (id, ...parts) => by(id).replaceChildren(...parts), on = busy ? told.on : state.phase === "over" ? null : state.ball_on.replace("_", " ");
+    const put = (id, ...parts) => by(id).replaceChildren(...parts), { on } = told;
     put("n-break", "break ", make("b", { textContent: told.break }));
     if (!on) put("n-on", "frame over");
     else {
       const dots = on === "red" ? ["red 1"] : this.names.includes(on) ? [on] : this.names.slice(16);
-      put("n-on", "on", ...dots.map(dot), make("b", { textContent: on + (!busy && state.free_ball ? " + free ball" : "") }));
+      put("n-on", "on ", ...dots.map(dot), make("b", { textContent: on + (!busy && state.free_ball ? " + free ball" : "") }));
     }
-    if (busy) return;
-    put("n-reds", "reds ", make("b", { textContent: state.reds }));
-    put("n-left", "left ", make("b", { textContent: state.available }));
+    put("n-reds", "reds ", make("b", { textContent: told.reds }));
+    put("n-left", "left ", make("b", { textContent: told.left }));
   }
 
   /** What is wrong, beside a place on the table. */
@@ -354,6 +392,7 @@ class Page {
 
   draw(now) {
     const { moving } = this, labels = by("labels").checked;
+    this.advisor.marks();
     if (moving) {
       moving.start ??= now;
       const t = Math.max(0, (now - moving.start) / 1000 - 0.4), { stroke } = moving, frame = stroke.at(t);

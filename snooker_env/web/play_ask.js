@@ -9,6 +9,7 @@ import { ask, by, fill, Latest, make, pairs } from "./play_parts.js";
 
 const CUE_CLOUD = [255, 255, 255], BALL_CLOUD = [255, 196, 60];
 const CELL = 0.02;
+const RAIL = 0.1;
 
 /** Places as a smooth map: counts in cells, each spread over its neighbours. */
 export function cloud(places, extent, rgb) {
@@ -35,6 +36,7 @@ export class Advisor {
     this.found = null;
     this.times = [];
     this.wait = new Latest("destinations", (found, input, more) => this.take(found, input, more), error => this.wrong(error));
+    by("pockets").replaceChildren(...app.pockets.map(({ name }) => make("span", { textContent: name })));
     by("map").onchange = event => this.changed(event);
     by("errors").onchange = event => this.changed(event);
     by("advise").onclick = () => this.advise();
@@ -52,7 +54,25 @@ export class Advisor {
     this.hover = this.found = null;
     this.wait.drop();
     by("advice").replaceChildren();
+    by("advice-order").hidden = by("advice-sides").hidden = true;
     by("odds").textContent = "";
+  }
+
+  /** The cue ball in hand lies elsewhere: suggestions that come with their own place still hold. */
+  placed() {
+    this.found = null;
+    if (!this.list.every(one => one.place)) this.clear();
+  }
+
+  /** The pockets' names beside them, while there is advice that names them. */
+  marks() {
+    const marks = by("pockets"), { view, pockets, aiming } = this.app;
+    marks.hidden = !(aiming && this.list.length);
+    if (marks.hidden) return;
+    pockets.forEach(({ x, y }, k) => {
+      const [px, py] = view.toScreen(x + Math.sign(x) * RAIL, Math.abs(y) > 1 ? y - Math.sign(y) * 0.29 : 0.3);
+      Object.assign(marks.children[k].style, { left: `${px}px`, top: `${py}px` });
+    });
   }
 
   /** The stroke has changed, or who is to play it. */
@@ -71,7 +91,7 @@ export class Advisor {
 
   take(found, input) {
     const { app } = this;
-    if (found.stale || !app.aiming || input.own && this.hover) return;
+    if (found.stale || input.revision !== app.state.revision || !app.aiming || input.own && this.hover) return;
     found.heat = [cloud(pairs(found.ball), app.scene.extent, BALL_CLOUD), cloud(pairs(found.cue), app.scene.extent, CUE_CLOUD)];
     this.found = found;
     this.say();
@@ -91,8 +111,10 @@ export class Advisor {
     odds.append(dot(CUE_CLOUD), "cue ball");
     if (found.first) {
       odds.append(" ", dot(BALL_CLOUD), `${found.first.replace(/ \d+$/, "")}: potted ${Math.round(100 * found.potted)} %`);
-      if (found.in_off > 0.004) odds.append(`, in-off ${Math.round(100 * found.in_off)} %`);
     } else odds.append(": strikes no ball");
+    for (const [words, share] of [["foul", found.foul], ["in-off", found.in_off]]) {
+      if (share > 0.004) odds.append(", ", make("span", { className: share > 0.5 ? "trouble" : "", textContent: `${words} ${Math.round(100 * share)} %` }));
+    }
   }
 
   async advise() {
@@ -112,7 +134,8 @@ export class Advisor {
   show(suggestions) {
     this.list = suggestions;
     const items = suggestions.map((one, k) => {
-      const button = make("button", { type: "button", textContent: one.words });
+      const [low, high] = one.points_interval.map(value => value.toFixed(1));
+      const button = make("button", { type: "button" }, one.words, make("small", { textContent: `points ${low} to ${high} (95 % interval)` }));
       button.setAttribute("aria-pressed", "false");
       button.onpointerenter = event => event.pointerType === "mouse" && this.look(k, event);
       button.onfocus = event => this.look(k, event);
@@ -122,6 +145,8 @@ export class Advisor {
       return make("li", {}, button);
     });
     by("advice").replaceChildren(...items);
+    by("advice-order").hidden = by("advice-sides").hidden = !items.length;
+    by("advice-order").scrollIntoView({ block: "start" });
     this.app.redraw();
   }
 

@@ -23,11 +23,21 @@ export function fill(select, values, chosen = select.value, words = value => val
   if (values.includes(chosen)) select.value = chosen;
 }
 
+/** Ask the player in the page; whether he says yes. */
+export function confirmed(question, yes) {
+  const box = by("confirm");
+  by("confirm-words").textContent = question;
+  by("confirm-yes").textContent = yes;
+  box.returnValue = "";
+  box.showModal();
+  return new Promise(done => { box.onclose = () => done(box.returnValue === "yes"); });
+}
+
 /** What the server said was wrong. */
 export class ServerError extends Error {
   constructor(error) {
     super(error.field ? `${error.field}${error.value === null || String(error.value).length > 60 ? "" : ` = ${error.value}`}: ${error.message}` : error.message);
-    this.field = error.field;
+    Object.assign(this, { field: error.field, value: error.value, said: error.message });
   }
 }
 

@@ -22,7 +22,7 @@ export class SetUp {
     by("set").onclick = () => this.begin();
     by("set-cancel").onclick = () => this.end();
     by("set-done").onclick = () => this.done();
-    by("set-clear").onclick = () => { for (let i = 1; i < 16; i++) this.balls.on[i] = 0; this.changed(); };
+    by("set-clear").onclick = () => { this.balls.on.fill(0, 1, 16); by("set-on").value = ON[0]; this.changed(); };
     for (const id of ["set-on", "set-striker", "set-score-0", "set-score-1", "set-hand", "set-free"]) by(id).onchange = () => this.changed();
   }
 
@@ -84,12 +84,27 @@ export class SetUp {
     if (!this.open) return;
     const red = /^reds\[(\d+)\]/.exec(error?.field ?? ""), named = this.names.indexOf((error?.field ?? "").replace(/\[.*/, ""));
     this.wrong = red ? this.reds[Number(red[1])] ?? -1 : named;
-    const words = error?.message.replace(/reds\[\d+\]/g, "red") ?? "";
-    by("set-wrong").textContent = words;
+    const words = error ? this.plain(error) : "", beside = error && this.wrong >= 0 && this.balls.on[this.wrong];
+    by("set-wrong").textContent = beside ? "" : words;
     by("set-done").disabled = Boolean(error);
-    if (error && this.wrong >= 0 && this.balls.on[this.wrong]) this.app.bubble(words, this.balls.x[this.wrong], this.balls.y[this.wrong]);
-    else this.app.bubble("");
+    this.app.bubble(beside ? words : "", this.balls.x[this.wrong], this.balls.y[this.wrong]);
     this.app.redraw();
+  }
+
+  /** What is wrong, in plain words. */
+  plain(error) {
+    const called = name => (/^reds?\b/.test(name) ? "red" : name === "cue" ? "cue ball" : name.replaceAll("_", " ")), ball = called(error.field ?? "");
+    const said = error.said ?? error.message, on = String(error.value ?? "").replace(/'/g, ""), other = /^overlaps ([a-z]+(\[\d+\])?) at/.exec(said)?.[1];
+    if (/^overlaps the cushion/.test(said)) return `The ${ball} overlaps a cushion.`;
+    if (/^overlaps jaw/.test(said)) return `The ${ball} overlaps the edge of a pocket.`;
+    if (other) return ball === "red" && called(other) === "red" ? "Two reds overlap." : `The ${ball} overlaps the ${called(other)}.`;
+    if (/must name balls of which one is on/.test(said)) return on === "red" ? "There is no red left to be on." : `The ${called(on)} is not on the table, so it cannot be on.`;
+    if (/while reds are on/.test(said)) return `While there are reds, red or any colour is on, not the ${called(on)}.`;
+    const lowest = /'any_colour' or '(\w+)', the lowest/.exec(said);
+    if (lowest) return `Any colour, or the lowest on the table, the ${lowest[1]}, is on, not the ${called(on)}.`;
+    if (/must be on the table while/.test(said)) return "The cue ball must be on the table.";
+    if (/outside the D/.test(said)) return "A cue ball in hand must lie in the D.";
+    return error.message.replace(/reds\[\d+\]/g, "red");
   }
 
   /** The balls off the table. */

@@ -159,7 +159,8 @@ def test_a_ball_is_dragged_in_set_up_and_a_wrong_place_is_told_beside_it(shown):
     shown.page.click("#set")
     shown.drag(EASY["reds"][1], (0.02, 0.90), steps=4)  # onto the pink
     shown.until("!document.getElementById('bubble').hidden")
-    assert "overlaps" in shown.page.inner_text("#bubble") and not shown.page.is_enabled("#set-done")
+    assert shown.page.inner_text("#bubble") == "The pink overlaps the red." and not shown.page.is_enabled("#set-done")
+    assert shown.page.inner_text("#set-wrong") == ""  # it is told once
     shown.drag((0.02, 0.90), (-0.3, 0.4))
     shown.until("document.getElementById('bubble').hidden && !document.getElementById('set-done').disabled")
     shown.page.select_option("#set-striker", "1")
@@ -232,7 +233,7 @@ def test_an_agent_plays_and_its_strokes_are_shown(shown):
     shown.played(1)
     shown.until("page.state.strokes >= 2 && !page.state.thinking")
     shown.played(shown("page.state.strokes"))
-    assert "ghost_ball" in shown.page.inner_text("#last")
+    assert "ghost ball:" in shown.page.inner_text("#last")
     shown.page.click("#undo")
     shown.until("page.state.strokes === 0 && page.settled === page.state.revision")
     assert shown.words == "Your stroke: red is on." and shown("page.balls.x[0]") == EASY["cue"][0]
@@ -244,6 +245,128 @@ def test_a_program_plays_and_the_page_shows_it(shown):
     shown.until("page.moving")
     shown.played(1)
     assert shown("page.state.scores") == [1, 0] and shown("page.balls.on[1]") == 0
+
+
+def test_two_agents_play_on_by_themselves_until_paused(shown):
+    """Each stroke is seen, then the other agent plays; Pause stops them after the stroke that goes on, Continue lets them play on."""
+    shown.set_up(EASY)
+    shown.line("api/players", {"players": ["ghost_ball", "random"], "noise": ["professional", "amateur"]})
+    shown.until("page.state.players[0] === 'ghost_ball'")
+    for strokes in (1, 2, 3):
+        shown.until("page.moving && page.state.strokes >= argument", strokes)
+        shown("page.skip()")
+    assert shown.page.inner_text("#go") == "Pause"
+    shown.page.click("#go")
+    assert shown.page.inner_text("#go") == "Continue"
+    end = time.monotonic() + 60
+    while not shown("page.state.paused && !page.behind"):
+        assert time.monotonic() < end
+        shown("page.skip()")
+    stopped = shown("page.state.strokes")
+    time.sleep(1.0)
+    assert shown("page.state.strokes") == stopped >= 3 and "press Continue" in shown.words
+    shown.page.click("#go")
+    shown.until("page.moving && page.state.strokes > argument", stopped)
+    shown.line("api/players", {"players": ["person", "person"], "noise": ["none", "none"]})
+
+
+def test_what_came_of_a_stroke_is_told_when_its_balls_rest(shown):
+    """Words, score, break and reds are those before the stroke until then: looked at with every change of the page."""
+    shown.set_up(EASY)
+    seen = "document.getElementById(%r).innerText"
+    shown(
+        "(window.told = [], new MutationObserver(() => window.told.push([Boolean(page.moving || page.played < page.state.strokes), "
+        + ", ".join(seen % one for one in ("side-0", "now", "asked", "last"))
+        + "])).observe(document.body, {subtree: true, childList: true, characterData: true, attributes: true}), 0)"
+    )
+    shown("page.aim.set({aim: argument, speed: 2})", STRAIGHT)
+    shown.page.keyboard.press("Enter")
+    shown.until("page.moving")
+    time.sleep(0.3)
+    assert "reds 2" in shown.page.inner_text("#now") and "break 0" in shown.page.inner_text("#now")
+    shown.played(1)
+    assert "reds 1" in shown.page.inner_text("#now") and "break 1" in shown.page.inner_text("#now")
+    early = [row for row in shown("window.told") if row[0]]
+    assert early
+    for _, score, now, asked, last in early:
+        assert "1" not in score.replace("Player 1", "") and "break 1" not in now and "reds 1" not in now, (score, now)
+        assert "any colour" not in asked and "potted" not in last
+
+
+def test_the_first_aim_of_a_frame_is_no_foul_and_fouls_are_told(shown):
+    shown.line("api/players", {"players": ["person", "person"], "noise": ["none", "none"], "practice": False})
+    for seed in (1, 2, 3):
+        _, state, _ = shown.line("api/new", {"layout": "break_off", "seed": seed})
+        shown.until("page.settled >= argument && page.aiming && page.advisor.found", state["revision"])
+        assert shown("page.advisor.found.foul") < 0.2 and shown("page.advisor.found.first").startswith("red")
+    shown("page.aim.set({aim: -1.5708, speed: 1})")
+    shown.until("page.advisor.found && page.advisor.found.first === null")
+    assert "foul 100 %" in shown.page.inner_text("#odds")
+
+
+def test_new_frame_and_concede_ask_first_once_something_was_played(shown):
+    shown.set_up(EASY)
+    shown.line("api/stroke", {"speed": 2.0, "aim": STRAIGHT})
+    shown.until("page.moving")
+    shown.played(1)
+    shown.page.click("#game details summary")
+    for button in ("#new", "#concede", "#load"):
+        shown.page.click(button)
+        assert shown.page.is_visible("#confirm")
+        shown.page.keyboard.press("Escape")
+        shown.until("!document.getElementById('confirm').open")
+    assert shown("page.state.strokes") == 1 and shown.page.is_enabled("#again")
+    shown.page.click("#new")
+    shown.page.click("#confirm-yes")
+    shown.until("page.state.strokes === 0 && page.settled === page.state.revision")
+    assert not shown.page.is_enabled("#again")
+    shown.page.click("#new")  # nothing was played: it is not asked
+    assert not shown.page.is_visible("#confirm")
+    shown.until("page.state.ball_on === 'red'")
+
+
+def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
+    """The list says its order and its intervals; the pockets that it names are written beside the pockets."""
+    shown.set_up({"reds": [[0.6, 1.4], [-0.3, 0.4]], "black": [0.0, 1.4605], "in_hand": True})
+    assert not shown.page.is_visible("#pockets")
+    shown.page.click("#advise")
+    shown.until("document.querySelectorAll('#advice button').length")
+    assert "order of preference" in shown.page.inner_text("#advice-order")
+    assert "right is the lower side" in shown.page.inner_text("#advice-sides")
+    assert "95 % interval" in shown.page.inner_text("#advice li:first-child")
+    names = shown("[...document.querySelectorAll('#pockets span')].map(one => [one.textContent, one.offsetLeft, one.offsetTop])")
+    places = {name: (x, y) for name, x, y in names}
+    assert len(places) == 6 and places["right middle"][1] > places["left middle"][1] and places["top right"][0] > places["yellow pocket"][0]
+    many, before = shown("page.advisor.list.length"), shown("page.state.revision")
+    shown.page.click("#advice li:last-child button")
+    shown.until("page.state.revision > argument && page.settled === page.state.revision", before)
+    place = shown("page.advisor.list.at(-1).place")
+    assert shown("[page.balls.x[0], page.balls.y[0]]") == pytest.approx(place, abs=1e-6)
+    assert shown("document.querySelectorAll('#advice button').length") == many
+    shown.until("page.advisor.found")
+
+
+def test_reds_off_leaves_it_to_the_balls_what_is_on(shown):
+    shown.set_up(EASY)
+    shown.page.click("#set")
+    shown.until("page.setup.open")
+    shown.page.click("#set-clear")
+    shown.until("!document.getElementById('set-done').disabled")
+    shown.page.select_option("#set-on", "red")
+    shown.until("document.getElementById('set-done').disabled")
+    assert shown.page.inner_text("#set-wrong") == "There is no red left to be on." and not shown.page.is_visible("#bubble")
+    shown.page.select_option("#set-on", "as the balls say")
+    shown.until("!document.getElementById('set-done').disabled")
+    shown.page.click("#set-done")
+    shown.until("page.state.ball_on === 'pink'")
+
+
+def test_help_is_closed_by_escape(shown):
+    shown.set_up(EASY)
+    shown.page.keyboard.press("?")
+    assert shown.page.is_visible("#help")
+    shown.page.keyboard.press("Escape")
+    shown.until("!document.getElementById('help').open")
 
 
 @pytest.mark.parametrize("size", [(390, 844), (844, 390), (1280, 720), (1920, 1080)])

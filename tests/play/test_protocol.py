@@ -165,7 +165,7 @@ def test_an_agent_plays_by_itself_and_waits_after_an_undo(game):
     game("position", position=EASY, striker=1)
     state = game.get("state")
     assert state["paused"] and "Continue" in state["words"]
-    with pytest.raises(ValueError, match="turn = 'ghost_ball'"):
+    with pytest.raises(ValueError, match="turn = 'ghost ball'"):
         game("stroke", speed=1.0, aim=0.0)
     game("go")
     assert waited(game, lambda s: not s["thinking"])["strokes"] >= 1

@@ -150,6 +150,20 @@ def test_bodies_are_bounded_and_typed(line):
     refused(line("api/state", b"{}", method="GET"), 400, "no body")
 
 
+def test_a_post_without_a_body_has_no_fields_and_a_second_slash_does_no_harm(line):
+    for more in ({"Content-Length": None, "Content-Type": None}, {"Content-Length": "0", "Content-Type": None}):
+        assert line("api/redo", b"", headers=more)[0] == 200
+    assert line("/api/state")[1]["revision"] == line("api/state")[1]["revision"]
+    refused(line("/api/state", token="x"), 403, "token")
+    refused(line("/etc/passwd"), 404, "nothing")
+
+
+@pytest.mark.parametrize("address, words", [("http://127.0.0.1:9/x/", "no answer"), ("nonsense", "no address")])
+def test_the_client_says_in_one_line_that_nobody_answers(address, words):
+    done = subprocess.run([sys.executable, ROOT / "examples" / "play_client.py", address], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1
+
+
 def test_heads_are_bounded(line):
     refused(line("api/state", headers={"X-Long": "x" * module.MOST_HEAD}), 431, "head")
     refused(line("api/state", headers={f"X-{k}": "x" * 100 for k in range(200)}), 431, "")
