@@ -84,7 +84,7 @@ def _read(path: Path) -> dict[str, Any]:
         raise refuse_what("position", f"a file of {path.stat().st_size} bytes", f"must be at most {MOST_FILE}")
     try:
         read = json.loads(path.read_text("utf-8"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise refuse_what("position", str(path), f"must be a file of JSON ({error})") from None
     if not isinstance(read, dict):
         raise refuse_what("position", str(path), "must hold a JSON object")

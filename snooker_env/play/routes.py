@@ -81,7 +81,7 @@ def _stroke(service: Service, given: dict[str, Any]) -> dict[str, Any]:
         raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
     nominated = colour_named("nominate", given["nominate"]) if "nominate" in given else AUTO
     act = stroke = None
-    with service.acting() as session:
+    with service.acting(_revision(given)) as session:
         twin = session.twin()  # whatever is wrong shows there first, so that a request that is refused has changed nothing
         if "choice" in given:
             if strikes and given["choice"] != "play":
@@ -268,7 +268,7 @@ GET: dict[str, Route] = {
     "replay.html": Route(_replay_page),
 }  # fmt: skip
 POST: dict[str, Route] = {
-    "stroke": Route(_stroke, (*STROKE, "choice", "nominate")), "place": Route(_place, ("place",)),
+    "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision")), "place": Route(_place, ("place",)),
     "advise": Route(_advise, ("agent", "n", *ERRORS)), "destinations": Route(_destinations, (*STROKE, *ERRORS)),
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")), "undo": Route(_undo), "redo": Route(_redo),
     "new": Route(_new, ("layout", "seed", "breaker")), "players": Route(_players, ("players", "noise", "practice")), "go": Route(_go),

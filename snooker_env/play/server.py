@@ -36,6 +36,11 @@ MOST_HEAD = 16_384
 MOST_BODY = 65_536
 """Bytes of a request's head and body; a saved game has about 3,000."""
 MOST_AT_ONCE = 32
+_FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
+FULL = (
+    b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\nContent-Length: %d\r\n\r\n" % len(_FULL)
+    + _FULL
+)
 """Connections; a browser keeps six."""
 IDLE, REQUEST = 20.0, 10.0
 """How long a connection may wait for its next request, and a request for its end [s]."""
@@ -178,6 +183,9 @@ class PlayHandler(BaseHTTPRequestHandler):
         host = head.get_all("Host") or []
         if len(host) != 1 or host[0].lower() not in self.server.hosts:
             raise self._last(403, "Host must be " + " or ".join(sorted(self.server.hosts)))
+        for field in ("Origin", "Sec-Fetch-Site", "Content-Length"):
+            if len(head.get_all(field) or []) > 1:
+                raise self._last(400, "must be given once", field)
         origin = head.get("Origin")
         if origin is not None and origin.lower() not in {f"http://{name}" for name in self.server.hosts}:
             raise self._last(403, "Origin must be this server's own")
@@ -210,7 +218,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         for name, value in pairs:
             if name in found:
                 raise RefusedError(400, "must be given once", name, value)
-            found[name] = json.loads(value) if re.fullmatch(r"\d{1,15}(\.\d{1,9})?", value) else value
+            found[name] = json.loads(value) if re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value) else value
         return found
 
     def _body(self) -> dict[str, Any]:
@@ -311,6 +319,9 @@ class PlayServer(ThreadingHTTPServer):
     def process_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection in a thread of its own, unless there are too many."""
         if not self._free.acquire(blocking=False):
+            with suppress(OSError):
+                request.settimeout(1.0)
+                request.sendall(FULL)
             self.shutdown_request(request)
             return
         super().process_request(request, client_address)

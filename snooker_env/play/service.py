@@ -65,12 +65,14 @@ class Service:
             yield self.session
 
     @contextmanager
-    def acting(self, *, pause: bool = False, any_turn: bool = False) -> Iterator[Session]:
+    def acting(self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False) -> Iterator[Session]:
         """The game, to change it. ``pause``: an agent whose turn it is then waits; ``any_turn``: also while an agent is to play.
 
-        Raises ValueError if it is an agent's turn. What raises inside has changed nothing.
+        Raises ValueError if it is an agent's turn, StaleError if that is the revision no longer. What raises inside has changed nothing.
         """
         with self._changed:
+            if revision not in (None, self.revision):
+                raise StaleError
             if not any_turn and self.agent_to_play():
                 raise ValueError(f"turn = {self.seats.label(self.session.frame.striker)!r}: must be a person's: an agent is to play")
             yield self.session

@@ -272,7 +272,7 @@ class Session:
         fields = ("format", "version", "practice", "noise", "state")
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
             raise refuse_what("saved", "something else", 'must be a saved game, with "format": "snooker-game"')
-        if set(saved) != set(fields) or saved["version"] != 1:
+        if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
             raise refuse_what("saved", f"version {saved.get('version')!r} with {sorted(saved)}", f"must be version 1 with {list(fields)}")
         noise = saved["noise"]
         if not isinstance(noise, list) or len(noise) != 2:
@@ -298,8 +298,8 @@ class Session:
     def _go(self, at):
         if not 1 <= at <= len(self.acts):
             return False
-        self.at = at
         self._set(self.acts[at - 1].state)
+        self.at = at
         return True
 
     def _set(self, state):

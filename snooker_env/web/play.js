@@ -252,18 +252,20 @@ class Page {
   }
 
   async play() {
-    if (!this.aiming) return;
-    const { speed, side, top, aim, elevation } = this.aim.wish, body = { speed, side, top, aim, elevation };
+    if (!this.aiming || this.sending) return;  // one stroke for one press, however slow the answer
+    const { speed, side, top, aim, elevation } = this.aim.wish, body = { revision: this.state.revision, speed, side, top, aim, elevation };
     if (this.state.in_hand) body.place = [this.balls.x[0], this.balls.y[0]];
     if (by("nominate").value && this.state.nominations.includes(by("nominate").value)) body.nominate = by("nominate").value;
     by("play").disabled = true;
     this.placing.drop();
-    await this.send(body);
+    this.sending = true;
+    try { await this.send(body); } finally { this.sending = false; }
   }
 
   async send(body) {
     try {
-      const { stroke, state } = await ask("stroke", body);
+      const { stroke, state, stale } = await ask("stroke", body);
+      if (stale) throw new Error("The table has changed: look, and play again.");
       if (stroke) this.known.set(state.strokes - 1, stroke);
       this.take(state);
     } catch (error) { this.trouble(error); }
@@ -300,6 +302,8 @@ class Page {
       if (!(key === "Enter" && event.target.type === "range")) return;
     }
     if ((key === "Enter" || key === " ") && ["BUTTON", "SUMMARY"].includes(tag)) return;
+    if (event.repeat && (key === "Enter" || key === " " || "urv".includes(key))) return;  // a key held down acts once
+    if (event.altKey && !key.startsWith("Arrow")) return;
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, { side, top } = aim.wish;
     const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end() } : {
       " ": () => this.skip(), Escape: () => this.skip(), u: () => by("undo").click(), r: () => by("redo").click(), v: () => this.again(),

@@ -383,3 +383,15 @@ def test_it_fits_every_screen_and_can_be_touched(chromium, line, size):  # noqa:
     named = "one.textContent.trim() || one.getAttribute('aria-label') || one.title || one.labels?.[0]?.textContent.trim()"
     assert shown(f"{seen}.filter(one => !({named})).map(one => one.id)") == []
     shown.close()
+
+
+def test_one_press_is_one_stroke(shown):
+    """Enter three times before the answer, and Enter held down until the balls rest, play one stroke, not two."""
+    shown.set_up(EASY)
+    before = shown("page.state.strokes")
+    press = "document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true, repeat: argument }))"
+    shown.page.evaluate(f"() => {{ const argument = false; for (let k = 0; k < 3; k++) {press}; }}")
+    shown.played(before + 1)
+    shown.page.evaluate(f"() => {{ const argument = true; for (let k = 0; k < 3; k++) {press}; }}")
+    time.sleep(0.5)
+    assert shown("page.state.strokes") == before + 1 == shown.line("api/state")[1]["strokes"]

@@ -235,6 +235,9 @@ def test_a_question_about_a_table_that_is_gone_is_told_so(game):
     assert "cue" in game("destinations", speed=1.0, aim=0.0, samples=8, revision=revision)
     game("stroke", speed=1.0, aim=STRAIGHT)
     assert game("destinations", speed=1.0, aim=0.0, revision=revision) == {"stale": True} == game("advise", revision=revision)
+    before = game.get("state")
+    assert game("stroke", speed=1.0, aim=0.0, revision=revision) == {"stale": True}
+    assert game.get("state")["strokes"] == before["strokes"] and game.get("state")["revision"] == before["revision"]
 
 
 def test_undo_redo_new_save_load_and_replay(game):

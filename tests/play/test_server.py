@@ -219,6 +219,9 @@ def test_connections_at_once_are_bounded(line):
     held = [socket.create_connection(("127.0.0.1", line.server.server_port)) for _ in range(module.MOST_AT_ONCE + 4)]
     try:
         time.sleep(0.3)
+        held[-1].settimeout(5)
+        told = held[-1].recv(1000)
+        assert told.startswith(b"HTTP/1.1 503 ") and b'"message": "busy: too many connections"' in told
         assert closed(held[-1]) and not closed(held[0])
     finally:
         for one in held:
