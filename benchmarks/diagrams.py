@@ -6,6 +6,8 @@ A red is potted into the corner, and the stroke is meant to leave the cue ball f
 made up for. The density is that of the same stroke, played with the errors of a player; a cue ball that is potted stops nowhere.
 """
 
+from typing import Any
+
 import numpy as np
 
 import snooker_env as sn
@@ -16,7 +18,7 @@ from snooker_env.tasks import LEVELS, Noise
 from ._common.command import Command, at_least, run, save_figure, save_json
 
 SHOT, COMPARE, FAN, DENSITY = FILES = ("diagram_shot.png", "diagram_compare.png", "diagram_fan.png", "diagram_density.png")
-PLACES = dict(
+PLACES: Any = dict(
     cue=(0.30, 0.62), reds=[(0.52, 1.30), (-0.34, 1.12), (-0.20, 1.32), (-0.30, 1.58), (-0.52, 0.74), (-0.12, 0.55)],
     yellow=(0.292, -1.0475), green=(-0.292, -1.0475), brown=(0.0, -1.0475), blue=(0.0, 0.0), pink=(0.0, 0.89225), black=(0.0, 1.4605),
 )  # fmt: skip

@@ -102,7 +102,7 @@ class FrameTable:
 
         if not self.tables.turn(prepare, out, crew)[0]:
             return None
-        counts, potted = out.counts[0].tolist(), int((self.buffers.enlarged or self.buffers).seen[0, DOWN])
+        counts, potted = out.counts[0].tolist(), int(self.buffers.enlarged.get(0, self.buffers).seen[0, DOWN])
         return Turn(striker, counts[I_BALL_ON], potted, int(out.reals[0, I_POINTS]), counts[I_PENALTY], counts[I_FOULS])
 
     def as_json(self):

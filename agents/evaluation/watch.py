@@ -12,6 +12,7 @@ import argparse
 import tempfile
 import webbrowser
 from pathlib import Path
+from typing import Any
 
 from commands.lifecycle import command, needs
 
@@ -56,7 +57,7 @@ def told(replay):
 
 def parser():
     """The command line."""
-    p = argparse.ArgumentParser(prog="python -m agents.watch", description=__doc__.split("\n\n")[0])
+    p = argparse.ArgumentParser(prog="python -m agents.watch", description=str(__doc__).split("\n\n")[0])
     p.add_argument("--agent", default="ppo_foresight", help="a player's name, a pre-trained model, a model's .zip or run folder")
     p.add_argument("--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser")
     p.add_argument("--layout", default="held_out", help="of the tables, as for Snooker-v0")
@@ -76,7 +77,7 @@ def _film(args):
     """The options of the film that is wanted, {} for a page."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     choice("out", suffix, SUFFIXES)
-    film = {"speed": number("speed", args.speed, 0.0, 100.0, open_low=True)} if args.speed != 1.0 else {}
+    film: dict[str, Any] = {"speed": number("speed", args.speed, 0.0, 100.0, open_low=True)} if args.speed != 1.0 else {}
     if args.fps is not None:
         film["fps"] = number("fps", args.fps, 0.0, 240.0, open_low=True)
     if args.size is not None:

@@ -72,14 +72,12 @@ def write_film(
     """Write ``frames`` to an .mp4 or .gif file."""
     usual_size, usual_fps = USUAL[target.suffix.lower()]
     size, fps = usual_size if size is None else size, usual_fps if fps is None else _rate("fps", fps)
-    if (
-        not isinstance(size, tuple | list)
-        or len(size) != 2
-        or not all(isinstance(side, int) and side > 0 and not side % 2 for side in size)
-    ):
+    sides: Any = size if isinstance(size, tuple | list) else ()
+    if len(sides) != 2 or not all(isinstance(side, int) and side > 0 and side % 2 == 0 for side in sides):
         raise refuse("size", size, "must be (width, height), both even, as video encoders want them")
-    pictures = replay.frames(fps=fps, speed=speed, size=size)
-    write_whole(target, lambda path: _encode(pictures, path, fps, size))
+    width, height = sides
+    pictures = replay.frames(fps=fps, speed=speed, size=(width, height))
+    write_whole(target, lambda path: _encode(pictures, path, fps, (width, height)))
 
 
 def _rate(field: str, value: Any) -> float:

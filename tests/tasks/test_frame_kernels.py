@@ -72,7 +72,7 @@ class Recording(Crew):
 
     def saw(self, which, buffers, own):
         """Play no more than there is room for: no shot of these needs a longer log."""
-        assert buffers.enlarged is None and own
+        assert not buffers.enlarged and own
         self.shots = {k: (j, buffers.r[j].copy(), buffers.seen[j].copy()) for j, k in enumerate(which.tolist())}
 
 
