@@ -1,0 +1,64 @@
+"""How are the screenshots in docs made? ``python docs/pictures/make.py`` in a clone with the extra ``test``, and Chromium, makes them anew.
+
+The page of ``snooker_env.play`` with advice, and a replay of a trained agent's break, each as a browser shows it.
+"""
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+QUIET = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update")
+
+
+def shoot(page, name):
+    """A screenshot in this folder."""
+    page.screenshot(path=HERE / name, type="jpeg", quality=82)
+    print(HERE / name)
+
+
+def page_with_advice(browser):
+    """The page to play, as it answers "What would you play?"."""
+    command = [sys.executable, "-m", "snooker_env.play", "--no-browser", "--layout", "opened", "--seed", "3", "--agent", "ppo_foresight"]
+    server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    try:
+        address = next(found[0] for line in server.stdout if (found := re.search(r"http://\S+", line)))
+        page = browser.new_page(viewport={"width": 1280, "height": 720})
+        page.goto(address)
+        page.get_by_role("button", name="What would you play?").click()
+        page.get_by_text("points expected").nth(4).wait_for(timeout=120_000)
+        page.get_by_text("points expected").first.hover()
+        time.sleep(1.5)
+        shoot(page, "page.jpg")
+    finally:
+        server.terminate()
+
+
+def replay(browser):
+    """The replay of a break, paths on, at a desk and on a phone."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "break.html"
+        command = [sys.executable, "-m", "agents.watch", "--agent", "ppo_foresight", "--at-least", "50", "--out", str(file)]
+        subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+        for name, width, height in (("replay.jpg", 1280, 720), ("replay_phone.jpg", 390, 700)):
+            page = browser.new_page(viewport={"width": width, "height": height})
+            page.goto(file.as_uri())
+            page.keyboard.press("p")
+            for _ in range(6):
+                page.keyboard.press("Shift+ArrowRight")
+            time.sleep(3.5)
+            shoot(page, name)
+
+
+if __name__ == "__main__":
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(QUIET))
+        page_with_advice(chromium)
+        replay(chromium)
