@@ -115,4 +115,4 @@ def test_a_shot_without_its_path_is_refused():
     env = sn.SnookerEnv()
     env.reset(seed=1)
     env.step([0.0, 0.0, 0.0, 0.5])
-    refused(lambda: shot_paths.paths(env.last_shot), "shot.segments", "none", "render_mode")
+    refused(lambda: shot_paths.paths(env.last_shot), "shot.segments", "none", "keep_history = True")
