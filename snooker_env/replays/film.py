@@ -91,7 +91,7 @@ def _encode(pictures: Iterator[NDArray[np.uint8]], path: Path, fps: float, size:
             "yuv420p",
             size,
             fps,
-            ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "20", "-threads", "1", *HD],
+            ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "26", "-threads", "1", *HD],
             path,
         )
         return
