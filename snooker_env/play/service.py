@@ -43,7 +43,6 @@ class Service:
     def __init__(self, session: Session, seats: Seats):
         self.session, self.seats = session, seats
         self.revision, self.paused, self.trouble = 0, False, ""
-        self._thinking = False
         self._changed = threading.Condition(threading.RLock())
         self._asking = threading.BoundedSemaphore(2)
         self._closed = False

@@ -228,9 +228,7 @@ class Sketch:
         self.ax.add_patch(Circle((y, x), size, fc=rgb(colour, alpha), ec=rim, lw=0.9, zorder=level, gid=gid))
         self.keep_clear(np.asarray(place)[None], 2 * size)
 
-    def line(
-        self, points: Floats, colour: Any, *, level: float = 5.0, width: float = PATH_WIDTH, outlined: bool = True, **style: Any
-    ) -> None:
+    def line(self, points: Floats, colour: Any, *, level: float = 5.0, width: float = PATH_WIDTH, **style: Any) -> None:
         """A line (m, 2) [m] with a dark outline."""
         under = {"color": rgb("path_edge", 0.85), "lw": width + OUTLINE, "zorder": level - 0.5, "solid_capstyle": "round"}
         self.ax.plot(*flipped(points).T, **under, gid="outline")
