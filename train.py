@@ -1,17 +1,20 @@
-"""How does an agent learn to play Snooker-v0? Train one, check it against random play on tables it never saw, and say what it learned.
+"""How is an agent trained to play Snooker-v0? Train one, evaluate it on held-out tables beside simple players, and report the result.
 
-    python train.py                                    four to ten minutes on two cores: PPO that looks one shot ahead
-    python train.py --steps 1 --imitate 2000           a few minutes of the same
+    python train.py                                    four to ten minutes on two cores: PPO with a one-shot lookahead
+    python train.py --steps 1 --imitate 2000           the same, shortened to a few minutes
     python train.py --agent ppo_mask --seed 1 --out runs/mine
-    python train.py --resume --out runs/mine           go on after Ctrl-C, a kill or a power cut, exactly where the last checkpoint was
+    python train.py --resume --out runs/mine           continue from the last checkpoint after Ctrl-C, a kill or a power cut
 
-A run folder holds ``checkpoint.pkl`` (all that a resumed run needs; a pickle, and loading one runs what it holds: --resume only your own),
-``model.zip`` (for ``python -m agents.evaluate`` and --start, which run nothing of it, and for ``PPO.load`` of ``stable_baselines3``, which
-unpickles), ``results.json`` (every figure), ``tb/`` (``tensorboard --logdir runs``) and, while the run goes on, ``train.lock``: no two
-runs share a folder (``agents/learning/lock.py``).
+Files of a run folder:
 
-What an agent sees is in ``agents/features/``, how it is made in ``agents/hyperparams/``, how it learns, from the search first, and what is
-kept of a run in ``agents/learning/``, how its visits are judged in ``agents/evaluation/``; here follow, top to bottom: settings, the run.
+* ``checkpoint.pkl``: everything that a resumed run needs. It is a pickle, and loading a pickle runs code: --resume only your own runs.
+* ``model.zip``: the trained model. ``python -m agents.evaluate`` and --start read it as plain data; ``PPO.load`` of Stable-Baselines3
+  unpickles it.
+* ``results.json``: every figure. ``tb/``: the curves (``tensorboard --logdir runs``).
+* ``train.lock``, while the run goes on: two runs cannot share a folder (``agents/learning/lock.py``).
+
+Where to read on: ``agents/features/`` has the observations, ``agents/hyperparams/`` the settings of each agent, ``agents/learning/`` the
+networks, the imitation and the files of a run, ``agents/evaluation/`` the evaluation. This file has the settings and the run.
 """
 
 import argparse
@@ -30,8 +33,8 @@ from pathlib import Path
 from commands.lifecycle import command, needs, of_disk
 
 with needs("train.py"):
-    import sb3_contrib  # noqa: F401 - agents.learning.hyperparameters would miss it only later
-    import tensorboard  # noqa: F401 - and stable_baselines3 this one
+    import sb3_contrib  # noqa: F401 - imported here so that a missing package is reported before anything starts
+    import tensorboard  # noqa: F401 - likewise
     import torch
 
     import snooker_env
@@ -59,31 +62,36 @@ def option(default, text, **more):
 
 @dataclass(frozen=True)
 class Settings:
-    """What makes a run the run it is."""
+    """The settings of a run."""
 
-    agent: str = option("ppo_foresight", "what learns, and how: a file of agents/hyperparams", choices=tuple(names()))
-    steps: int = option(0, "shots in all, rounded up to whole rollouts; 0: as many as the recipe says")
-    envs: int = option(0, "tables played side by side; 0: as many as the recipe says")
+    agent: str = option("ppo_foresight", "the agent to train: a file of agents/hyperparams", choices=tuple(names()))
+    steps: int = option(0, "total number of shots, rounded up to whole rollouts; 0: the recipe's")
+    envs: int = option(0, "number of parallel tables; 0: the recipe's")
     parallel: str = option(
-        "auto", "threads for the tables: auto is one for each processor; the shots are the same", choices=("auto", "one")
+        "auto", "threads for the tables: auto is one for each processor; results do not depend on it", choices=("auto", "one")
     )
-    seed: int = option(0, "of tables, weights and exploration")
-    layout: str = option("", "where training visits start [the recipe's]")
+    seed: int = option(0, "random seed of tables, weights and exploration")
+    layout: str = option("", "layout of the training tables [the recipe's]")
     noise: str = option("", "execution noise: none, professional, amateur, club, robot or olympiad [the recipe's]")
     fidelity: str = option("", "of the simulation: fast, standard, reference or euler:N [the recipe's]")
     physics: str = option("", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]")
-    imitate: int = option(-1, "positions in which it first imitates the search; -1: as many as the recipe says")
-    start: str = option("", "a model of the same agent to start from, its .zip or run folder; nothing in it is run")
-    set: tuple = option((), "other hyper-parameters, as gamma=0", nargs="+")
-    eval_visits: int = option(500, f"held-out visits each agent plays at the end, each on a table of its own, of {HELD_OUT}")
-    checkpoint_every: int = option(100_000, "shots from one checkpoint to the next")
+    imitate: int = option(-1, "positions of pre-training by imitating the search; -1: the recipe's number")
+    start: str = option("", "initial weights: a model of the same agent, its .zip or run folder (read as plain data)")
+    set: tuple = option((), "change hyperparameters, for example gamma=0", nargs="+")
+    eval_visits: int = option(500, f"visits of the final evaluation, each on a held-out table of its own, at most {HELD_OUT}")
+    checkpoint_every: int = option(100_000, "shots between two checkpoints")
 
 
 BOUNDS = {
     "steps": (0, 10**12), "envs": (0, 2**24), "seed": (0, 2**32 - 1), "imitate": (-1, 10**9), "eval_visits": (2, HELD_OUT),
     "checkpoint_every": (1, 10**12),
 }  # fmt: skip
-FREE_ON_RESUME = ("steps", "parallel", "eval_visits", "checkpoint_every")  # how long and where, not what; lr falls over the new steps
+FREE_ON_RESUME = (
+    "steps",
+    "parallel",
+    "eval_visits",
+    "checkpoint_every",
+)  # how long and where, not what; the learning rate falls over the new steps
 
 
 def parse(argv):
@@ -96,7 +104,7 @@ def parse(argv):
             nargs=f.metadata.get("nargs"), help=f.metadata["help"] + (f" [{f.default}]" if f.default not in ("", (), 0) else ""),
         )  # fmt: skip
     parser.add_argument("--out", type=Path, help="the run's folder [runs/AGENT-SEED]")
-    parser.add_argument("--resume", action="store_true", help="go on with the run in that folder; what is not given is as it was")
+    parser.add_argument("--resume", action="store_true", help="continue the run in that folder; options left out keep their values")
     parser.add_argument("--no-progress", action="store_true", help="no progress bar")
     given = vars(parser.parse_args(argv))
     rest = {name: given.pop(name) for name in ("out", "resume", "no_progress")}
@@ -110,14 +118,14 @@ def parse(argv):
 
 
 def recipe_of(settings):
-    """The agent's recipe with what the settings change. Raises ValueError."""
+    """The agent's recipe with the changes of these settings. Raises ValueError."""
     chosen = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
     chosen["physics"] = physics_option(settings.physics) if settings.physics else ""
     numbers = {"n_timesteps": settings.steps, "n_envs": settings.envs}
     given = {key: value for key, value in numbers.items() if value}
     if settings.start:
         if settings.imitate > 0:
-            raise refuse("imitate", settings.imitate, "must be 0 or left out with --start, which brings what was learned before")
+            raise refuse("imitate", settings.imitate, "must be 0 or left out with --start: the weights given there are already trained")
         given["imitation"] = 0
     elif settings.imitate >= 0:
         given["imitation"] = settings.imitate
@@ -131,7 +139,7 @@ def recipe_of(settings):
 
 
 def provenance():
-    """What computed these figures."""
+    """Versions, commit and machine that computed these figures."""
     versions = {"python": platform.python_version(), "platform": platform.platform()}
     for name in ("snooker-env", "numpy", "numba", "gymnasium", "stable-baselines3", "sb3-contrib", "torch"):
         try:
@@ -142,7 +150,7 @@ def provenance():
 
 
 def command_of(settings):
-    """The command that makes this run."""
+    """The command that repeats this run."""
     words = ["python", "train.py"]
     for f in fields(Settings):
         value = getattr(settings, f.name)
@@ -152,7 +160,7 @@ def command_of(settings):
 
 
 def open_run(parser, given, out, resume):
-    """(settings, checkpoint or None) of a folder and the options given."""
+    """(settings, checkpoint or None) from the folder and the options given."""
     if not resume:
         return Settings(**given), None
     state, was = read_checkpoint(out, Settings)
@@ -164,9 +172,9 @@ def open_run(parser, given, out, resume):
 
 
 def prepared(parser, given, out, resume, ending):
-    """(settings, recipe, checkpoint or None, tables, model): whatever can be wrong is found here, before anything is compiled or played.
+    """(settings, recipe, checkpoint or None, tables, model). Every error of input is found here, before anything is compiled or played.
 
-    ``ending`` gives back the folder and the tables.
+    ``ending`` releases the folder and the tables.
     """
     try:
         if resume:
@@ -182,7 +190,7 @@ def prepared(parser, given, out, resume, ending):
             model = recipe.new_model(tables, settings.seed)
             if settings.start:
                 load_weights(model, Path(settings.start))
-            ending.enter_context(claimed(out, resume))  # last: a folder is no use as long as an option is wrong
+            ending.enter_context(claimed(out, resume))  # last, so that a wrong option leaves no folder behind
         tempfile.TemporaryFile(dir=out).close()
     except ValueError as error:
         parser.error(str(error))
@@ -192,9 +200,12 @@ def prepared(parser, given, out, resume, ending):
 
 
 def train(out, settings, recipe, state, tables, model, progress):
-    """Imitate and train to the end or to a signal: (``RunCallback``, or None if stopped before it, the curve of imitation, the signal)."""
+    """Imitate, then train, to the end or to a signal.
+
+    Returns (``RunCallback``, or None if stopped before it; the curve of the imitation; the signal or None).
+    """
     threads, began, imitation = 1 if settings.parallel == "one" else processors(), time.perf_counter(), state["imitation"] if state else []
-    begun = state["teaching"] if state else None
+    begun = state["imitating"] if state else None
     model.tensorboard_log = str(out / "tb")
     with Stop() as stop:
         if begun or (recipe.imitation and not state):
@@ -216,21 +227,21 @@ def train(out, settings, recipe, state, tables, model, progress):
         whole = f" ({asked:,} asked for; whole rollouts of {rollout_of(model):,})" if goal > asked > model.num_timesteps else ""
         print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {goal:,} shots played{whole}", flush=True)
         if model.num_timesteps >= settings.steps:
-            print("Nothing is left to train.", flush=True)
+            print("All steps are done: nothing left to train.", flush=True)
         else:
             fresh = state is None or begun is not None
             try:
                 model.learn(settings.steps - model.num_timesteps, callback, tb_log_name=settings.agent, reset_num_timesteps=fresh)
             finally:
-                callback.bar.stop()  # gives the terminal its cursor back, whatever happened
+                callback.bar.stop()  # restores the terminal's cursor
         if stop.signal:
-            done = "; all are played, only the judging is left" if model.num_timesteps >= settings.steps else ""
+            done = "; training is complete, the evaluation is left" if model.num_timesteps >= settings.steps else ""
             print(f"Saved at {callback.saved or model.num_timesteps:,} shots{done}. {go_on(out)}")
         return callback, imitation, stop.signal
 
 
 def judge(out, settings, recipe, model, callback, imitation):
-    """Play held-out visits, write the model and every figure, say what was learned."""
+    """Play held-out visits, write the model and every figure, print the conclusion."""
     steps, seconds = model.num_timesteps, callback.seconds_before
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
     write_atomic(out / "model.zip", zipped(model))
@@ -251,8 +262,8 @@ def main(argv=None):
     """Train, evaluate, save. Exit code 0, or 128 + the signal that stopped it."""
     parser, given, rest = parse(argv)
     out = rest.out
-    torch.set_num_threads(1)  # a network this small gains nothing from more, and the tables need the processors
-    torch.distributions.Distribution.set_default_validate_args(False)  # checks of every number, a twentieth of the time
+    torch.set_num_threads(1)  # more threads do not speed up a network this small, and the tables use the processors
+    torch.distributions.Distribution.set_default_validate_args(False)  # these checks cost a twentieth of the time
     with ExitStack() as ending:
         settings, recipe, state, tables, model = prepared(parser, given, out, rest.resume, ending)
         try:
@@ -265,10 +276,10 @@ def main(argv=None):
             print(f"Interrupted. {kept(out)}", file=sys.stderr)
             return 130
         except BrokenPipeError:
-            print(f"train.py: nobody reads its output any more. {kept(out)}", file=sys.stderr)
+            print(f"train.py: its output was closed. {kept(out)}", file=sys.stderr)
             raise
         except OSError as error:
-            what = f"{out / 'tb'} or the output"  # TensorBoard's errors name no file either
+            what = f"{out / 'tb'} or the output"  # TensorBoard's errors name no file
             raise SystemExit(f"train.py: {of_disk(error, what)}. {kept(out)}") from None
     return 0
 

@@ -1,1 +1,1 @@
-"""Who plays? Agents and what they share; not part of the wheel."""
+"""Which agents come with the repository? Players, training and evaluation; not part of the installed package."""

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# How were the figures of agents/results/*.md made? Trains every agent and compares them: hours. What is there already is kept.
+# How were the figures of agents/results/*.md made? Trains every agent and compares them: hours. Finished runs are kept.
 #
 #     bash agents/experiments.sh [FOLDER [JOBS]]     runs/experiments, 2 runs side by side, each on one core
 #
-# The tables again from the figures that are kept, without playing: python -m agents.report agents/results/*.json
-# Only some of the runs, and no comparison: ONLY='fore-|gamma0-' bash agents/experiments.sh. Say what would be run: ... LIST=1 ...
+# Make the tables again from the stored figures, without playing: python -m agents.report agents/results/*.json
+# Some of the runs only, without the comparison: ONLY='fore-|gamma0-' bash agents/experiments.sh. List the commands: LIST=1 bash ...
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=${1:-runs/experiments} jobs=${2:-2}
@@ -22,7 +22,7 @@ runs() { # name, then the options of train.py
     echo "tqc-0 --agent tqc_target"
     for k in 0 1 2; do echo "lineup-$k --agent ppo_mask --layout line_up --steps 300000 --seed $k"; done
 }
-later() { # these start from some of those
+later() { # these start from the weights of earlier runs
     for k in 0 1 2; do echo "curriculum-$k --agent ppo_mask --start $folder/lineup-$k --steps 700000 --seed $k"; done
 }
 
@@ -63,7 +63,7 @@ evaluate main --against ghost_ball ppo_foresight_gamma0 --picture agents/picture
     geometric random
 evaluate aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
     "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?" ghost_ball random_absolute
-evaluate teacher --against lookahead --noise professional --agent "ppo_foresight=$folder/fore-?" lookahead
+evaluate imitation_against_rule --against lookahead --noise professional --agent "ppo_foresight=$folder/fore-?" lookahead
 evaluate curriculum --against ghost_ball ppo_mask_1M --layouts held_out line_up --noise professional --agent \
     "curriculum=$folder/curriculum-?" "ppo_mask_1M=$folder/mask-[012]" ghost_ball
 evaluate fidelity --layouts held_out --noise professional --fidelity fast standard reference --agent \

@@ -1,4 +1,4 @@
-"""What do the diagrams look like? One of each kind: a shot, two ways to play it, a fan over top and side, and where the cue ball stops.
+"""Which diagrams are there? One of each kind: a shot, two ways to play it, a fan over top and side, and where the cue ball stops.
 
     python -m benchmarks.diagrams [--noise amateur] [--shots 2000] [--seed 0] [--no-pictures] [--json FILE] [--out FOLDER]
 

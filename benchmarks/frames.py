@@ -4,7 +4,7 @@
 
 Checked at every stroke: the scores against a count of its own of what was potted and given, no visit above 155, no ball lost, doubled,
 overlapping or off the table; and once a frame, that the state written as JSON and read again plays on identically, bit for bit.
-Nobody concedes, claims or is stopped: a frame ends by its last black, by a re-spotted black, or by a third miss ("clear_path").
+No player concedes, claims or is stopped: a frame ends by its last black, by a re-spotted black, or by a third miss ("clear_path").
 """
 
 import json

@@ -1,48 +1,57 @@
-"""What do the layouts look like? One picture of them all, as the README shows it.
+"""Which layouts are there? One picture of them all.
 
 python -m benchmarks.layouts_picture [--seed 4] [--json FILE] [--out FOLDER]
 """
 
-from typing import Any
-
 import numpy as np
 
+from commands import picture_style
+from snooker_env import Table
 from snooker_env.game.balls import NAMES, REDS_MASK
 from snooker_env.game.layouts import layout
-from snooker_env.game.pots import GHOST_X, GHOST_Y, pots
-from snooker_env.geometry import BALL_RADIUS
-from snooker_env.render.pygame_view import rgb_array
-from snooker_env.render.scene import scene
+from snooker_env.game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, pots
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from snooker_env.render.palette import PALE
+from snooker_env.render.sketch import Region, Sketch
 
-from ._common.command import Command, run, save_image, save_json
+from ._common.command import Command, run, save_json
 
 FILE = "layouts.png"
-HEIGHT, COLUMNS, GAP = 330, 3, 6
-"""Pixels of one table's height, tables a line, and pixels between them."""
+COLUMNS = 2
+LARGER = 1.5
+"""Balls are drawn so many times their size: a table is small here."""
+RIM = 0.075
+"""So much of the rails is shown [m]."""
 
 SHOWN = {
     "break_off": "the start of a frame",
-    "opened": "opened by real simulated play",
+    "opened": "opened by simulated play",
+    "held_out": "the same, kept for evaluation",
     "line_up": "the practice line-up",
     "colours": "the six colours on their spots",
-    "random:6": "six reds sprinkled",
-    "snookered": "no red can be struck at both edges",
-    "pots:easy": "its line may err by 0.23 degrees or more",
-    "pots:medium": "by 0.06 to 0.23 degrees",
-    "pots:hard": "by 0.02 to 0.06 degrees",
+    "random:6": "six reds at random",
+    "snookered": "no red can be hit on both edges",
+    "pots:easy": "aim may err by 0.23° or more",
+    "pots:medium": "aim may err by 0.06 to 0.23°",
+    "pots:hard": "aim may err by 0.02 to 0.06°",
 }
 
 
-def picture(name, says, seed):
-    """One layout with its name; a single pot with its line and ghost ball."""
+def table(ax, name, seed):
+    """Draw one layout; a single pot with its line and ghost ball, a snooker with the lines to the red's edges."""
     positions, on_table = layout(name, np.random.default_rng(seed))
-    overlay: dict[str, Any] = {}
+    rim = Region(-HALF_WIDTH - RIM, HALF_WIDTH + RIM, -HALF_LENGTH - RIM, HALF_LENGTH + RIM)
+    sketch = Sketch(Table.preset("match"), LARGER * BALL_RADIUS, rim, ax)
     if name.startswith("pots:"):
-        ghost = pots(positions, on_table, REDS_MASK, most=1)[0, [GHOST_X, GHOST_Y]]
-        overlay = {"aim": np.array([positions[0], ghost]), "ghost": ghost}
+        pot = pots(positions, on_table, REDS_MASK, most=1)[0]
+        place, goal = positions[int(pot[POT_BALL])], POCKET_AIMS[int(pot[POT_POCKET]), :2]
+        sketch.line(np.array([positions[0], pot[[GHOST_X, GHOST_Y]]]), "text")
+        sketch.line(np.array([place, goal]), PALE[1])
     elif name == "snookered":
-        overlay = {"paths": sight(positions, on_table)}
-    return rgb_array(scene("match", positions, on_table, text=f'layout="{name}": {says}', **overlay), HEIGHT)
+        for red, points in sight(positions, on_table).items():
+            sketch.line(points, PALE[red], width=1.0)
+    for ball in np.flatnonzero(on_table):
+        sketch.ball(int(ball), positions[ball])
 
 
 def placed(name, seed):
@@ -61,23 +70,29 @@ def sight(positions, on_table):
     return lines
 
 
-def sheet(seed):
-    """All of them: uint8 (H, W, 3)."""
-    tables = [picture(name, says, seed) for name, says in SHOWN.items()]
-    rows, (height, width, _) = -(-len(tables) // COLUMNS), tables[0].shape
-    image = np.full((rows * (height + GAP) - GAP, COLUMNS * (width + GAP) - GAP, 3), 255, np.uint8)
-    for k, one in enumerate(tables):
-        top, left = k // COLUMNS * (height + GAP), k % COLUMNS * (width + GAP)
-        image[top : top + height, left : left + width] = one
-    return image
+def draw(seed, file):
+    """All of them."""
+    note = f"Balls are drawn {LARGER} times their size. Lines: the pot that is dealt; the ways to the edges of a red."
+    with picture_style.drawing() as plt:
+        rows = -(-len(SHOWN) // COLUMNS)
+        figure, axes = picture_style.page(plt, 0.95 + 2.5 * rows, "Ten ways to lay out a table", note, rows=rows, columns=COLUMNS)
+        figure.get_layout_engine().set(w_pad=0.06, h_pad=0.05, hspace=0.02, wspace=0.02)
+        for ax, name in zip(axes.flat, SHOWN, strict=False):
+            table(ax, name, seed)
+            ax.set_title(f'layout="{name}"', pad=5)
+            ax.set_title(SHOWN[name], loc="right", size=picture_style.TEXT, weight="normal", color=picture_style.QUIET, pad=5)
+        for ax in axes.flat[len(SHOWN) :]:
+            ax.set_axis_off()
+        picture_style.save(figure, file)
 
 
 def main():
     """Command line."""
-    options = Command("layouts_picture", __doc__, files=(FILE,), seed=4).options()
+    options = Command("layouts_picture", __doc__, pictures=(FILE,), seed=4).options()
     save_json(options.json, {"seed": options.seed, "layouts": {name: placed(name, options.seed) for name in SHOWN}})
-    save_image(options.folder / FILE, sheet(options.seed))
-    print(options.folder / FILE)
+    if options.pictures:
+        draw(options.seed, options.folder / FILE)
+        print(options.folder / FILE)
 
 
 if __name__ == "__main__":

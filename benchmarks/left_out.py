@@ -1,4 +1,4 @@
-"""How large is what the model leaves out? The sizes in docs/limits.md that can be computed.
+"""How large is what the model leaves out? The sizes in docs/physics/limits.md that can be computed.
 
     python -m benchmarks.left_out [--json FILE] [--out FOLDER]
 

@@ -1,4 +1,4 @@
-"""How is the README's picture made? One pot with side and screw on an opened table, the paths drawn.
+"""How does a pot with side and screw go? A picture of one on an opened table, its paths drawn.
 
 python -m benchmarks.pictures [--seed 6] [--json FILE] [--out FOLDER]
 """
@@ -6,15 +6,22 @@ python -m benchmarks.pictures [--seed 6] [--json FILE] [--out FOLDER]
 import numpy as np
 
 import snooker_env as sn
+from commands import picture_style
+from snooker_env import Table
 from snooker_env.game.layouts import opened
 from snooker_env.game.pots import GHOST_X, GHOST_Y, POT_BALL, pots
-from snooker_env.render.pygame_view import rgb_array
+from snooker_env.render.pygame_view import View, rgb_array
 from snooker_env.render.scene import ball_paths, contacts, scene
 
-from ._common.command import Command, run, save_image, save_json
+from ._common.command import Command, run, save_json
 
 FILE = "shot.png"
-SIZE = 1200, 675
+SIZE = 3500, 2000
+"""Pixels of the whole table's drawing."""
+SHOWN = (-0.30, 0.08), (1.05, 1.96)
+"""Two corners of the part that is shown [m]."""
+STRIP = 0.36
+"""Height of the words below [inches]."""
 
 
 def pot(seed):
@@ -35,16 +42,31 @@ def pot(seed):
         seed += 1
 
 
+def draw(positions, ball, shot, file):
+    """The part of the table where the shot is, large; the words below."""
+    paths, ghosts = ball_paths(shot, balls=(0, ball)), {0: contacts(shot)}
+    view = View.of(Table.preset("match"), size=SIZE)
+    image = rgb_array(scene("match", positions, paths=paths, ghosts=ghosts), size=SIZE)
+    (left, top), (right, bottom) = np.round(view(np.array(SHOWN))).astype(int)
+    words = "A red potted with screw and right-hand side: the balls before the shot, and the paths of the cue ball and the red"
+    with picture_style.drawing() as plt:
+        inches = picture_style.WIDTH * (bottom - top) / (right - left)
+        figure = plt.figure(figsize=(picture_style.WIDTH, inches + STRIP))
+        axes = figure.add_axes((0, STRIP / (inches + STRIP), 1, inches / (inches + STRIP)))
+        axes.imshow(image[top:bottom, left:right], interpolation="lanczos", aspect="auto")
+        axes.set_axis_off()
+        figure.text(0.016, 0.5 * STRIP / (inches + STRIP), words, size=picture_style.PANEL, va="center_baseline")
+        picture_style.save(figure, file)
+
+
 def main():
     """Command line."""
-    options = Command("pictures", __doc__, files=(FILE,), seed=6).options()
+    options = Command("pictures", __doc__, pictures=(FILE,), seed=6).options()
     positions, ball, shot = pot(options.seed)
-    text = "a red potted with screw and right-hand side: the table before the shot, and where the two balls went"
-    paths, ghosts = ball_paths(shot, balls=(0, ball)), {0: contacts(shot)}
-    picture = rgb_array(scene("match", positions, paths=paths, ghosts=ghosts, text=text), size=SIZE)
     save_json(options.json, {"seed": options.seed, "ball": ball, "before": positions.tolist(), "after": shot.positions.tolist()})
-    save_image(options.folder / FILE, picture)
-    print(options.folder / FILE)
+    if options.pictures:
+        draw(positions, ball, shot, options.folder / FILE)
+        print(options.folder / FILE)
 
 
 if __name__ == "__main__":

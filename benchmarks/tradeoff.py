@@ -1,23 +1,23 @@
-"""What does each fidelity cost and how far is it from the truth? Impacts, then whole pots; a picture; which fidelity for which use.
+"""What does each fidelity cost and how large is its error? Impacts, then whole pots; a picture; which fidelity for which use.
 
     python -m benchmarks.tradeoff [--impacts 2000] [--shots 1000] [--repeats 3] [--physics paper] [--seed 0] [--json FILE]
         [--out FOLDER]
 
 Truth is ``reference``. Impacts: errors of direction and speed, the worse of the two balls, just after the impact and once both roll (the
 direction a player sees; where a ball is all but stopped by its own spin, its direction means little). Shots: how far from the truth the
-cue ball and the object ball stop, if they stay on the table, and how often the pot's outcome changes. The yardstick is what
+cue ball and the object ball stop, if they stay on the table, and how often the pot's outcome changes. The scale is what
 a professional's errors do: the same intended stroke, played twice by the truth with the execution errors of ``tasks.noise``.
 """
 
 import numpy as np
 
 import snooker_env as sn
-from commands import provenance
+from commands import picture_style, provenance
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 
 from ._common import shot_sets
-from ._common.command import Command, at_least, pyplot, run, save_figure, save_json
+from ._common.command import Command, at_least, run, save_json
 from .speed.command import impacts, median_impact, one_by_one, results
 
 OWN = ("fast", "standard", "reference")
@@ -178,64 +178,95 @@ def recommendation(impact_rows, sets):
 
 def draw(figures, out):
     """Time against error: impacts (angle, speed), then where the cue ball stops in each set of shots."""
-    plt = pyplot()
-    from matplotlib.lines import Line2D
-
-    fig, axes = plt.subplots(2, 2, figsize=(12, 9), layout="constrained")
     impact_rows = figures["impacts"]
     panels = [
-        (axes[0, 0], impact_rows, "angle_deg", "one impact: direction of the worse ball", "error [deg]", "us an impact"),
-        (axes[0, 1], impact_rows, "speed_m_s", "one impact: speed of the worse ball", "error [m/s]", "us an impact"),
+        (impact_rows, "angle_deg", "One impact: direction of the worse ball", "error [degrees]", "time of an impact [µs]"),
+        (impact_rows, "speed_m_s", "One impact: speed of the worse ball", "error [m/s]", "time of an impact [µs]"),
     ]
-    for ax, (name, s) in zip(axes[1], figures["shots"].items(), strict=True):
-        panels.append((ax, s["rows"], "cue_mm", f"{name}: where the cue ball stops", "distance from the truth [mm]", "us a shot"))
-    for ax, rows, key, title, error, cost in panels:
-        for fidelity, row in rows.items():
-            middle, high, worst = row[key]
-            if fidelity == ERRORS:
-                ax.axhline(middle, color="tab:green", lw=1)
-                ax.axhspan(middle, high, color="tab:green", alpha=0.12, lw=0)
-                ax.annotate(f"{ERRORS}: median to 99 %", (0.98, middle), xycoords=("axes fraction", "data"), color="tab:green",
-                            va="bottom", ha="right", fontsize=8)  # fmt: skip
-                continue
-            if fidelity == "reference":
-                ax.axvline(row["us"], color="0.5", ls=":", lw=1)
-                ax.annotate("reference:\nthe truth here", (row["us"], 0.98), xycoords=("data", "axes fraction"), va="top", fontsize=8,
-                            color="0.4", xytext=(4, 0), textcoords="offset points")  # fmt: skip
-                continue
-            colour = "tab:blue" if fidelity in OWN else "tab:orange"
-            ax.plot([row["us"]] * 2, [middle, worst], color=colour, lw=1, alpha=0.5)
-            ax.plot(row["us"], middle, "o", color=colour)
-            ax.plot(row["us"], high, "_", color=colour, ms=12, mew=2)
-            ax.plot(row["us"], worst, "^", color=colour, ms=4, mfc="none")
-            label = f"N={fidelity[6:]}" if fidelity not in OWN else fidelity
-            ax.annotate(label, (row["us"], middle), xytext=(0, -13), textcoords="offset points", ha="center", fontsize=8, color=colour)
-        own = [f for f in rows if f not in (ERRORS, "reference")]
-        front = [(rows[f]["us"], rows[f][key][0]) for f in own if not dominated(rows, f, lambda r, key=key: r[key][0])]
-        ax.step(*zip(*sorted(front), strict=True), where="post", color="tab:blue", lw=1, ls="--", zorder=0)
-        ax.set(xscale="log", yscale="log", title=title, xlabel=cost, ylabel=error)
-        ax.margins(0.1, 0.09)
-        ax.grid(alpha=0.3)
+    for name, s in figures["shots"].items():
+        title = f"{name[0].upper()}{name[1:]}: where the cue ball stops"
+        panels.append((s["rows"], "cue_mm", title, "distance from reference [mm]", "time of a shot [µs]"))
+    with picture_style.drawing() as plt:
+        note = (
+            "Error against reference, of each fidelity and of the paper's scheme with N steps (euler:N): median, 99 % and worst.\n"
+            "Below and left is better. The bar across: what a professional's execution errors do to the same shots, median to 99 %."
+        )
+        foot = f"python -m benchmarks.tradeoff, physics {figures['physics']!r}; {provenance.line(figures['machine'])}"
+        fig, axes = picture_style.page(plt, 8.6, "What each fidelity costs, and how large its error is", note, foot=foot, rows=2, columns=2)
+        labels = [label for ax, panel in zip(axes.flat, panels, strict=True) for label in _panel(ax, *panel)]
+        _legend(axes[0, 1])
+        picture_style.label_points(fig, labels)
+        picture_style.save(fig, out)
+
+
+def _panel(ax, rows, key, title, error, cost):
+    """Time against one error, a fidelity a column of marks; the labels that it needs."""
+    labels = []
+    for fidelity, row in rows.items():
+        middle, high, worst = row[key]
+        if fidelity == ERRORS:
+            ax.axhspan(middle, high, color=picture_style.GREEN, alpha=0.14, lw=0)
+            ax.axhline(middle, color=picture_style.GREEN, lw=1.2)
+            continue
+        if fidelity == "reference":
+            ax.axvline(row["us"], color=picture_style.QUIET, ls=(0, (2, 2)), lw=1.1)
+            ax.annotate("reference", (row["us"], 0.11), xycoords=("data", "axes fraction"), xytext=(4, 0), textcoords="offset points",
+                        size=picture_style.SMALL, color=picture_style.QUIET)  # fmt: skip
+            continue
+        own = fidelity in OWN
+        colour = picture_style.BLUE if own else picture_style.ORANGE
+        ax.plot([row["us"]] * 2, [middle, worst], color=colour, lw=1.2, alpha=0.55)
+        ax.plot(row["us"], middle, "o", color=colour, ms=6)
+        ax.plot(row["us"], high, "_", color=colour, ms=10, mew=2.2)
+        ax.plot(row["us"], worst, "^", color=colour, ms=5, mfc="white")
+        if own or fidelity in ("euler:10", "euler:100", "euler:1000", "euler:10000"):
+            text = fidelity if own else f"{int(fidelity[6:]):,}"
+            style = {"color": colour, "weight": "bold" if own else "normal"}
+            if 1 < rows["reference"]["us"] / row["us"] < 1.8:  # below the mark, the line of reference would strike it through
+                ax.annotate(text, (row["us"], middle), xytext=(-7, 0), textcoords="offset points", ha="right", va="center",
+                            size=picture_style.SMALL, **style)  # fmt: skip
+            else:
+                labels.append((ax, (row["us"], middle), text, style))
+    picture_style.log_axis(ax.xaxis)
+    picture_style.log_axis(ax.yaxis, decades=2)
+    ax.set(title=title, xlabel=cost, ylabel=error)
+    ax.margins(0.1, 0.13)
+    ax.set_xlim(left=0.33 * min(row["us"] for fidelity, row in rows.items() if fidelity != ERRORS))
+    return labels
+
+
+def _legend(ax):
+    """The meaning of marks and colours."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    dark = picture_style.QUIET
     handles = [
-        Line2D([], [], marker=m, ls="", color="0.3", mfc=f, ms=s, mew=2 if m == "_" else 1, label=t)
-        for m, f, s, t in (("o", "0.3", 6, "median"), ("_", "0.3", 12, "99 %"), ("^", "none", 5, "worst"))
+        Line2D([], [], marker=m, ls="", color=dark, mfc=f, ms=s, mew=2.2 if m == "_" else 1, label=t)
+        for m, f, s, t in (("^", "white", 5, "worst"), ("_", dark, 10, "99 %"), ("o", dark, 6, "median"))
     ]
-    handles.append(Line2D([], [], color="tab:blue", ls="--", lw=1, label="Pareto front of the medians"))
-    colours = (("tab:blue", "snooker_env"), ("tab:orange", "euler:N, the paper's"))
-    handles += [Line2D([], [], marker="o", ls="", color=c, label=t) for c, t in colours]
-    axes[0, 1].legend(handles=handles, loc="lower right", fontsize=8)
-    fig.suptitle(f"Time against error, {provenance.line()}", fontsize=10)
-    save_figure(fig, out, dpi=110)
+    colours = ((picture_style.BLUE, "fidelity"), (picture_style.ORANGE, "euler:N, with N"))
+    handles += [Patch(color=c, label=t) for c, t in colours]
+    ax.legend(handles=handles, loc="lower right", bbox_to_anchor=(1.0, 0.05))
 
 
 def main():
     """Command line."""
-    parser = Command("tradeoff", __doc__, pictures=(FILE,), seed=0)
+    parser = Command("tradeoff", __doc__, pictures=(FILE,), seed=0, redraws=True)
     parser.add_argument("--impacts", type=at_least(2), default=2000, help="impacts in the set")
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots in each set")
     parser.add_argument("--repeats", type=at_least(1), default=3, help="timed runs of every shot; the best counts")
     parser.add_argument("--physics", default="paper", help="of the shots: paper or match [paper]")
     options = parser.options()
+    if options.figures is None:
+        options.figures = measure(options)
+    if options.pictures:
+        draw(options.figures, options.folder / FILE)
+        print(f"\n{options.folder / FILE}")
+
+
+def measure(options):
+    """Measure and print everything; the figures."""
     print(provenance.line())
     impact_rows = play_impacts(options.impacts, options.seed)
     print(f"\n{options.impacts} impacts: median us; then median, 99 %, worst of: direction [deg], speed [m/s]; once both roll: the same")
@@ -265,9 +296,7 @@ def main():
         print(f"* {sentence}")
     figures = {"machine": provenance.machine(), "physics": options.physics, "impacts": impact_rows, "shots": sets, "recommendation": says}
     save_json(options.json, figures)
-    if options.pictures:
-        draw(figures, options.folder / FILE)
-        print(f"\n{options.folder / FILE}")
+    return figures
 
 
 if __name__ == "__main__":

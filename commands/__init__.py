@@ -1,1 +1,1 @@
-"""What the commands of the repository share: how they start and stop, how they write files, what they say of physics and provenance."""
+"""What do the commands of this repository share? Start and stop, writing of files, the option --physics, and provenance."""

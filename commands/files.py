@@ -1,4 +1,4 @@
-"""How is a file written so that it is whole or not there at all?"""
+"""How is a file written completely or not at all?"""
 
 import io
 import os
@@ -7,15 +7,15 @@ from pathlib import Path
 
 
 def write_atomic(path, data):
-    """Write bytes so that ``path`` holds either the old or the new content, whole, whenever the process or the machine dies.
+    """Write bytes so that ``path`` holds either the old or the new content, complete, whenever the process or the machine stops.
 
-    If it fails nothing is left behind, and the OSError names ``path``. What is no plain file (a device, a pipe) is written as it is.
+    On failure nothing is left behind, and the OSError names ``path``. A device or a pipe is written directly.
     """
     path = Path(os.path.realpath(path))
     if path.exists() and not path.is_file():
         path.write_bytes(data)
         return
-    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")  # of this process alone
+    temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")  # a name of this process alone
     try:
         with open(temporary, "wb") as file:
             file.write(data)
@@ -30,10 +30,10 @@ def write_atomic(path, data):
 
 
 def writable(name, file):
-    """Make the folders of an output, and raise ValueError if it could not be written there. Asked by trying: access bits lie for root."""
+    """Make the folders of an output; ValueError if it could not be written there. Tested by writing: access bits are wrong for root."""
     if file is None:
         return
-    from snooker_env.checks import refuse  # here: a command names a library that is missing only after this module is loaded
+    from snooker_env.checks import refuse  # here: a missing library is reported only after this module is loaded
 
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -44,7 +44,7 @@ def writable(name, file):
 
 
 def save_figure(figure, file, **options):
-    """Write a matplotlib figure, in the format of the file's suffix, whole or not at all."""
+    """Write a matplotlib figure, in the format of the file's suffix, completely or not at all."""
     drawn = io.BytesIO()
     figure.savefig(drawn, format=file.suffix[1:], **options)
     write_atomic(file, drawn.getvalue())

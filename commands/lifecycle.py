@@ -1,6 +1,6 @@
-"""How does a command of this project begin and end? It can write to any terminal, and what stops it from outside is said in one line.
+"""How does a command of this project start and stop? It writes to any terminal, and an outside cause that stops it is reported in one line.
 
-Only the standard library is imported here: what is missing must be said before it is needed.
+Only the standard library is imported here: missing packages are reported before they are needed.
 """
 
 import errno
@@ -11,15 +11,15 @@ import sys
 import threading
 
 EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render"}
-"""Which extra of pyproject.toml brings a package that is not in [train]."""
+"""The extra of pyproject.toml that brings a package which is not in [train]."""
 OUR_OWN = ("agents", "commands", "snooker_env", "train", "benchmarks")
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
-"""What the system says of a disk that takes no more."""
+"""Error numbers of a full or failing disk."""
 
 
 def what_is_missing(error):
-    """What an ``ImportError`` means, in words. Raised again if it is a module of this repository that lacks a name."""
-    if not error.name:  # it says itself what is missing
+    """An ``ImportError`` in words. Raised again if a module of this repository lacks a name."""
+    if not error.name:  # its text names what is missing
         return str(error)
     package = error.name.partition(".")[0]
     if package in OUR_OWN:
@@ -44,27 +44,27 @@ class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import tor
 
 
 def any_terminal():
-    """Let what a terminal has no letters for come out as "?", not as a UnicodeEncodeError."""
+    """Print characters that the terminal cannot encode as "?" in place of a UnicodeEncodeError."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper) and stream.errors in ("strict", "surrogateescape"):
             stream.reconfigure(errors="replace")
 
 
 def of_disk(error, file="the output"):
-    """What a full or failing disk did, in words; any other ``OSError`` is raised again. ``file``: which, if the error does not say."""
+    """The error of a full or failing disk in words; any other ``OSError`` is raised again. ``file``: used if the error names none."""
     if error.errno not in DISK:
         raise error
     return f"{error.filename or file} cannot be written: {error.strerror}"
 
 
 def _of_thread(uncaught):
-    """TensorBoard writes in a thread, which ends with a traceback when the disk is full; the same error comes again in the main thread."""
+    """Hide a disk error of TensorBoard's writer thread: the main thread raises the same error again."""
     if not isinstance(uncaught.exc_value, OSError) or uncaught.exc_value.errno not in DISK:
         threading.__excepthook__(uncaught)
 
 
 def command(name):
-    """A decorator for ``main(argv)`` of the command ``name``: what comes from outside ends it with one line and an exit code not 0."""
+    """A decorator for ``main(argv)`` of the command ``name``: outside causes end it with one line and an exit code other than 0."""
 
     def made(main):
         @functools.wraps(main)
@@ -75,7 +75,7 @@ def command(name):
                 return main(argv)
             except ImportError as error:
                 raise SystemExit(f"{name}: {what_is_missing(error)}") from None
-            except BrokenPipeError:  # nobody reads on: train.py | head
+            except BrokenPipeError:  # the reader closed: train.py | head
                 os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
                 return 1
             except OSError as error:

@@ -1,4 +1,4 @@
-"""Which physics does a text on the command line mean? PRESET or PRESET,FIELD=VALUE,... as ``paper,mu_bb=marlow``."""
+"""How is physics given on the command line? As PRESET or PRESET,FIELD=VALUE,... for example ``paper,mu_bb=marlow``."""
 
 from snooker_env import Physics
 from snooker_env.checks import refuse
@@ -20,11 +20,11 @@ def physics_option(text):
     made = Physics.of(fields)
     made.check_stopping()
     if made.R != BALL_RADIUS:
-        raise refuse("physics", text, f"must leave R at {BALL_RADIUS}: the tables are made for it")
+        raise refuse("physics", text, f"must leave R at {BALL_RADIUS}: the table is built for it")
     return fields
 
 
 def physics_text(physics):
-    """The text that means this option of the environment: a preset's name or a dict as ``physics_option`` makes it."""
+    """The inverse of ``physics_option``: the text for a preset's name or a dict of fields."""
     fields = dict(physics) if isinstance(physics, dict) else {"preset": physics}
     return ",".join([fields.pop("preset", "paper"), *(f"{name}={value}" for name, value in fields.items())])

@@ -1,10 +1,12 @@
-"""How does a program play over the text protocol? It asks what is on, strikes, and goes on to the end of its visit: standard library alone.
+"""How does a program play over the text protocol? It requests the state, sends strokes, and plays its visit to the end.
+
+It uses the standard library alone.
 
     python -m snooker_env.play --no-browser --layout colours      # prints an address
     python examples/play_client.py http://127.0.0.1:41234/TOKEN/
 
-The strategy is the simplest: of the open lines to pockets the one with the most room, at a speed that carries the ball there; without one,
-full at the nearest ball on. ``docs/protocol.md`` describes every field.
+The strategy is simple: the open line to a pocket with the largest tolerance, at a speed that carries the ball there; without an open line,
+full at the nearest ball on. ``docs/play/protocol.md`` describes every field.
 """
 
 import argparse
@@ -17,19 +19,19 @@ import urllib.request
 
 
 def ask(address, name, fields=None):
-    """GET, or POST with fields: the answer. Ends the program with the server's own words if it refuses."""
+    """The answer to a GET, or to a POST with ``fields``. If the server refuses, the program ends with the server's message."""
     body = None if fields is None else json.dumps(fields).encode()
     try:
         request = urllib.request.Request(f"{address.rstrip('/')}/api/{name}", body, {"Content-Type": "application/json"})
         with urllib.request.urlopen(request, timeout=60) as reply:
             return json.load(reply)
     except urllib.error.HTTPError as error:
-        said = error.read().decode(errors="replace")
+        message = error.read().decode(errors="replace")
         try:
-            said = json.loads(said)["error"]
+            message = json.loads(message)["error"]
         except (ValueError, TypeError, KeyError):
-            said = f"{address} answers {error.code}, and is no server of snooker_env.play"
-        raise SystemExit(f"{name}: {said}") from None
+            message = f"{address} answers {error.code}, and is no server of snooker_env.play"
+        raise SystemExit(f"{name}: {message}") from None
     except (urllib.error.URLError, http.client.HTTPException, OSError) as error:
         raise SystemExit(
             f"{address}: no answer ({getattr(error, 'reason', error)}); is python -m snooker_env.play running there?"
@@ -39,7 +41,7 @@ def ask(address, name, fields=None):
 
 
 def chosen(state):
-    """The stroke to play, as the protocol takes it."""
+    """The stroke to play, in the form of the protocol."""
     ways = [line for line in state["lines"] if line["open"]]
     if ways:
         best = max(ways, key=lambda line: line["tolerance"])
@@ -52,10 +54,10 @@ def chosen(state):
 
 
 def main(argv=None):
-    """Play one visit of whoever is to play, and tell of it."""
+    """Play one visit of the player whose turn it is, and print its strokes."""
     parser = argparse.ArgumentParser(description="Play a visit over the text protocol of python -m snooker_env.play.")
-    parser.add_argument("address", help="what the server printed")
-    parser.add_argument("--text", action="store_true", help="print the table as a blind player hears of it before each stroke")
+    parser.add_argument("address", help="the address that the server printed")
+    parser.add_argument("--text", action="store_true", help="print the table in words before each stroke")
     given = parser.parse_args(argv)
     state = ask(given.address, "state")
     if state["phase"] == "choice":

@@ -1,19 +1,20 @@
 """snooker_env: whole snooker shots, frictional impacts, and the Gymnasium environment ``Snooker-v0`` built on them.
 
-Public are the names in ``__all__`` of this package and of these modules of it; everything else may change in any version:
+The public names are those in ``__all__`` of this package and of these modules. Everything else may change in any version:
 
-* ``snooker_env.planning``: strokes tried on copies of positions, and the geometry that finds them
-* ``snooker_env.advice``: what a player would do at a position, and what would come of it
+* ``snooker_env.planning``: strokes played on copies of positions, and the geometry that finds them
+* ``snooker_env.advice``: the strokes that a player would play in a position, and their outcomes
 * ``snooker_env.geometry``: where everything on a table is, and how large
-* ``snooker_env.game``: balls, values, what may be struck, layouts and the tables that they deal
-* ``snooker_env.tasks``: what actions, observations and errors of execution mean, in numbers
-* ``snooker_env.kernels``: for kernels of your own: how they are compiled, and the inner kernels that they may call
-* ``snooker_env.checks``: bad input reported as the package does
+* ``snooker_env.game``: balls, values, balls on, layouts and the tables that they deal
+* ``snooker_env.tasks``: what actions, observations and execution errors mean, in numbers
+* ``snooker_env.kernels``: for your own kernels: how they are compiled, and the inner kernels that they may call
+* ``snooker_env.checks``: reporting bad input as the package does
 * ``snooker_env.render``: the scene of a table, and its pictures
 * ``snooker_env.render.diagrams``: shots, options, fans and where a ball stops, drawn with matplotlib
-* ``snooker_env.tasks.saved_models``: what a model's file says of itself, read as plain data
+* ``snooker_env.tasks.saved_models``: the description in a model's file, read as plain data
 * ``snooker_env.replays``: what was played, as a page, as data and as a film
 * ``snooker_env.widget``: a replay in a notebook
+* ``snooker_env.benchmark``: named tasks with frozen options, and how agents are judged on them
 * ``snooker_env.sb3``: many tables for Stable-Baselines3
 """
 
@@ -54,7 +55,7 @@ _LATER = {
     "Position": "planning", "Positions": "planning", "RecordReplay": "replays", "Replay": "replays", "replay": "replays",
     "advise": "advice",
 }  # fmt: skip
-"""Where the names are that are imported only when they are asked for: shots alone need no environment."""
+"""Modules of the names that are imported at their first use: simulating shots alone needs no environment."""
 
 _register(_gymnasium)
 

@@ -1,4 +1,4 @@
-"""How does ``gymnasium.make("Snooker-v0")`` work without importing snooker_env? The id is registered as soon as Gymnasium is imported.
+"""How does ``gymnasium.make("Snooker-v0")`` work without importing snooker_env? The ids are registered as soon as Gymnasium is imported.
 
 Gymnasium 1.x reads no entry points of other packages, and many worker processes import nothing but Gymnasium. So an installation holds
 this file beside the package, as ``_snooker_env_autoregister.py``, and a ``.pth`` file whose one line calls its ``wait`` when an interpreter
@@ -26,14 +26,14 @@ def _register(registration):
             exec(compile(file.read(), path, "exec"), names)
         names["register"](registration)
     except Exception as error:
-        print(f"snooker_env: Snooker-v0 is not registered: {type(error).__name__}: {error}", file=sys.stderr)
+        print(f"snooker_env: its environments are not registered: {type(error).__name__}: {error}", file=sys.stderr)
 
 
 class _Finder:
     """Waits for the import of Gymnasium's registration."""
 
     def find_spec(self, name, path=None, target=None):
-        """The module's own spec, its loader told to register the id at the end; None for all other modules."""
+        """The module's own spec, its loader extended to register the ids at the end; None for all other modules."""
         if name != _REGISTRATION:
             return None
         sys.meta_path.remove(self)
@@ -52,7 +52,7 @@ class _Finder:
 
 
 def wait():
-    """Have the id registered when Gymnasium is imported, or now if it is already."""
+    """Have the ids registered when Gymnasium is imported, or now if it is already."""
     if os.environ.get("SNOOKER_ENV_AUTOREGISTER") == "0":
         return
     if _REGISTRATION in sys.modules:

@@ -1,13 +1,13 @@
-"""Where is machine code kept, and which of it is loaded? A folder of the user's own; nothing of others, nothing old, nothing broken.
+"""Where is machine code kept, and which of it is loaded? In a folder of the user's own; nothing of others, nothing old, nothing damaged.
 
-* What is kept is pickled: whoever can write there decides what runs here. So the folders are made for the user alone, and one that
-  belongs to somebody else or that others can write to is not used. root is trusted: it can do anything anyway.
-* numba notices a change only in the file that *defines* a cached function; a changed callee or constant in another file would
-  silently run old machine code. So the cache folder's name is a hash of the whole package source: other source, other folder. Kernels
-  defined outside the package (agents, benchmarks) have a folder in it, named by a hash of the whole package that they come from. Where
-  the source lies does not matter: equal copies share their machine code.
-* Each file ends with its checksum: a pickle cut short would raise, but damaged machine code would crash the process.
-* Whatever goes wrong, it is compiled again, and said once in a process.
+* The files are pickles: whoever can write there can run code here. So the folders are made for the user alone, and a folder that belongs
+  to somebody else, or that others can write to, is not used. root is trusted, because it can do anything anyway.
+* numba notices a change only in the file that *defines* a cached function. After a change of a callee or a constant in another file it
+  would silently run old machine code. So the name of the cache folder is a hash of the whole package source. Kernels defined outside the
+  package (agents, benchmarks) have a folder in it, named by a hash of the whole package that they come from. The place of the source does
+  not matter: equal copies share their machine code.
+* Each file ends with a checksum: unpickling a truncated file would raise, but damaged machine code would crash the process.
+* Whatever goes wrong, the kernel is compiled again, and the process warns once.
 """
 
 import hashlib
@@ -28,35 +28,35 @@ _DIGEST = hashlib.sha256().digest_size
 
 
 def source_hash(root: Path = _PACKAGE) -> str:
-    """A hash of every Python file of the package, names included (16 hex digits)."""
+    """A hash of all Python files of the package and their names (16 hex digits)."""
     h = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):
         h.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
     return h.hexdigest()[:16]
 
 
-@cache  # what was imported from there stays what it was
+@cache  # the modules imported from there do not change in this process
 def _hash_of(folder: Path) -> str:
-    """The hash of the whole package that a folder outside this one belongs to; of the folder alone if it is in none."""
+    """The hash of the whole package that a folder outside this package belongs to; of the folder alone if it is in no package."""
     while (folder / "__init__.py").is_file() and (folder.parent / "__init__.py").is_file():
         folder = folder.parent
     return source_hash(folder)
 
 
-# Folders that are the user's own
+# Folders that belong to the user alone
 
 
 class UnsafeFolderError(OSError):
-    """A folder into which somebody else could put code; says which and why."""
+    """A folder into which somebody else could put code; the message says which and why."""
 
 
 def _check_own(folder: Path, *, home: bool = False) -> None:
-    """Raise UnsafeFolderError unless only this user (and root) decides what lies in ``folder``, and if it is a link, where that leads.
+    """Raise UnsafeFolderError unless only this user (and root) can change what is in ``folder`` and, for a link, in its target.
 
-    ``home`` is the folder that the user has chosen: others may write to it where they cannot exchange what is not theirs (as in /tmp),
-    and so may its group, which on many systems is the user alone.
+    ``home``: whether this is the folder that the user has chosen. There, others may write if the sticky bit keeps them from replacing the
+    files of others (as in /tmp), and so may its group, which on many systems is the user alone.
     """
-    if not hasattr(os, "geteuid"):  # Windows: these numbers mean nothing there, and a user's folders are closed to others
+    if not hasattr(os, "geteuid"):  # Windows: no such numbers, and a user's folders are closed to others
         return
     for found in (os.lstat(folder), os.stat(folder)):
         if found.st_uid not in (os.geteuid(), 0):
@@ -67,8 +67,8 @@ def _check_own(folder: Path, *, home: bool = False) -> None:
 
 
 def _claim(home: Path, folder: Path) -> None:
-    """Make ``folder``, which is below ``home``, for this user alone, with all that leads to it; UnsafeFolderError where it is there already
-    and is not his alone."""
+    """Make ``folder``, which is below ``home``, and the folders between for this user alone. UnsafeFolderError if one is there already and
+    others can write to it."""
     for part in (*reversed(folder.parents), folder):
         part.mkdir(0o700, exist_ok=True)
         if part == home or part.is_relative_to(home):
@@ -76,7 +76,7 @@ def _claim(home: Path, folder: Path) -> None:
 
 
 def cache_folder() -> Path | None:
-    """Where compiled entry kernels are kept, or None (then they live in memory only).
+    """The folder for compiled entry kernels, or None if they can be kept in memory only.
 
     ``$NUMBA_CACHE_DIR`` if set, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it ``snooker_env/<source hash>``.
     """
@@ -84,10 +84,10 @@ def cache_folder() -> Path | None:
     home = Path(chosen).absolute()
     folder = home / "snooker_env" / source_hash()
     try:
-        if chosen == "~/.cache":  # of a user without a home: a folder wherever he stands, made by whoever gave it to him
+        if chosen == "~/.cache":  # expanduser found no home; this would be a folder below the working directory
             raise UnsafeFolderError("there is no home folder")
         _claim(home, folder)
-        with tempfile.TemporaryFile(dir=folder):  # asked by making one: access bits lie on read-only mounts and for root
+        with tempfile.TemporaryFile(dir=folder):  # a trial: access bits are wrong on read-only mounts and for root
             return folder
     except UnsafeFolderError as error:
         why = f"{error}: no machine code is loaded from there or kept there; every process compiles for itself"
@@ -101,7 +101,7 @@ def cache_folder() -> Path | None:
 CACHE_FOLDER = cache_folder()
 
 
-# numba's cache of one kernel, in such a folder
+# numba's cache of one kernel in such a folder
 
 _said = set()
 
@@ -113,7 +113,7 @@ def _warn_once(kind, message):
 
 
 class _Place(_CacheLocator):
-    """Where the kernels are kept that one file defines."""
+    """The folder for the kernels that one file defines."""
 
     def __init__(self, function, file):
         assert CACHE_FOLDER is not None
@@ -133,7 +133,7 @@ class _Place(_CacheLocator):
         return str(self._folder)
 
     def get_source_stamp(self):
-        return ""  # the folder's name says it
+        return ""  # the folder's name holds the hash
 
     def get_disambiguator(self):
         return str(self._line)
@@ -144,14 +144,14 @@ class _Implementation(CompileResultCacheImpl):
 
 
 def _check_whole(path):
-    """ValueError unless the file ends with the checksum of what stands before."""
+    """ValueError unless the file ends with the checksum of the bytes before it."""
     data = Path(path).read_bytes()
     if hashlib.sha256(data[:-_DIGEST]).digest() != data[-_DIGEST:]:
         raise ValueError("it is damaged")
 
 
 class _Files(IndexDataCacheFile):
-    """numba's index and data files of one kernel, with checksums: what stands behind a pickle is not read by ``pickle.loads``."""
+    """numba's index and data files of one kernel, with checksums: ``pickle.loads`` ignores what follows a pickle."""
 
     def _load_index(self):
         with suppress(FileNotFoundError):
@@ -178,13 +178,21 @@ class _Files(IndexDataCacheFile):
             raise
 
     def discard(self):
-        """Forget what is kept; the next compile is kept anew."""
+        """Remove the index, so that the next compile is kept again."""
         with suppress(OSError):
             os.unlink(self._index_path)
 
 
+def may_be_kept(py_func: Any) -> bool:
+    """Whether a function is defined in a file, whose folder's hash then changes with it.
+
+    Code from a prompt, ``python -c``, a notebook or a doctest is in no file: another version of it would be given the old machine code.
+    """
+    return Path(py_func.__code__.co_filename).is_file()
+
+
 class Kept(FunctionCache):
-    """The machine code of one entry kernel on disk. What cannot be read is compiled, what cannot be kept lives in memory."""
+    """The machine code of one entry kernel on disk. What cannot be read is compiled; what cannot be written stays in memory."""
 
     _impl_class = _Implementation
 
@@ -199,15 +207,15 @@ class Kept(FunctionCache):
             return super().load_overload(sig, target_context)
         except OSError as error:
             _warn_once("place", f"machine code is not read from {self.cache_path} ({error}): every process compiles for itself")
-        except Exception as error:  # whatever a damaged file makes pickle, numba or LLVM raise
+        except Exception as error:  # a damaged file can make pickle, numba or LLVM raise anything
             self._cache_file.discard()
             what = f"{type(error).__name__}: {error}"
             _warn_once("broken", f"machine code kept in {self.cache_path} cannot be used ({what}): it is compiled and kept anew")
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep it, if that is possible."""
+        """Write the machine code to disk, if that is possible."""
         try:
             super().save_overload(sig, data)
-        except Exception as error:  # a full disk, or an index that was damaged in the meantime
+        except Exception as error:  # for instance a full disk, or an index that was damaged in the meantime
             _warn_once("place", f"machine code cannot be kept in {self.cache_path} ({error}): every process compiles for itself")

@@ -9,61 +9,88 @@ from ._types import Bools, Floats
 
 
 def refuse(field: str, value: Any, allowed: str) -> ValueError:
-    """The one form of complaint in this package; always use as ``raise refuse(...)``.
+    """The error for a bad value, in the one form that this package uses: ``raise refuse(...)``.
 
     Parameters
     ----------
     field : str
-        What the user calls it.
+        Name of the argument, as the caller writes it.
     value : any
-        What it was.
+        The value that was given; the message shows its ``repr``.
     allowed : str
         What is allowed: "must be ...".
 
     Returns
     -------
     ValueError
+        Not raised yet.
+
+    Examples
+    --------
+    >>> from snooker_env.checks import refuse
+    >>> raise refuse("speed", -1.0, "must be positive")
+    Traceback (most recent call last):
+    ...
+    ValueError: speed = -1.0: must be positive
     """
     return ValueError(f"{field} = {value!r}: {allowed}")
 
 
 def refuse_what(field: str, what: str, allowed: str) -> ValueError:
-    """The same where the value is too large to show.
+    """The same error for a value that is too large to show: a description stands in its place.
 
     Parameters
     ----------
     field : str
+        Name of the argument, as the caller writes it.
     what : str
-        In words what was found.
+        Description of the value that was given.
     allowed : str
+        What is allowed: "must be ...".
 
     Returns
     -------
     ValueError
+        Not raised yet.
+
+    Examples
+    --------
+    >>> from snooker_env.checks import refuse_what
+    >>> print(refuse_what("points", "array of shape (3, 3)", "must have shape (n, 2)"))
+    points = array of shape (3, 3): must have shape (n, 2)
     """
     return ValueError(f"{field} = {what}: {allowed}")
 
 
 def number(field: str, value: Any, low: float = -np.inf, high: float = np.inf, *, open_low: bool = False) -> float:
-    """Check a finite real number.
+    """Check that a value is a finite real number in a range.
 
     Parameters
     ----------
     field : str
+        Name of the argument, for the message.
     value : any
+        The value to check.
     low, high : float
-        It must be in [low, high].
+        Ends of the range [low, high]; infinite by default.
     open_low : bool
-        In (low, high].
+        Whether ``low`` itself is excluded: (low, high].
 
     Returns
     -------
     float
+        The value.
 
     Raises
     ------
     ValueError
-        For anything else.
+        For anything else; also for a bool, a str and an array.
+
+    Examples
+    --------
+    >>> from snooker_env.checks import number
+    >>> number("speed", 2, 0, 10)
+    2.0
     """
     left, right = "(" if open_low or low == -np.inf else "[", ")" if high == np.inf else "]"
     bounds = f"must be a finite number in {left}{low:g}, {high:g}{right}"
@@ -81,7 +108,7 @@ def number(field: str, value: Any, low: float = -np.inf, high: float = np.inf, *
 
 
 def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, unit: str = "") -> Floats:
-    """A finite float64 array of the given shape (-1: any length), no number beyond ``most`` [unit]; always a fresh C-ordered copy."""
+    """A finite float64 array of the given shape (-1: any length), no number beyond ``most`` [unit]; always a new C-ordered copy."""
     free = iter("bn" if shape.count(-1) == 2 else "n")
     want = "(" + ", ".join(next(free) if s == -1 else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
     try:
@@ -91,7 +118,7 @@ def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, 
     if raw.dtype.kind not in "iuf" or (isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value)):
         raise refuse(field, value, f"must be real numbers of shape {want}")
     if raw.dtype.itemsize > 8:
-        with np.errstate(over="ignore"):  # a wider number may become an infinity, which is refused below
+        with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused below
             raw = raw.astype(np.float64)
     a = np.array(raw, dtype=np.float64, order="C")
     if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
@@ -104,23 +131,32 @@ def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, 
 
 
 def choice(field: str, value: Any, options: Collection[str]) -> str:
-    """Check a name.
+    """Check that a value is one of some names.
 
     Parameters
     ----------
     field : str
+        Name of the argument, for the message.
     value : any
+        The value to check.
     options : collection of str
-        It must be one of these.
+        The names that are allowed.
 
     Returns
     -------
     str
+        The value.
 
     Raises
     ------
     ValueError
         For anything else.
+
+    Examples
+    --------
+    >>> from snooker_env.checks import choice
+    >>> choice("kind", "box", ("box", "discrete"))
+    'box'
     """
     if not isinstance(value, str) or value not in options:
         raise refuse(field, value, "must be one of " + ", ".join(repr(o) for o in options))
@@ -128,32 +164,41 @@ def choice(field: str, value: Any, options: Collection[str]) -> str:
 
 
 def integer(field: str, value: Any, low: float, high: float) -> int:
-    """Check an integer; a bool is none.
+    """Check that a value is an integer in a range.
 
     Parameters
     ----------
     field : str
+        Name of the argument, for the message.
     value : any
+        The value to check.
     low, high : int
-        It must be in [low, high].
+        Ends of the range [low, high].
 
     Returns
     -------
     int
+        The value.
 
     Raises
     ------
     ValueError
-        For anything else.
+        For anything else; also for a bool and a float.
+
+    Examples
+    --------
+    >>> from snooker_env.checks import integer
+    >>> integer("visits", 30, 1, 100)
+    30
     """
-    other = (bool, np.bool_, np.timedelta64)  # this one is a NumPy integer, too
+    other = (bool, np.bool_, np.timedelta64)  # np.timedelta64 is a subclass of np.integer
     if isinstance(value, other) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
         raise refuse(field, value, f"must be an integer in [{low}, {high}]")
     return int(value)
 
 
 def flags(field: str, value: Any, shape: tuple[int, ...]) -> Bools:
-    """A bool array of the given shape, always a fresh C-ordered copy."""
+    """A bool array of the given shape, always a new C-ordered copy."""
     try:
         a = np.array(value, order="C")
     except (TypeError, ValueError):
@@ -164,21 +209,30 @@ def flags(field: str, value: Any, shape: tuple[int, ...]) -> Bools:
 
 
 def truth(field: str, value: Any) -> bool:
-    """Check a bool.
+    """Check that a value is a bool.
 
     Parameters
     ----------
     field : str
+        Name of the argument, for the message.
     value : any
+        The value to check.
 
     Returns
     -------
     bool
+        The value.
 
     Raises
     ------
     ValueError
-        For anything else.
+        For anything else; also for 0 and 1.
+
+    Examples
+    --------
+    >>> from snooker_env.checks import truth
+    >>> truth("render", True)
+    True
     """
     if not isinstance(value, (bool, np.bool_)):
         raise refuse(field, value, "must be True or False")

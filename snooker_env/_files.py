@@ -1,4 +1,4 @@
-"""How is a file written so that nobody ever sees half of it? Beside its place first, then moved there."""
+"""How is a file written so that no reader ever sees half of it? Into a temporary file beside it, which is then moved there."""
 
 import itertools
 import os
@@ -9,9 +9,11 @@ _NUMBERS = itertools.count()
 
 
 def write_whole(path: str | Path, write: Callable[[Path], object]) -> None:
-    """Have ``write(temporary)`` make a file beside ``path`` and put it in its place: after a crash the old file is there, or the new one.
+    """Let ``write(temporary)`` make a file in the folder of ``path``, then move it to ``path``.
 
-    The temporary file has the suffix of ``path`` and belongs to this call alone; if anything fails, nothing is left of it.
+    After a crash the old file is there, or the new one.
+
+    The temporary file has the suffix of ``path`` and a name that no other call uses. If anything fails, it is removed.
     """
     target = Path(os.path.realpath(path))
     temporary = target.with_name(f".{os.getpid()}-{next(_NUMBERS)}{target.suffix}")

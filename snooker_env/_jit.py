@@ -1,8 +1,8 @@
-"""How are kernels compiled? The one place that knows numba's options; ``_cache.py`` knows where the machine code is kept.
+"""How are kernels compiled? The one place that sets numba's options; ``_cache.py`` decides where the machine code is kept.
 
 * Strict IEEE everywhere: ``fastmath`` would let a freshly compiled and a cached kernel give different trajectories.
 * No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch instead.
-* Only entry kernels are cached, under the hash of all the source that they may have been made from.
+* Only entry kernels are cached, under a hash of all the source that they may have been made from.
 """
 
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from typing import Any
 import numba
 from numba.core.registry import CPUDispatcher
 
-from ._cache import CACHE_FOLDER, Kept
+from ._cache import CACHE_FOLDER, Kept, may_be_kept
 from ._notices import Cost
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
@@ -20,11 +20,11 @@ _INNER: dict[str, Any] = _OPTIONS | {"_nrt": False, "no_cfunc_wrapper": True, "n
 _INLINED: dict[str, Any] = _INNER | {"inline": "always"}
 
 ENTRIES: list[Any] = []
-"""All entry kernels that were made, in the order of their making."""
+"""All entry kernels of this process, in the order in which they were made."""
 
 
 class _Inner(CPUDispatcher):
-    """What ``kernel`` makes: machine code without the wrapper for calls from Python, which costs a sixth of all compiling."""
+    """What ``kernel`` makes: machine code without the wrapper for calls from Python, which would take a sixth of all compiling."""
 
     def __call__(self, *args, **kwargs):
         raise TypeError(f"{self.py_func.__qualname__} is an inner kernel: only kernels can call it")
@@ -38,10 +38,35 @@ def _inner(function, options):
 
 
 def kernel(function: Callable[..., Any] | None = None, *, seconds: int = 0, uses: tuple[Any, ...] = ()) -> Any:
-    """Compile an inner kernel: called from other kernels, never from Python, never cached by itself.
+    """Compile an inner kernel, which other kernels call. Use as a decorator.
 
-    It may not make arrays. So numba need not count references to those it is given (``_nrt``), which costs a fifth of a shot.
-    ``seconds``: how long a large one takes to compile on a quiet machine, besides the other large ones that it ``uses``.
+    Python cannot call it, and its machine code is not kept by itself. It must not make arrays: so numba need not count references to the
+    arrays that it is given, which would take a fifth of the time of a shot.
+
+    Parameters
+    ----------
+    function : callable, optional
+        The function to compile; None: the call returns a decorator.
+    seconds : int
+        Time to compile it on a quiet machine [s], without the large kernels that it uses; 0 for less than one second.
+    uses : tuple of kernels
+        The large kernels (``seconds`` above 0) that it calls, for the notice before a long compile.
+
+    Returns
+    -------
+    kernel
+        The compiled function, which compiles at its first use; or a decorator.
+
+    Examples
+    --------
+    >>> from snooker_env.kernels import entry, kernel
+    >>> @kernel
+    ... def double(x):
+    ...     return 2.0 * x
+    >>> double(1.0)
+    Traceback (most recent call last):
+    ...
+    TypeError: double is an inner kernel: only kernels can call it
     """
     if function is None:
         return partial(kernel, seconds=seconds, uses=uses)
@@ -51,22 +76,49 @@ def kernel(function: Callable[..., Any] | None = None, *, seconds: int = 0, uses
 
 
 def inlined(function: Callable[..., Any]) -> Any:
-    """Compile an inner kernel as a part of its one caller, a large ``kernel``: else its code would be optimised once more there."""
+    """Compile an inner kernel as a part of its one caller, a large ``kernel``: otherwise its code would be optimised twice."""
     return _inner(function, _INLINED)
 
 
 def entry(function: Callable[..., Any] | None = None, *, what: str = "", seconds: int = 0, uses: tuple[Any, ...] = ()) -> Any:
-    """Compile a kernel that Python calls: its machine code is kept on disk.
+    """Compile a kernel that Python calls. Use as a decorator.
 
-    One that takes over a second to compile says ``what`` it is, for a line on stderr before it does; ``seconds`` and ``uses`` as for
-    ``kernel``.
+    Its machine code is kept on disk, under a hash of the source of the package and of the module that defines it. A function that is not
+    defined in a file (at a prompt, in a notebook) is compiled in every process.
+
+    Parameters
+    ----------
+    function : callable, optional
+        The function to compile; None: the call returns a decorator.
+    what : str
+        What the kernel is, for the line on stderr before a compile of more than a second. Without it there is no line.
+    seconds : int
+        Time to compile it on a quiet machine [s], without the large kernels that it uses.
+    uses : tuple of kernels
+        The large kernels that it calls.
+
+    Returns
+    -------
+    kernel
+        The compiled function, which compiles or is loaded at its first call; or a decorator.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.kernels import balls_on, bits, entry
+    >>> @entry
+    ... def mask_on(ball_on, on_table):
+    ...     return balls_on(ball_on, bits(on_table))
+    >>> on_table = np.ones(22, np.bool_)
+    >>> mask_on(1, on_table) == 0xFFFE  # a red is on: balls 1 to 15
+    True
     """
     if function is None:
         return partial(entry, what=what, seconds=seconds, uses=uses)
     made: Any = numba.njit(**_OPTIONS)(function)
     if made is not function:  # with NUMBA_DISABLE_JIT it is
         made.cost = Cost(what, seconds, uses)
-        if CACHE_FOLDER is not None:
+        if CACHE_FOLDER is not None and may_be_kept(function):
             made._cache = Kept(function)
         ENTRIES.append(made)
     return made

@@ -1,6 +1,6 @@
-"""What does a user hear of compiling? One line on stderr before each compile that takes over a second, and how far a warm-up is.
+"""What is reported of compiling? One line on stderr before each compile that takes over a second, and the progress of a warm-up.
 
-``SNOOKER_ENV_QUIET=1`` silences both. Nothing is said of machine code that is loaded from the cache.
+``SNOOKER_ENV_QUIET=1`` silences both. Machine code that is loaded from the cache is not reported.
 """
 
 import os
@@ -12,25 +12,25 @@ from typing import Any, NamedTuple
 
 from numba.core import event
 
-from ._cache import CACHE_FOLDER
+from ._cache import CACHE_FOLDER, Kept
 
 
 def say(text: str) -> None:
-    """A line on stderr, unless the user wants none or has no stderr."""
+    """Print a line to stderr, unless ``SNOOKER_ENV_QUIET`` is set or there is no stderr."""
     if os.environ.get("SNOOKER_ENV_QUIET", "0") in ("", "0") and sys.stderr is not None:
         with suppress(OSError, ValueError):
             print(f"snooker_env: {text}", file=sys.stderr, flush=True)
 
 
 class Cost(NamedTuple):
-    """What the compiling of a kernel costs; fields as the arguments of ``_jit.entry``."""
+    """The time that the compiling of a kernel takes; fields as the arguments of ``_jit.entry``."""
 
     what: str
     seconds: int
     uses: tuple[Any, ...]
 
     def total(self) -> int:
-        """How long it will take [s]: the large kernels that it uses are compiled with it unless that was done before in this process."""
+        """Time that it will take [s], with the large kernels that it uses and that this process has not compiled yet."""
         return self.seconds + sum(kernel.cost.seconds for kernel in self._missing())
 
     def _missing(self):
@@ -39,14 +39,14 @@ class Cost(NamedTuple):
 
 
 class _WarmUp:
-    """Which kernels a warm-up makes ready."""
+    """The kernels that a warm-up makes ready."""
 
     def __init__(self, kernels):
         self.kernels = [kernel for kernel in kernels if not kernel.signatures]
         self.spoke = False
 
     def place(self):
-        """Which one is next, of how many, for a line that is said now."""
+        """Number of the next kernel and of all, for a line that is printed now."""
         self.spoke = True
         return f"warm-up, kernel {1 + sum(bool(kernel.signatures) for kernel in self.kernels)} of {len(self.kernels)}: "
 
@@ -56,7 +56,7 @@ _running: list[_WarmUp] = []
 
 @contextmanager
 def warming_up(kernels: Iterable[Any]) -> Iterator[None]:
-    """While it lasts, each notice says which of the ``kernels`` it is about; the last one says how long they all took."""
+    """Within this context each notice counts the ``kernels``; the last notice gives the time of all."""
     _running.append(_WarmUp(kernels))
     start = time.perf_counter()
     try:
@@ -68,16 +68,17 @@ def warming_up(kernels: Iterable[Any]) -> Iterator[None]:
 
 
 class _Listener(event.Listener):
-    """Hears of every compile of this process, after the cache had nothing: numba calls it."""
+    """numba calls it for every compile of this process, that is for what was not in the cache."""
 
     def on_start(self, event):
         kernel: Any = (event.data or {}).get("dispatcher")
         cost = getattr(kernel, "cost", None)  # other packages compile too
         if cost is None or not cost.what or (seconds := cost.total()) < 1:
             return
-        text = f"compiling {cost.what}, {'once, ' if CACHE_FOLDER else ''}about {seconds} s"
-        if not (_running and _running[-1].spoke):  # the rest of a warm-up need not say it again
-            text += f" ({f'kept in {CACHE_FOLDER}' if CACHE_FOLDER else 'for this process only'}; SNOOKER_ENV_QUIET=1 hides this)"
+        kept = isinstance(kernel._cache, Kept)
+        text = f"compiling {cost.what}, {'once, ' if kept else ''}about {seconds} s"
+        if not (_running and _running[-1].spoke):  # said once in a warm-up
+            text += f" ({f'kept in {CACHE_FOLDER}' if kept else 'for this process only'}; SNOOKER_ENV_QUIET=1 hides this)"
         say(_running[-1].place() + text if _running else text)
 
     def on_end(self, event):

@@ -1,6 +1,6 @@
-"""Which types do the annotations share? Arrays by what they hold, what callers may give for them, and closed sets of names.
+"""Which types do the annotations share? Arrays by what they hold, what callers may pass for them, and closed sets of names.
 
-An annotation says what an array holds, the docstring its shape and units.
+An annotation says what an array holds; the docstring says its shape and units.
 """
 
 from collections.abc import Sequence
@@ -9,14 +9,14 @@ from typing import Any, Literal, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-# What the package gives back and keeps.
+# What the package returns and stores.
 Floats: TypeAlias = NDArray[np.float64]
 Singles: TypeAlias = NDArray[np.float32]
 Ints: TypeAlias = NDArray[np.int64]
 Words: TypeAlias = NDArray[np.uint64]
 Bools: TypeAlias = NDArray[np.bool_]
 
-# What callers may give: arrays, or sequences nested as deep as the array would have dimensions. A str is none of these.
+# What callers may pass: arrays, or nested sequences with as many levels as the array would have dimensions. A str is none of these.
 Real: TypeAlias = float | np.floating[Any] | np.integer[Any]
 RealArray: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
 Vector: TypeAlias = RealArray | Sequence[Real]
@@ -25,7 +25,7 @@ Vectors: TypeAlias = RealArray | Sequence[Vector]
 Batches: TypeAlias = RealArray | Sequence[Vectors]
 """Of three dimensions: (b, n, k)."""
 Scalars: TypeAlias = Real | Vector
-"""One number for all, or one for each: () or (n,)."""
+"""One number for all, or one for each: shape () or (n,)."""
 Integers: TypeAlias = NDArray[np.integer[Any]] | Sequence[int | np.integer[Any]]
 Flag: TypeAlias = bool | np.bool_
 Flags: TypeAlias = Bools | Sequence[Flag]
@@ -36,9 +36,9 @@ Place: TypeAlias = tuple[float, float]
 
 # Names.
 Fidelity: TypeAlias = Literal["fast", "standard", "reference"] | str
-"""How impacts are solved. A str because of ``"euler:N"``, the paper's own scheme with N steps."""
+"""How impacts are solved. Any str is allowed because of ``"euler:N"``, the paper's own scheme with N steps."""
 Solver: TypeAlias = tuple[int, int]
-"""A fidelity as the kernels read it: a code, and N of ``"euler:N"`` or 0."""
+"""A fidelity as the kernels read it: a code, and the N of ``"euler:N"`` or 0."""
 PhysicsName: TypeAlias = Literal["paper", "match"]
 TableName: TypeAlias = Literal["match", "tight", "uk8", "pool9", "carom"]
 NoiseName: TypeAlias = Literal["none", "professional", "amateur", "club", "robot", "olympiad"]
@@ -46,9 +46,9 @@ ObservationKind: TypeAlias = Literal["flat", "balls"]
 RenderMode: TypeAlias = Literal["human", "rgb_array", "ansi"]
 MissRule: TypeAlias = Literal["off", "clear_path"]
 
-# What depends on an environment's options, so that no annotation can say more.
+# These depend on an environment's options, so that no annotation can say more.
 Action: TypeAlias = Any
-"""Of a Box an array or sequence of numbers (k,), of ``action="discrete"`` an int."""
+"""For a Box space an array or sequence of numbers (k,), for ``action="discrete"`` an int."""
 Observation: TypeAlias = Any
 """float32 (k,) with ``observation="flat"``; with "balls" a dict of float32 arrays, "balls" (22, 5) and "state" (k,)."""
 

@@ -1,4 +1,4 @@
-"""How is compiling paid for in advance? ``warmup`` runs everything once that is ever compiled for this package."""
+"""How does one compile everything in advance? ``warmup`` calls each kernel of this package once."""
 
 from ._jit import ENTRIES
 from ._notices import warming_up
@@ -7,14 +7,19 @@ from .simulation import simulate
 
 
 def warmup() -> None:
-    """Compile every kernel of the package, for one table or many, or load it from the cache; stderr tells how far that is.
+    """Compile every kernel of the package, or load it from the cache.
 
-    Call it in the parent before worker processes start: otherwise each of them compiles for itself. Nothing is said where all comes from
-    the cache, or with ``SNOOKER_ENV_QUIET=1``.
+    Call it in the parent process before worker processes start; otherwise each worker compiles for itself. Progress is reported on
+    stderr, unless everything comes from the cache or ``SNOOKER_ENV_QUIET=1`` is set.
 
     Returns
     -------
     None
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> sn.warmup()  # doctest: +SKIP
     """
     from .envs.snooker import SnookerEnv
     from .game.apply_ruling import settle_table
@@ -40,7 +45,7 @@ def warmup() -> None:
         env.step(0)
         frames = {"task": "frame", "placement": True, "decision": True, "miss": "clear_path", "opponent": "ghost_ball"}
         env = SnookerEnv(**frames)
-        for seed in range(3):  # one of them with the opponent's break
+        for seed in range(3):  # in one of them the opponent breaks off
             env.reset(seed=seed)
             env.step([0.0] * 7)
         for opponent, action in ((lambda observation, rng: [0.0] * 4, [0.0] * 4), ("random", 0), ("random", [0.0] * 4)):
@@ -64,5 +69,5 @@ def warmup() -> None:
         planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
         obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
         prospects_of(at, 1e-3)
-        for ask in (direct_pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):
-            ask(at)
+        for call in (direct_pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):
+            call(at)

@@ -1,7 +1,7 @@
 """Where is everything on a table, and how large is it? Beds, pockets, spots and balls as data: the one source for every layer.
 
-World frame: origin at the table's centre, +x to the yellow side, +y to the black end; metres. A preset is a ``Bed``, and ``parts`` makes
-of it the arrays that the kernels read (``physics.table``). Pockets are numbered in one order everywhere: ``POCKETS``.
+Table frame: origin at the table's centre, +x to the yellow side, +y to the black end; metres. A preset is a ``Bed``; ``parts`` makes
+the arrays from it that the kernels read (``physics.table``). Pockets are numbered in one order everywhere: ``POCKETS``.
 
 Sources. Snooker: WPBSA, playing area 3569 x 1778 mm, spots and D as in the rules; the official pocket templates are secret, and this set
 agrees with the quoted openings (3.5 in corner, 4 in middle at the fall of the slate: ``python -m benchmarks.pockets`` prints ours).
@@ -24,26 +24,31 @@ __all__ = [
 ]  # fmt: skip
 
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
-"""Pocket indices 0..5, anticlockwise from (-x, -y); bottom is the baulk end, right the yellow side."""
+"""Names of the pockets by index, 0 to 5, anticlockwise from (-x, -y): bottom is the baulk end, right is the yellow side."""
 SIDES = ((-1, -1), (1, -1), (1, 0), (1, 1), (-1, 1), (-1, 0))
-"""On which side of the table each of them lies: the signs of its x and y."""
+"""The side of the table on which each pocket of ``POCKETS`` lies: the signs of its x and y, 0 for y at a middle pocket."""
 
-# Snooker's table: what the rules, the layouts and the observations are about.
+# Snooker's table: the rules, the layouts and the observations use these.
 BALL_RADIUS = 0.02625
+"""Radius of a snooker ball [m]."""
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
+"""Half the playing area of a snooker table [m]: the noses lie at x = -+``HALF_WIDTH`` and y = -+``HALF_LENGTH``."""
 BAULK_Y = -1.0475
+"""The y of the baulk line [m]."""
 D_RADIUS = 0.292
+"""Radius of the D [m]; its centre is the brown spot, (0, ``BAULK_Y``)."""
 COLOUR_SPOTS = np.array([
     (D_RADIUS, BAULK_Y), (-D_RADIUS, BAULK_Y), (0.0, BAULK_Y), (0.0, 0.0), (0.0, HALF_LENGTH / 2), (0.0, 1.4605),
 ])  # fmt: skip
-"""(6, 2) the spots of yellow, green, brown, blue, pink and black."""
+"""The spots of yellow, green, brown, blue, pink and black: float64 (6, 2) [m], read-only."""
 
 POCKET_PLACES = np.array([(sx * HALF_WIDTH, sy * HALF_LENGTH) for sx, sy in SIDES])
-"""(6, 2) where snooker's nose lines meet (corners) or are cut (middles): nominal places, enough to keep a layout clear of the pockets."""
+"""Nominal places of the pockets: float64 (6, 2) [m], read-only. A corner pocket's is where two nose lines meet, a middle pocket's is the
+middle of its nose line. Layouts use them to keep balls away from the pockets."""
 
 AIM_X, AIM_Y, AXIS_X, AXIS_Y, IS_MIDDLE = range(5)
 """Columns of ``POCKET_AIMS``: the aim point [m], the pocket's axis as an outward unit vector, 1 for a middle pocket."""
-_CORNER_AIM, _MIDDLE_AIM = 0.01524, 0.0016  # where the fall meets the pocket's axis: before each nose line it is so far [m]
+_CORNER_AIM, _MIDDLE_AIM = 0.01524, 0.0016  # distance from each nose line to the point where the fall meets the pocket's axis [m]
 
 
 def _aim(sx, sy):
@@ -53,7 +58,7 @@ def _aim(sx, sy):
 
 
 POCKET_AIMS = np.array([_aim(sx, sy) for sx, sy in SIDES])
-"""(6, 5) where to send a ball that is to go into each of snooker's pockets; columns ``AIM_X`` to ``IS_MIDDLE``."""
+"""The point to aim a ball at, for each of snooker's pockets: float64 (6, 5), read-only; columns ``AIM_X`` to ``IS_MIDDLE``."""
 
 for _constant in (COLOUR_SPOTS, POCKET_PLACES, POCKET_AIMS):
     _constant.setflags(write=False)
@@ -64,31 +69,33 @@ FLAT = 100.0
 
 @dataclass(frozen=True, kw_only=True)
 class Pocket:
-    """The shape of one kind of pocket, alike at all corners or in both middles; ``corner`` and ``middle`` make one from published sizes.
+    """The shape of one kind of pocket, the same at all four corners or at both middles.
 
-    A jaw leaves the straight nose at its ``start``, turns away from it on an arc, and goes on straight (its facing). Where the arc ends
-    over the fall no facing is made: a ball that has come so far is lost.
+    ``Pocket.corner`` and ``Pocket.middle`` make one from published sizes. A jaw leaves the straight nose at its ``start``, turns away from
+    it on an arc, and then goes on straight (its facing). There is no facing where the arc ends over the fall, because a ball that reaches
+    that point is lost.
 
     Parameters
     ----------
     is_middle : bool
-        For the middles of the long sides, or for the corners?
+        True for the middles of the long sides, False for the corners.
     start : float
-        Where the jaws leave the nose [m]: the distance along the rail from the corner (where the nose lines meet), or from the
-        middle.
+        Where the jaws leave the nose [m], in (0, 1]: the distance along the rail from the corner (where the nose lines meet), or from
+        the middle.
     jaw_radius : float
-        Radius of the arc [m]; 0: a sharp point, as in pool.
+        Radius of the arc [m], in [0, 1]; 0 is a sharp point, as in pool.
     turn : float
-        How far a jaw turns from the nose [degrees]: 45 at a corner and 90 in the middle make the facings parallel.
+        Angle by which a jaw turns from the nose [degrees], in (0, 45] at a corner and (0, 90] in the middle. The largest value makes the
+        two facings parallel.
     fall_depth : float
-        How far the centre of the slate's circle lies [m] behind the nose line (behind both at a corner).
+        Distance from the nose line to the centre of the slate's circle [m], in [-1, 1]; at a corner, from each of the two nose lines.
     fall_radius : float
-        Radius of that circle [m]; a ball begins to drop where its centre crosses the circle.
+        Radius of that circle [m], in (0, 1]. A ball begins to drop where its centre crosses the circle.
 
     Raises
     ------
     ValueError
-        If a size is out of range, or if they leave no opening or a way past the fall.
+        If a size is out of range, if the jaws leave no opening, or if a ball could pass beside the fall.
 
     Examples
     --------
@@ -115,35 +122,43 @@ class Pocket:
         if not self.throat > 0.0:
             raise refuse(name, self, "must leave an opening between its jaws: a wider mouth, less turn or a smaller jaw_radius")
         if self.shelf + self.mouth_depth + self.fall_radius <= self._arc_end[1] and not self._ends_over_the_fall:
-            raise refuse(name, self, "must have the middle of its fall behind the ends of its jaws' arcs, or these over the fall")
+            raise refuse(name, self, "must have the centre of its fall behind the ends of its jaws' arcs, or those ends over the fall")
         if self.fall_radius < self.throat / 2:
             raise refuse(name, self, "must have a fall at least as wide as the throat, so that no ball passes beside it")
 
     @classmethod
     def corner(cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 135.0, jaw_radius: float = 0.0) -> "Pocket":
-        """A corner pocket by its published sizes.
+        """Make a corner pocket from its published sizes.
 
         Parameters
         ----------
         mouth : float
-            From jaw to jaw where they leave the noses [m], in (0, 1].
+            Distance from jaw to jaw where they leave the noses [m], in (0, 1].
         shelf : float
-            From the middle of the mouth to the slate's edge [m], in [-1, 1]; negative where the hole begins before the mouth.
+            Distance from the middle of the mouth to the slate's edge [m], in [-1, 1]; negative where the hole begins before the mouth.
         fall_radius : float
             Radius of the slate's circle [m], in (0, 1].
         cut : float
-            Angle between nose and facing [degrees], in [135, 180): 135 for parallel facings, WPA 142.
+            Angle between nose and facing [degrees], in [135, 180). 135 makes the facings parallel; the WPA's value is 142.
         jaw_radius : float
-            Radius of the arc by which a jaw leaves the nose [m], in [0, 1]; 0 for a sharp point.
+            Radius of the arc on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point.
 
         Returns
         -------
         Pocket
+            With ``is_middle`` False.
 
         Raises
         ------
         ValueError
-            For sizes out of range, and where they leave no opening, or a way past the fall.
+            If a size is out of range, if the jaws leave no opening, or if a ball could pass beside the fall.
+
+        Examples
+        --------
+        >>> from snooker_env import Pocket
+        >>> pocket = Pocket.corner(mouth=0.115, shelf=0.03, fall_radius=0.07)
+        >>> pocket.is_middle, round(pocket.start, 4)
+        (False, 0.0813)
         """
         mouth, shelf, fall_radius = _sizes("pocket.corner", mouth, shelf, fall_radius)
         depth = (fall_radius + shelf) / sqrt(2.0) - mouth / (2.0 * sqrt(2.0))
@@ -154,23 +169,37 @@ class Pocket:
 
     @classmethod
     def middle(cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 90.0, jaw_radius: float = 0.0) -> "Pocket":
-        """A middle (side) pocket by its published sizes.
+        """Make a middle (side) pocket from its published sizes.
 
         Parameters
         ----------
-        mouth, shelf, fall_radius, jaw_radius : float
-            As in ``corner``.
+        mouth : float
+            Distance from jaw to jaw where they leave the noses [m], in (0, 1].
+        shelf : float
+            Distance from the middle of the mouth to the slate's edge [m], in [-1, 1]; negative where the hole begins before the mouth.
+        fall_radius : float
+            Radius of the slate's circle [m], in (0, 1].
         cut : float
-            Angle between nose and facing [degrees], in [90, 180): 90 for parallel facings, WPA 104.
+            Angle between nose and facing [degrees], in [90, 180). 90 makes the facings parallel; the WPA's value is 104.
+        jaw_radius : float
+            Radius of the arc on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point.
 
         Returns
         -------
         Pocket
+            With ``is_middle`` True.
 
         Raises
         ------
         ValueError
-            As ``corner``.
+            If a size is out of range, if the jaws leave no opening, or if a ball could pass beside the fall.
+
+        Examples
+        --------
+        >>> from snooker_env import Pocket
+        >>> pocket = Pocket.middle(mouth=0.13, shelf=0.005, fall_radius=0.076, cut=104.0)
+        >>> pocket.is_middle, round(pocket.throat, 4)
+        (True, 0.0896)
         """
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
@@ -178,32 +207,32 @@ class Pocket:
             is_middle=True, start=mouth / 2.0, jaw_radius=jaw_radius, turn=turn, fall_depth=fall_radius + shelf, fall_radius=fall_radius,
         )  # fmt: skip
 
-    # Seen from the pocket's origin (the corner, or the middle on the nose line): depth outwards along the axis, offset across it.
+    # Coordinates from the pocket's origin (the corner, or the middle on the nose line): depth outwards along the axis, offset across it.
 
     @property
     def mouth(self) -> float:
-        """From jaw to jaw where they leave the noses [m]."""
+        """Distance from jaw to jaw where they leave the noses [m]."""
         return 2.0 * self.start if self.is_middle else sqrt(2.0) * self.start
 
     @property
     def mouth_depth(self) -> float:
-        """How deep the line of the mouth lies [m]: at a corner in front of where the nose lines meet."""
+        """Depth of the line of the mouth [m]: 0 in the middle, negative at a corner (in front of the point where the nose lines meet)."""
         return 0.0 if self.is_middle else -self.start / sqrt(2.0)
 
     @property
     def shelf(self) -> float:
-        """From the middle of the mouth to the slate's edge [m]."""
+        """Distance from the middle of the mouth to the slate's edge [m]; negative where the hole begins before the mouth."""
         depth = self.fall_depth if self.is_middle else sqrt(2.0) * self.fall_depth
         return depth - self.fall_radius - self.mouth_depth
 
     @property
     def taper(self) -> float:
-        """The angle between a facing and the axis [rad]; 0: the facings are parallel."""
+        """Angle between a facing and the pocket's axis [rad]; 0 if the facings are parallel."""
         return radians((90.0 if self.is_middle else 45.0) - self.turn)
 
     @property
     def _arc_end(self) -> tuple[float, float]:
-        """Offset and depth of the place where a jaw's arc ends."""
+        """Offset and depth of the end of a jaw's arc [m]."""
         angle = radians(self.turn)
         on, in_ = self.jaw_radius * sin(angle), self.jaw_radius * (1.0 - cos(angle))  # along the nose, and away from its line
         if self.is_middle:
@@ -217,14 +246,14 @@ class Pocket:
 
     @property
     def facing(self) -> float:
-        """Length of a facing [m], down to the depth of the fall's middle; 0 where the arc already ends over the fall."""
+        """Length of a facing [m], down to the depth of the fall's centre; 0 where the arc already ends over the fall."""
         if self._ends_over_the_fall:
             return 0.0
         return (self.mouth_depth + self.shelf + self.fall_radius - self._arc_end[1]) / cos(self.taper)
 
     @property
     def throat(self) -> float:
-        """The least width between the two jaws [m]."""
+        """Least distance between the two jaws [m]."""
         return 2.0 * (self._arc_end[0] - self.facing * sin(self.taper))
 
 
@@ -242,11 +271,18 @@ class Bed:
     Parameters
     ----------
     length, width : float
-        Between its noses [m], along y and along x.
+        Distance between facing noses [m], along y and along x.
     corner, middle : Pocket or None
-        The pockets in the corners, and in the middles of the sides along y; None: there are none.
+        Shape of the pockets in the corners, and of those in the middles of the sides along y. None: there are none.
     ball : mapping of str to float
         Fields of ``Physics`` that belong to the balls and noses of this game: R [m], M [kg], sin_theta. Empty: any ball.
+
+    Examples
+    --------
+    >>> from snooker_env.geometry import PRESETS
+    >>> bed = PRESETS["match"]
+    >>> bed.length, bed.width, bed.ball["R"]
+    (3.569, 1.778, 0.02625)
     """
 
     length: float
@@ -257,12 +293,12 @@ class Bed:
 
     @property
     def pockets(self) -> tuple[str, ...]:
-        """The names of its pockets, by index: those of ``POCKETS`` that it has, in that order."""
+        """Names of its pockets by index: those of ``POCKETS`` that the table has, in that order."""
         return tuple(name for name, (_, sy) in zip(POCKETS, SIDES, strict=True) if (self.corner if sy else self.middle))
 
 
 def parts(bed: Bed) -> tuple[Floats, Floats, Floats]:
-    """Noses (k, 5), jaws (m, 6) and falls (p, 3) of a ``Bed``, columns as in ``physics.table.Table``. Index of a fall = pocket."""
+    """Noses (k, 5), jaws (m, 6) and falls (p, 3) of a ``Bed``; columns as in ``physics.table.Table``. The index of a fall is its pocket."""
     X, Y = bed.width / 2, bed.length / 2
     end = bed.corner.start if bed.corner else 0.0
     noses = []
@@ -289,10 +325,10 @@ def parts(bed: Bed) -> tuple[Floats, Floats, Floats]:
 
 
 def _jaw(pocket, start, onward, outward):
-    """The arcs of one jaw: from ``start`` on the nose, which runs ``onward`` to the pocket, with ``outward`` behind it (unit vectors)."""
+    """The arcs of one jaw. It leaves the nose at ``start``; ``onward`` (along the nose, to the pocket) and ``outward`` are unit vectors."""
     (x, y), (tx, ty), (ox, oy), radius = start, onward, outward, pocket.jaw_radius
     turn = radians(pocket.turn)
-    # half of 90 degrees: the two are equal, which rounding would spoil
+    # at 45 degrees sine and cosine are equal, but rounding would make them differ
     away, toward = (sqrt(0.5), sqrt(0.5)) if pocket.turn == 90.0 else (cos(turn / 2), sin(turn / 2))
     cx, cy = x + radius * ox, y + radius * oy
     arcs = [(cx, cy, radius, -ox * away + tx * toward, -oy * away + ty * toward, away if radius else -1.0)]  # a point: a whole circle
@@ -345,4 +381,4 @@ PRESETS = MappingProxyType({
     # UMB: 2.84 x 1.42 m, balls of 61 to 61.5 mm and 205 to 220 g, noses 37 mm high.
     "carom": Bed(length=2.84, width=1.42, corner=None, middle=None, ball=_ball(R=0.03075, M=0.2125, sin_theta=37.0 / 30.75 - 1.0)),
 })  # fmt: skip
-"""The tables that have a name."""
+"""The preset tables by name, each a ``Bed``: "match", "tight", "uk8", "pool9" and "carom". Read-only."""

@@ -1,4 +1,4 @@
-"""How does one impact end, or one strike of the cue? Of two balls, of a ball and a cushion: checked input in, plain arrays out."""
+"""How does one compute a single impact, or one strike of the cue? Two balls, or ball and cushion: checked input in, plain arrays out."""
 
 import numpy as np
 
@@ -43,37 +43,40 @@ def _spin(name, value):
 def collide_balls(
     v1: Vector, w1: Vector, v2: Vector, w2: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """The frictional impact of two balls standing on the cloth (Mathavan, Jackson & Parkin 2014, 2.1 to 2.4).
+    """The frictional impact of two balls on the cloth (Mathavan, Jackson & Parkin 2014, 2.1 to 2.4).
 
     Parameters
     ----------
     v1, w1, v2, w2 : array_like, float (3,)
-        Velocities [m/s] and spins [rad/s] of ball 1 and ball 2, no number beyond 1e6 m/s and 1e9 rad/s.
+        Velocities [m/s] and spins [rad/s] of ball 1 and ball 2, components within 1e6 m/s and 1e9 rad/s of zero.
     normal : array_like, float (3,)
         Horizontal unit vector from ball 1 to ball 2.
     physics : None, str, dict or Physics
-        The world, see ``Physics.of``; "paper" if it is None.
+        The constants, as ``Physics.of`` takes them; None is "paper".
     fidelity : str
-        "fast" (closed form, free spheres), "standard", "reference", or "euler:N" (the paper's own scheme with N of eq. 14).
+        How the impact is solved: "fast" (closed form for free spheres), "standard" (default), "reference" (tightest tolerance), or
+        "euler:N" (the paper's own scheme with N of eq. 14).
 
     Returns
     -------
     v1, w1, v2, w2 : float64 (3,)
-        After the impact; the vertical velocity of the lifted ball is included. Balls that do not close come back unchanged.
+        Velocities [m/s] and spins [rad/s] after the impact, including the vertical velocity of a ball that is lifted. Balls that do not
+        approach each other come back unchanged.
 
     Raises
     ------
     ValueError
-        On bad shapes, numbers not finite or beyond these, a normal that is not horizontal and unit, an unknown fidelity or physics.
+        For wrong shapes, numbers that are not finite or out of range, a normal that is not a horizontal unit vector, and an unknown
+        fidelity or physics.
     SimulationError
-        If the impact does not end.
+        If the computation of the impact does not end.
 
     Examples
     --------
     >>> import snooker_env as sn
     >>> v1, w1, v2, w2 = sn.collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
-    >>> bool(v2[0] > 0.9 and v1[0] < 0.1)
-    True
+    >>> v1.round(3).tolist(), v2.round(3).tolist()
+    ([0.055, 0.0, 0.0], [0.945, 0.0, 0.0])
     """
     physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
     args = _velocity("v1", v1), _spin("w1", w1), _velocity("v2", v2), _spin("w2", w2)
@@ -86,29 +89,32 @@ def collide_balls(
 def collide_cushion(
     v: Vector, w: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
 ) -> tuple[Floats, Floats]:
-    """The impact of a ball with a cushion's nose (Mathavan, Jackson & Parkin 2010, with Coulomb's law at zero slip).
+    """The impact of a ball with the nose of a cushion (Mathavan, Jackson & Parkin 2010, with Coulomb's law at zero slip).
 
     Parameters
     ----------
     v, w : array_like, float (3,)
-        Velocity [m/s] and spin [rad/s], bounded as in ``collide_balls``.
+        Velocity [m/s] and spin [rad/s], components within 1e6 m/s and 1e9 rad/s of zero.
     normal : array_like, float (3,)
         Horizontal unit vector INTO the cushion.
     physics : None, str, dict or Physics
-        The world, see ``Physics.of``; "paper" if it is None.
+        The constants, as ``Physics.of`` takes them; None is "paper".
     fidelity : str
-        As in ``collide_balls``. "fast" integrates with a loose tolerance: no closed form keeps the cloth's reaction, worth 7 % of the
-        rebound.
+        As in ``collide_balls``, except that "fast" integrates with a loose tolerance: no closed form includes the cloth's reaction, which
+        is worth 7 % of the rebound.
 
     Returns
     -------
     v, w : float64 (3,)
-        After the impact. A ball that does not move into the cushion comes back unchanged.
+        Velocity [m/s] and spin [rad/s] after the impact. A ball that does not move into the cushion comes back unchanged.
 
     Raises
     ------
-    ValueError, SimulationError
-        As ``collide_balls``.
+    ValueError
+        For wrong shapes, numbers that are not finite or out of range, a normal that is not a horizontal unit vector, and an unknown
+        fidelity or physics.
+    SimulationError
+        If the computation of the impact does not end.
 
     Examples
     --------
@@ -128,35 +134,36 @@ def collide_cushion(
 def strike(
     speed: Real, aim: Real, side: Real = 0.0, top: Real = 0.0, elevation: Real = 0.0, physics: PhysicsLike = None
 ) -> tuple[Floats, Floats]:
-    """The cue ball's velocity and spin just after the cue has struck it.
+    """The cue ball's velocity and spin just after the strike of the cue.
 
-    Side spin deflects the ball off the aim (squirt, to the left for right side). An elevated cue with side gives the spin of a swerve or
-    masse. The cloth takes the downward part of the speed: the ball leaves along the cloth with speed cos(elevation).
+    Side spin deflects the ball from the aim (squirt: to the left for right side). An elevated cue with side gives the spin of a swerve or
+    masse shot. The cloth takes the downward part of the speed: the ball leaves along the cloth at speed cos(elevation).
 
     Parameters
     ----------
     speed : float
-        The speed that the cue gives, along the cue [m/s], in [0, 1000].
+        Speed that the cue gives the ball, along the cue [m/s], in [0, 1000].
     aim : float
         Direction of the cue [rad], anticlockwise from +x.
     side, top : float
-        Tip offset over R, + right and + up as the player sees it.
+        Offset of the tip over R, + right and + up as the player sees the ball; the two together at most ``Physics.max_offset``.
     elevation : float
-        Of the butt [rad], in [0, 1.5].
+        Angle between the cue and the cloth, butt raised [rad], in [0, 1.5].
     physics : None, str, dict or Physics
-        The world, see ``Physics.of``; "paper" if it is None.
+        The constants, as ``Physics.of`` takes them; None is "paper".
 
     Returns
     -------
     v : float64 (3,)
         Velocity [m/s].
     w : float64 (3,)
-        Spin [rad/s].
+        Angular velocity [rad/s].
 
     Raises
     ------
     ValueError
-        On a miscue (an offset beyond ``Physics.max_offset`` R, 0.5 by default), a speed or elevation out of range, numbers not finite.
+        For a miscue (an offset beyond ``Physics.max_offset``, 0.5 by default), a speed or elevation out of range, and numbers that are
+        not finite.
 
     Examples
     --------

@@ -1,7 +1,9 @@
 """How does one write kernels that run beside those of the package? Its two decorators, and the inner kernels that others may call.
 
-``entry`` compiles a kernel that Python calls and keeps its machine code on disk, as safely as the package's own; ``kernel`` one that only
-kernels call. Both are strict IEEE and release the GIL. Arguments that are masks of balls have bit i for ball i.
+``entry`` compiles a kernel that Python calls, and keeps its machine code on disk as the package keeps its own. ``kernel`` compiles an
+inner kernel, which only kernels can call. Both use strict IEEE arithmetic and release the GIL. In a mask of balls, bit i stands for
+ball i. The functions ``balls_on``, ``bits``, ``clear_segment``, ``executed``, ``find_pots``, ``line_of`` and ``window`` are inner
+kernels: call them from an ``entry`` of your own.
 """
 
 from ._jit import entry, kernel

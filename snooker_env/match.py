@@ -1,4 +1,4 @@
-"""How do I get a match of two players? ``match_env``: the PettingZoo environment, with PettingZoo loaded only when it is asked for."""
+"""How is a match of two players made? ``match_env`` returns the PettingZoo environment, and loads PettingZoo only when it is called."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -7,36 +7,37 @@ from ._types import RenderMode
 if TYPE_CHECKING:
     from .envs.match import MatchEnv as _MatchEnv
     from .tasks.options import Options
-else:  # neither PettingZoo nor the environments are loaded before they are asked for
+else:  # PettingZoo and the environments are loaded at their first use
     _MatchEnv = Options = Any
 
 
 def match_env(options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any) -> "_MatchEnv":
-    """A frame of snooker between "player_0" and "player_1", as a PettingZoo AEC environment.
-
-    After ``max_strokes`` strokes of both together (1000, None for never) the referee stops the frame and both players are truncated.
+    """Make a frame of snooker between "player_0" and "player_1", as a PettingZoo AEC environment.
 
     Parameters
     ----------
     options : Options, optional
-        How the game is played: ``task="frame"``, no opponent. None: it is made of the keywords.
+        The options, with ``task="frame"`` and no opponent. Default None: they are made from the keywords.
     render_mode : {"human", "rgb_array", "ansi"}, optional
-        How ``render`` shows the table.
+        How ``render`` shows the table; default None: not at all.
     **given
-        ``render_size``, and the keywords of ``Options`` in place of ``options``. Placement in the D and the decision after a foul are part
-        of the action unless they are switched off; with ``action="discrete"`` they never are.
+        ``render_size``, and the keywords of ``Options`` in place of ``options``. Box actions hold the place in the D and the decision after
+        a foul, unless ``placement=False`` or ``decision=False``. After ``max_strokes`` strokes of both players together (default 1000,
+        None for never) the referee stops the frame, and both players are truncated.
 
     Returns
     -------
     snooker_env.envs.match.MatchEnv
-        Its docstring is the specification.
+        The environment; its docstring is the specification.
 
     Raises
     ------
     ImportError
         Without PettingZoo.
     ValueError
-        On a bad argument.
+        If an argument is invalid.
+    TypeError
+        For an unknown keyword.
 
     Examples
     --------

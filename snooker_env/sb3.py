@@ -29,29 +29,39 @@ __all__ = ["SnookerVecEnv"]
 
 
 class SnookerVecEnv(VecEnv):
-    """Many tables as Stable-Baselines3 takes them.
+    """Many tables as a ``VecEnv`` of Stable-Baselines3.
 
-    A step that ends a visit starts the next one. Its info holds ``terminal_observation``, ``TimeLimit.truncated`` and, as a ``Monitor``
-    around each table would give it, ``episode`` with the reward "r", the length "l" and the time "t" [s]. Other infos are left out, ten
-    entries for each table at each step being slow, but for those named in ``info_keys``.
+    A step that ends an episode starts the next one. Its info holds ``terminal_observation``, ``TimeLimit.truncated`` and, as from a
+    ``Monitor`` around each table, ``episode`` with the return "r", the length "l" and the time "t" [s]. Other entries are left out for
+    speed, unless ``info_keys`` names them.
 
     Parameters
     ----------
     num_envs : int
-        How many tables.
+        Number of tables, in [1, 2**24].
     seed : int, optional
-        Table k begins with seed + k, as after ``seed(seed)``.
-    info_keys : sequence of str
-        Keys of the environment's infos to hand on.
+        Table k begins with seed + k, as after ``seed(seed)``. Default None: random.
+    info_keys : sequence of str, optional
+        Keys of the environment's info to include; default none.
     **kwargs
-        All other arguments of ``SnookerVectorEnv``, but for ``autoreset_mode``.
+        All other arguments of ``SnookerVectorEnv`` except ``autoreset_mode``.
 
     Raises
     ------
     ValueError
-        For a bad argument.
+        If an argument is invalid.
     ImportError
         Without Stable-Baselines3, when this module is imported.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.sb3 import SnookerVecEnv
+    >>> tables = SnookerVecEnv(4, seed=1, noise="club", threads=1)
+    >>> observations = tables.reset()
+    >>> observations, rewards, dones, infos = tables.step(np.zeros((4, 4), np.float32))
+    >>> observations.shape, rewards.dtype.name, len(infos)
+    ((4, 121), 'float32', 4)
     """
 
     tables: SnookerVectorEnv
@@ -75,14 +85,20 @@ class SnookerVecEnv(VecEnv):
             self.seed(seed)
 
     def reset(self) -> Observation:
-        """New visits on all tables, with the seeds and options set before: ``set_options([{"state": ...}, ...])`` starts from states,
-        ``set_options([{"position": ...}, ...])`` from positions.
+        """Begin new episodes on all tables, with the seeds and options set before.
 
-        States hold their random numbers; with ``seed`` called too, those of the seeds take their place.
+        ``set_options([{"state": ...}, ...])`` starts from states, ``set_options([{"position": ...}, ...])`` from positions, one for each
+        table. States hold their random streams; after a call of ``seed`` too, those of the seeds replace them.
 
         Returns
         -------
-        float32 (num_envs, k) or dict of arrays
+        numpy.ndarray or dict
+            float32 (num_envs, k), or a dict of such arrays.
+
+        Raises
+        ------
+        ValueError
+            If the options differ between tables in kind, or a state or position is invalid.
         """
         options = None
         if any(self._options):
@@ -100,23 +116,28 @@ class SnookerVecEnv(VecEnv):
         return observation
 
     def step_async(self, actions: Any) -> None:
-        """Note the actions that ``step_wait`` plays.
+        """Store the actions that ``step_wait`` plays.
 
         Parameters
         ----------
-        actions : array_like, float (num_envs, k) or int (num_envs,)
+        actions : array_like
+            float (num_envs, k) within [-1, 1], or int (num_envs,): choices.
         """
         self._actions = actions
 
     def step_wait(self) -> tuple[Observation, Singles, Bools, list[dict[str, Any]]]:
-        """Play the actions.
+        """Play the stored actions.
 
         Returns
         -------
-        observations : float32 (num_envs, k) or dict of arrays
-        rewards : float32 (num_envs,)
-        dones : bool (num_envs,)
+        observations : numpy.ndarray or dict
+            float32 (num_envs, k), or a dict of such arrays.
+        rewards : numpy.ndarray
+            float32 (num_envs,).
+        dones : numpy.ndarray
+            bool (num_envs,).
         infos : list of dict
+            One dict for each table.
         """
         observation, rewards, terminated, truncated, info = self.tables.step(self._actions)
         done = terminated | truncated
@@ -140,32 +161,34 @@ class SnookerVecEnv(VecEnv):
         self.tables.close()
 
     def get_images(self) -> Sequence[Any]:
-        """A picture of each table.
+        """Return a picture of each table.
 
         Returns
         -------
-        sequence of uint8 (H, W, 3)
-            With ``render_mode="rgb_array"``.
+        sequence of numpy.ndarray
+            uint8 (H, W, 3), with ``render_mode="rgb_array"``.
         """
         return self.tables.render()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """An attribute of the tables asked for: what all share, or of each its own, as ``points``.
+        """Read an attribute for some tables: one that all share, or one of each table, as ``points``.
 
         Parameters
         ----------
         attr_name : str
-        indices : int, sequence of int, optional
-            Which tables; None: all.
+            Name of the attribute.
+        indices : int or sequence of int, optional
+            Which tables; default None: all.
 
         Returns
         -------
         list
+            One value for each table.
 
         Raises
         ------
         AttributeError
-            For what no table has.
+            If no table has the attribute.
         """
         if attr_name in ("observation_space", "action_space"):  # of one table
             return [getattr(self.tables, f"single_{attr_name}") for _ in self._get_indices(indices)]
@@ -173,17 +196,21 @@ class SnookerVecEnv(VecEnv):
             return [getattr(self.tables, attr_name) for _ in self._get_indices(indices)]
         try:
             each = self.tables.get_attr(attr_name)
-        except ValueError as error:  # a name that is not of one table: SB3's ``has_attr`` expects this error
+        except ValueError as error:  # not a name of one table: SB3's ``has_attr`` expects this error
             raise AttributeError(str(error)) from None
         return [each[k] for k in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Not to be had: the tables share everything.
+        """Refuse to set an attribute: the tables share everything. Make another ``SnookerVecEnv`` instead.
 
         Parameters
         ----------
-        attr_name, value, indices
-            Anything.
+        attr_name : str
+            Name of the attribute.
+        value : object
+            Its value.
+        indices : int or sequence of int, optional
+            Which tables.
 
         Raises
         ------
@@ -193,36 +220,46 @@ class SnookerVecEnv(VecEnv):
         raise AttributeError(f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv")
 
     def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
-        """What ``get_state`` or ``action_masks`` gives of the tables asked for; no other method belongs to one table.
+        """Call ``get_state`` or ``action_masks`` for some tables. No other method belongs to one table.
 
         Parameters
         ----------
         method_name : {"get_state", "action_masks"}
-        *method_args, **method_kwargs
-            Not read: these methods take none.
-        indices : int, sequence of int, optional
-            Which tables; None: all.
+            Name of the method.
+        *method_args
+            Ignored: the methods take no arguments.
+        indices : int or sequence of int, optional
+            Which tables; default None: all.
+        **method_kwargs
+            Ignored.
 
         Returns
         -------
         list
+            One result for each table.
+
+        Raises
+        ------
+        ValueError
+            For another method.
         """
         choice("method_name", method_name, ("get_state", "action_masks"))
         states = getattr(self.tables, method_name)()
         return [states[k] for k in self._get_indices(indices)]
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
-        """Whether tables are wrapped. None is, but each reports its episodes as a ``Monitor`` would.
+        """Return whether tables are wrapped. None is, but each reports its episodes as a ``Monitor`` does.
 
         Parameters
         ----------
         wrapper_class : type
-        indices : int, sequence of int, optional
-            Which tables; None: all.
+            The class of the wrapper.
+        indices : int or sequence of int, optional
+            Which tables; default None: all.
 
         Returns
         -------
         list of bool
-            True for ``Monitor``.
+            True for ``Monitor``, one for each table.
         """
         return [issubclass(wrapper_class, Monitor) for _ in self._get_indices(indices)]

@@ -1,4 +1,4 @@
-"""What does a simulated shot tell? ``Shot`` and ``ShotBatch``: where the balls came to rest, what happened, and every moment between."""
+"""What is the result of a simulated shot? ``Shot`` and ``ShotBatch``: final positions, the log of events, and the state at any time."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,36 +13,41 @@ from .physics.parameters import Physics
 from .physics.table import Table
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
-"""One logged event; ``kind`` is an ``EventKind``."""
+"""Data type of one logged event: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained there)."""
 
 
 class SimulationError(RuntimeError):
-    """A shot or an impact that could not be computed. The message names it, its last event and what to try."""
+    """A shot or an impact that could not be computed.
+
+    The message names the shot or the impact, its last event, and what to try.
+    """
 
 
 @dataclass(frozen=True, eq=False)
 class Shot:
-    """One simulated shot. All arrays are fresh and the caller's own.
+    """One simulated shot, as ``simulate`` returns it.
+
+    The arrays are new ones; changing them changes nothing else.
 
     Attributes
     ----------
     positions : float64 (n, 2)
-        Centres at rest [m]; of a potted ball where its centre crossed the fall, or where its flight over the pocket ended.
+        Centres of the balls at rest [m]. For a potted ball: where its centre crossed the fall, or where its flight over the pocket ended.
     potted : int64 (n,)
-        The pocket of each ball, an index of ``snooker_env.POCKETS``; -1 if it was not potted in this shot.
+        Pocket of each ball, an index of ``snooker_env.POCKETS``; -1 if it was not potted in this shot.
     on_table : bool (n,)
-        Which balls are still in play.
+        True for the balls that are still in play.
     duration : float
-        Time [s] until everything is at rest, spin included. With ``Physics.spin_decel`` 0, which ends no spin: until no ball moves
-        across the table.
+        Time until everything is at rest, spin included [s]. With ``Physics.spin_decel`` 0, spin never ends: then the time until no ball
+        moves across the table.
     events : structured array (k,)
-        The log: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (see there), in order.
+        Log of the events in order of time: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained there).
     segments : float64 (s, columns)
-        The paths, for ``at``.
+        The paths in pieces, which ``at`` evaluates.
     physics : Physics
-        The world it was played in.
+        The constants of the shot.
     table : Table, or None
-        The table it was played on, if that is known.
+        The table of the shot, if it is known.
 
     Examples
     --------
@@ -64,12 +69,12 @@ class Shot:
     table: Table | None = field(default=None, repr=False)
 
     def at(self, t: Real | Vector) -> tuple[Floats, Floats, Floats]:
-        """Where the balls are at a time, how fast they move and how they spin.
+        """Positions, velocities and spins of all balls at one time, or at many.
 
-        At the time of an impact: just after it. From ``duration`` on, however late, everything is at rest: the positions are ``positions``,
-        velocities and spins zero (with ``spin_decel`` 0 a spin about the vertical stays as it is). A potted ball lies still in its place of
-        ``positions``, without spin, from its pot on; one that was not on the table lies where it was given. A ball in the air over a pocket
-        has the mean velocity from event to event.
+        At the time of an impact, the state is that just after it. From ``duration`` on everything is at rest: the positions are
+        ``positions``, velocities and spins are zero (with ``spin_decel`` 0 a spin about the vertical stays as it is). A potted ball lies
+        still in its place of ``positions`` from its pot on; a ball that was not on the table stays where it was given. A ball in the air
+        over a pocket has its mean velocity from event to event.
 
         Parameters
         ----------
@@ -79,11 +84,11 @@ class Shot:
         Returns
         -------
         positions : float64 (n, 2) or (m, n, 2)
-            [m]
+            Centres of the balls [m].
         velocities : float64 (n, 2) or (m, n, 2)
-            [m/s]
+            Velocities [m/s].
         spins : float64 (n, 3) or (m, n, 3)
-            [rad/s]
+            Angular velocities [rad/s].
 
         Raises
         ------
@@ -103,10 +108,10 @@ class Shot:
             raise refuse("t", float(times.min()), "must not be negative")
         n, m = len(self.positions), len(times)
         out = np.zeros((m, n, 2)), np.zeros((m, n, 2)), np.zeros((m, n, 3))
-        segments = np.require(self.segments, np.float64, ["C", "W"])  # as compiled for; a shot that came from elsewhere may be read-only
+        segments = np.require(self.segments, np.float64, ["C", "W"])  # the compiled type; an unpickled shot may be read-only
         trajectory.states_at(segments, n, times, self.physics.pack(), *out)
         if self.physics.spin_decel > 0:
-            out[2][times >= self.duration] = 0.0  # rounding may leave 1e-14 of a spin at the very time at which it ends
+            out[2][times >= self.duration] = 0.0  # at exactly that time rounding may leave 1e-14 of a spin
         return (out[0][0], out[1][0], out[2][0]) if single else out
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
@@ -115,20 +120,29 @@ class Shot:
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Where; None: in a figure of its own.
+            Axes to draw on; None makes a new figure.
         **options
-            Of ``snooker_env.render.diagrams.plot``, which says what is drawn.
+            Options of ``snooker_env.render.diagrams.plot``, where the diagram is explained.
 
         Returns
         -------
         matplotlib.axes.Axes
+            The axes with the diagram.
 
         Raises
         ------
         ValueError
             If the shot has no path, or an option is wrong.
         ImportError
-            Without matplotlib.
+            If matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)])
+        >>> ax = shot.plot(title="One ball")
+        >>> ax.texts[0].get_text()
+        'One ball'
         """
         from .render.diagrams import plot
 
@@ -137,22 +151,32 @@ class Shot:
 
 @dataclass(frozen=True, eq=False)
 class ShotBatch:
-    """Many simulated shots: the attributes of ``Shot`` with a leading axis b.
+    """Many simulated shots, as ``simulate_batch`` returns them: the attributes of ``Shot`` with a leading axis b.
 
     Attributes
     ----------
     positions : float64 (b, n, 2)
-        Centres at rest [m], as in ``Shot``.
+        Centres of the balls at rest [m], as in ``Shot``.
     potted : int64 (b, n)
-        Pockets, -1 if not potted.
+        Pocket of each ball, an index of ``snooker_env.POCKETS``; -1 if it was not potted.
     on_table : bool (b, n)
-        Which balls are still in play.
+        True for the balls that are still in play.
     duration : float64 (b,)
-        Times until everything is at rest [s].
+        Time until everything is at rest [s].
     event_count : int64 (b,)
-        How many events each shot had.
+        Number of events of each shot.
     events : list of structured arrays, or None
-        The log of each shot, if it was asked for.
+        Log of each shot, with ``simulate_batch(..., events=True)``; else None.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> speeds = np.array([1.0, 2.0, 3.0])
+    >>> velocities = np.stack([0 * speeds, speeds], axis=1)[:, None]
+    >>> batch = sn.simulate_batch(np.zeros((3, 1, 2)), velocities, np.zeros((3, 1, 3)))
+    >>> batch.positions.shape, batch.potted[:, 0].tolist()
+    ((3, 1, 2), [-1, -1, -1])
     """
 
     positions: Floats

@@ -1,4 +1,4 @@
-"""How do I play shots? One shot or many: checked input in, ``Shot`` and ``ShotBatch`` out. Single impacts are in ``impacts``."""
+"""How does one simulate shots? One shot or many: checked input in, ``Shot`` and ``ShotBatch`` out. Single impacts are in ``impacts``."""
 
 import os
 from concurrent.futures import ThreadPoolExecutor
@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ._check import array, flags, integer, refuse_what
+from ._shots import count
 from ._types import Batches, Bools, Fidelity, FlagRows, Flags, Floats, Solver, Vectors
 from .physics import cloth, engine
-from .physics.arrays import Balls, Ends, Log, World
+from .physics.arrays import Balls, Ends, Log, Setup
 from .physics.events import EventKind, Status
 from .physics.impact import contact
 from .physics.parameters import FASTEST, MOST_SPIN, Physics, PhysicsLike
@@ -18,9 +19,9 @@ from .shot import EVENT, Shot, ShotBatch, SimulationError
 
 MAX_EVENTS = 100_000
 MAX_BALLS = 4096
-"""Balls of one shot: the times of all pairs are kept, 134 MB of them here."""
+"""The most balls of one shot. The times of all pairs are stored: 134 MB for this many."""
 FARTHEST = 1e6
-"""Balls lie within this [m] of the origin: there places are still known to 1e-10 m."""
+"""The largest coordinate of a ball [m]: up to there float64 resolves 1e-10 m."""
 _FIRST_LOG = 512
 
 
@@ -47,39 +48,42 @@ def simulate(
     on_table: Flags | None = None,
     max_events: int = MAX_EVENTS,
 ) -> Shot:
-    """Play one shot until everything is at rest. The same input gives the same bits.
+    """Simulate one shot until everything is at rest.
+
+    The same input gives the same result, bit for bit.
 
     Parameters
     ----------
     positions : array_like, float (n, 2)
-        Centres [m] in the world frame: origin at the table's centre, +x to the yellow side, +y to the black end. Balls may touch each
-        other and the cushions, to within 1e-6 m. All balls are equal.
+        Centres of the balls [m] in the table frame: origin at the table's centre, +x to the yellow side, +y to the black end. Balls may
+        touch each other and the cushions, and overlap by at most 1e-6 m. All balls are equal; n is 1 to 4096.
     velocities : array_like, float (n, 2)
-        [m/s], each number within 1,000.
+        Velocities [m/s], each component within 1,000 of zero.
     spins : array_like, float (n, 3)
-        [rad/s], each number within 100,000.
+        Angular velocities [rad/s], each component within 100,000 of zero.
     table : str, Table or None
-        A preset's name ("match", "tight", "uk8", "pool9", "carom", each for the balls of its game: ``physics.R`` must be
-        ``Table.preset(name).ball_radius``), a ``Table``, or None for unbounded cloth.
+        Name of a preset ("match", "tight", "uk8", "pool9", "carom"), a ``Table``, or None for unbounded cloth. A preset is made for the
+        balls of its game: ``physics.R`` must be ``Table.preset(name).ball_radius``.
     physics : None, str, dict or Physics
-        The world, see ``Physics.of``; "paper" if it is None.
+        The constants, as ``Physics.of`` takes them; None is "paper".
     fidelity : str
         How impacts are solved, as in ``collide_balls``.
     on_table : array_like, bool (n,), optional
-        Balls to leave out are False.
+        False for the balls to leave out; None: all are on the table.
     max_events : int
-        Most events of the shot.
+        The most events that the shot may have, in [1, 2**31].
 
     Returns
     -------
     Shot
+        Final positions, pots, the log of events and the paths.
 
     Raises
     ------
     ValueError
-        On bad input; the message names the field, its value and what is allowed.
+        For bad input; the message names the field, its value and what is allowed.
     SimulationError
-        If the shot does not come to rest within ``max_events`` events.
+        If the shot does not come to rest within ``max_events`` events, or an impact of it does not end.
 
     Examples
     --------
@@ -107,11 +111,14 @@ def play(
     max_events: int = MAX_EVENTS,
     *,
     path: bool = True,
+    counted: bool = True,
 ) -> Shot:
-    """``simulate`` without its checks, for callers whose layouts are known to be sound; the arrays given are left as they are.
+    """``simulate`` without its checks, for layouts that have been checked before. The arrays given are not changed.
 
-    fidelity: as ``parse_fidelity`` returns it. path=False saves the log that ``Shot.at`` needs.
+    ``fidelity``: as ``parse_fidelity`` returns it. ``path`` False leaves out the paths that ``Shot.at`` needs. ``counted``: whether
+    ``_shots`` is to count this shot.
     """
+    count(int(counted))
     capacity = min(_FIRST_LOG, max_events)
     while True:
         state = [a[None].copy() for a in (positions, velocities, spins, on_table)]
@@ -139,33 +146,42 @@ def simulate_batch(
     events: bool = False,
     max_events: int = MAX_EVENTS,
 ) -> ShotBatch:
-    """Play b shots on b tables at once.
+    """Simulate b independent shots at once.
 
     Parameters
     ----------
     positions : array_like, float (b, n, 2)
-        [m], as in ``simulate``.
+        Centres of the balls [m], as in ``simulate``.
     velocities : array_like, float (b, n, 2)
-        [m/s]
+        Velocities [m/s].
     spins : array_like, float (b, n, 3)
-        [rad/s]
-    table, physics, fidelity, max_events
-        As in ``simulate``, the same for all shots.
+        Angular velocities [rad/s].
+    table : str, Table or None
+        As in ``simulate``; the same for all shots.
+    physics : None, str, dict or Physics
+        As in ``simulate``; the same for all shots.
+    fidelity : str
+        As in ``simulate``; the same for all shots.
     on_table : array_like, bool (b, n), optional
-        Balls to leave out are False.
+        False for the balls to leave out; None: all are on the table.
     threads : int, optional
-        How many to use; None: one for each core. Results do not depend on it.
+        Number of threads, in [1, 1024]; None: one for each core. Results do not depend on it.
     events : bool
         Whether to return each shot's log of events too.
+    max_events : int
+        The most events that one shot may have, in [1, 2**31].
 
     Returns
     -------
     ShotBatch
+        Final positions, pots and durations, and with ``events`` the logs.
 
     Raises
     ------
-    ValueError, SimulationError
-        As ``simulate``; the messages name the shot.
+    ValueError
+        For bad input; the message names the shot, the field, its value and what is allowed.
+    SimulationError
+        If a shot does not come to rest within ``max_events`` events, or an impact of it does not end; the message names the shot.
 
     Examples
     --------
@@ -183,11 +199,13 @@ def simulate_batch(
     threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
     max_events = integer("max_events", max_events, 1, 2**31)
     start = r.copy(), v.copy(), w.copy(), here.copy()
+    count(len(r))
     out = _run((r, v, w, here), physics, table, solver, max_events, _FIRST_LOG if events else 0, 0, threads)
     logs = [out.log(k) for k in range(len(r))] if events else None
     for k in np.flatnonzero(out.status != int(Status.OK)).tolist():
-        if out.status[k] == Status.LOG_FULL:  # rare: a log longer than the first guess; played once more with room
-            one = play(start[0][k], start[1][k], start[2][k], start[3][k], physics, table, solver, max_events, path=False)
+        if out.status[k] == Status.LOG_FULL:  # rare: the log is longer than the first guess, so the shot is simulated again with more room
+            r0, v0, w0, on = (part[k] for part in start)
+            one = play(r0, v0, w0, on, physics, table, solver, max_events, path=False, counted=False)
             r[k], here[k], out.potted[k], out.duration[k] = one.positions, one.on_table, one.potted, one.duration
             out.n_events[k] = len(one.events)
             if logs is not None:
@@ -225,20 +243,20 @@ def _run(state, physics, table, fidelity, max_events, log_size, path_size, threa
         np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT)),
     )  # fmt: skip
     positions, velocities, spins, on_table = state
-    balls, world = (
+    balls, setup = (
         Balls(positions, velocities, spins, on_table, out.potted),
-        World(physics.pack(), table.noses, table.jaws, table.falls, *fidelity),
+        Setup(physics.pack(), table.noses, table.jaws, table.falls, *fidelity),
     )
     log, ends = Log(out.event_time, out.event_what, out.segments), Ends(out.status, out.n_events, out.n_segments, out.duration)
 
     def run(first, last):
-        engine.run_batch(*balls, *world, max_events, *log, *ends, first, last)
+        engine.run_batch(*balls, *setup, max_events, *log, *ends, first, last)
 
     threads = min(threads, b)
     if threads <= 1:
         run(0, b)
     else:
-        cuts = np.linspace(0, b, 4 * threads + 1).astype(int)  # more slices than threads: shots differ in length
+        cuts = np.linspace(0, b, 4 * threads + 1).astype(int)  # more slices than threads, because shots differ in length
         with ThreadPoolExecutor(threads) as pool:
             list(pool.map(run, cuts[:-1], cuts[1:]))
     return out

@@ -1,7 +1,7 @@
-"""How does a replay play in a notebook? As a widget of anywidget: the same module as in the page, and its time from Python and back.
+"""How does a replay play in a notebook? As a widget of anywidget: the module of the page, with its time synchronised to Python and back.
 
-In JupyterLab, notebooks of VS Code, Colab and marimo. What ``sn.replay`` returns shows itself without this, but in a frame that Python does
-not reach.
+It runs in JupyterLab, notebooks of VS Code, Colab and marimo. A result of ``sn.replay`` shows itself without this module, but in a frame
+that Python cannot control.
 """
 
 from functools import cache
@@ -15,42 +15,43 @@ from .replays.document import WEB
 __all__ = ["replay_widget"]
 
 SPINS = ("off", "cue", "all")
-"""Which balls show that they turn."""
+"""The balls whose rotation is shown."""
 _HOST = Path(WEB) / "widget.js"
-"""What a notebook's host calls: it mounts a player on the element that it is given."""
+"""Called by a notebook's host: mounts a player on the element that it is given."""
 
 
 def replay_widget(
     source: Any, *, speed: float = 1.0, playing: bool = False, paths: bool = True, ghosts: bool = True, labels: bool = False,
     spin: Literal["off", "cue", "all"] = "cue",
 ) -> Any:  # fmt: skip
-    """A widget that plays a replay in a notebook.
+    """Make a widget that plays a replay in a notebook.
 
-    Its traits go both ways: ``stroke`` (from 0) and ``time`` within it [s], below 0 before the strike, and ``playing``. While it plays,
-    ``time`` stands still: it is told when the play stops and whenever a viewer moves it. Setting ``stroke`` alone goes to its beginning.
+    Its traits are synchronised in both directions: ``stroke`` (from 0), ``time`` within it [s] (below 0 before the strike), and
+    ``playing``. While it plays, ``time`` is not updated; it is when the replay stops, or when the viewer moves it. Setting ``stroke`` alone
+    goes to its beginning.
 
     Parameters
     ----------
-    source : Replay, Shot, sequence of Shot or of strokes, or environment
-        Whatever ``snooker_env.replay`` takes.
-    speed : float
-        How fast it plays, in [0.1, 8]; 1 is as fast as the shot.
-    playing : bool
-        Whether it starts at once.
-    paths, ghosts, labels : bool
-        Whether paths, balls at their impacts and letters on balls are shown at first.
-    spin : {"off", "cue", "all"}
-        Whose turning is shown at first.
+    source : Replay, Shot, sequence of Shot or Played, Position, or environment
+        Anything that ``snooker_env.replay`` takes.
+    speed : float, optional
+        Speed of the replay over that of the shot, in [0.1, 8]; default 1.
+    playing : bool, optional
+        Whether it starts at once; default False.
+    paths, ghosts, labels : bool, optional
+        Whether paths (default True), balls at their impacts (default True) and letters on balls (default False) are shown at first.
+    spin : {"off", "cue", "all"}, optional
+        The balls whose rotation is shown at first; default "cue".
 
     Returns
     -------
     anywidget.AnyWidget
-        With the traits ``stroke``, ``time``, ``playing``, and the replay as ``data``.
+        The widget, with the traits ``stroke``, ``time``, ``playing``, and the replay as ``data``.
 
     Raises
     ------
     ValueError
-        If there is nothing to show, or an argument is wrong.
+        If there is nothing to show, or an argument is invalid.
     ImportError
         Without anywidget.
 
@@ -71,7 +72,7 @@ def replay_widget(
 
 @cache
 def _widget_class():
-    """The class of widgets, made when it is first wanted: anywidget is an extra."""
+    """The class of widgets, made at the first call: anywidget is an optional dependency."""
     try:
         import anywidget
         import traitlets
@@ -99,5 +100,5 @@ def _widget_class():
 
 
 def module() -> str:
-    """The JavaScript of the widget: the module that draws and plays, and what a notebook's host calls."""
+    """The JavaScript of the widget: the module that draws and plays, and the function that a notebook's host calls."""
     return (Path(WEB) / "table.js").read_text("utf-8") + "\n" + _HOST.read_text("utf-8")

@@ -28,7 +28,7 @@ def rezipped(source, target, **parts):
     return target
 
 
-def told(change):
+def edited(change):
     """A change of a JSON part: ``change(found)`` changes the dict."""
 
     def changed(data):
@@ -56,4 +56,4 @@ def bombed(source, target, mark, weights=False, change=lambda found: None):
                 new.writestr(name, bomb if name.endswith("data.pkl") else old.read(name))
         return file.getvalue()
 
-    return rezipped(source, target, data=told(fill), **({"policy_pth": filled} if weights else {}))
+    return rezipped(source, target, data=edited(fill), **({"policy_pth": filled} if weights else {}))

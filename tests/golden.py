@@ -198,11 +198,11 @@ def matches(options):
 
 def _sets():
     """Every set by its name."""
-    for world, physics in PHYSICS.items():
+    for name, physics in PHYSICS.items():
         for fidelity in FIDELITIES:
-            yield f"ball impacts, {world}, {fidelity}", lambda p=physics, f=fidelity: ball_impacts(p, f)
-            yield f"cushion impacts, {world}, {fidelity}", lambda p=physics, f=fidelity: cushion_impacts(p, f)
-            yield f"shots, {world}, {fidelity}", lambda p=physics, f=fidelity: shots(p, f)
+            yield f"ball impacts, {name}, {fidelity}", lambda p=physics, f=fidelity: ball_impacts(p, f)
+            yield f"cushion impacts, {name}, {fidelity}", lambda p=physics, f=fidelity: cushion_impacts(p, f)
+            yield f"shots, {name}, {fidelity}", lambda p=physics, f=fidelity: shots(p, f)
     for name, options in VISITS.items():
         yield f"visits, {name}", lambda o=options: visits(o)
     for mode in ("NextStep", "SameStep", "Disabled"):

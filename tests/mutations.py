@@ -84,8 +84,8 @@ def names_it(message, root, path):
     It names that part, what it is a part of, or a part of it; or another that does not fit it, and then its text says which it is.
     """
     field = message.split(" = ")[0]
-    told, way = layout(keys_of(field)), layout((root, *path))
-    if told == way[: len(told)] or way == told[: len(way)]:
+    field_way, way = layout(keys_of(field)), layout((root, *path))
+    if field_way == way[: len(field_way)] or way == field_way[: len(way)]:
         return True
     return [key for key in path if isinstance(key, str)][-1] in message[len(field) :]
 

@@ -1,4 +1,4 @@
-"""What do tests of play share? Positions, a game asked as a request asks it, and a connection to its server."""
+"""What do tests of play share? Positions, a game called as a request calls it, and a connection to its server."""
 
 import http.client
 import json
@@ -36,7 +36,7 @@ class Asked:
 
 
 class Line:
-    """A connection to a server, with everything in order unless told otherwise."""
+    """A connection to a server, with everything in order unless said otherwise."""
 
     def __init__(self, server):
         self.server = server

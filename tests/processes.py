@@ -1,4 +1,4 @@
-"""How does a test look at a fresh process? It runs Python on a copy of the package or on this one."""
+"""How does a test use a fresh process? It runs Python on a copy of the package or on this one."""
 
 import os
 import shutil

@@ -170,7 +170,7 @@ def frame_answers(frame):
 
 
 def fouled(before):
-    """A frame just after a foul by hitting nothing, in the state that ``before`` tells: (before the stroke, after it)."""
+    """A frame just after a foul by hitting nothing, in the state of ``before``: (before the stroke, after it)."""
     ball_on = ball_on_of(before.get("ball_on_before_foul", before.get("ball_on", "red")))
     low = max(ball_on, BallOn.YELLOW)
     on_table = mask_of(range(14 + low, N_BALLS)) | (mask_of(range(1, 16)) if ball_on <= BallOn.RED else 0)
@@ -178,7 +178,7 @@ def fouled(before):
     scores = tuple(before.get("scores", {"A": 0, "B": 0})[p] for p in PLAYERS)
     miss = bool(before.get("miss"))
     start = Frame(scores=scores, striker=offender, on_table=on_table, ball_on=ball_on, in_hand=False, miss="clear_path" if miss else "off")
-    # On any colour, the nomination that costs the penalty the case tells.
+    # On any colour, the nomination that costs the case's penalty.
     nominated = 14 + max(2, before.get("penalty", 4)) if ball_on == BallOn.ANY_COLOUR else AUTO
     stroke = Stroke(nominated=nominated, snookered=bool(before.get("free_ball")))
     return start, start.play(stroke, clear_path=miss, layout=("the position",))[0]

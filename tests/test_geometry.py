@@ -187,7 +187,7 @@ def test_what_does_not_fit_together_is_refused(call, field, value, allowed):
     refused(call, field, value, allowed)
 
 
-DOCUMENT = (PACKAGE.parent / "docs" / "tables.md").read_text()
+DOCUMENT = (PACKAGE.parent / "docs" / "physics" / "tables.md").read_text()
 BLOCKS = re.findall(r"```python\n(.*?)```", DOCUMENT, re.S)
 SAYS = ("top right", "middle right", "three cushions")
 

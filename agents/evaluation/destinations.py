@@ -1,41 +1,34 @@
 """Where does the cue ball stop after a red, and what does that bring? A picture of agents side by side, on the same tables.
 
-    python -m agents.evaluate --agent learned=runs/ppo_mask-0 ghost_ball --layouts held_out --noise professional --picture
+    python -m agents.evaluate --agent ppo_foresight ghost_ball --layouts held_out --noise professional --picture
 
-Each dot is a visit: where the cue ball came to rest after its first stroke had potted a red, light if the colour after it went in, dark
-if not. Only first strokes, since these are played from the same positions by everyone. Beside the tables: what followed any pot.
+Maps: how densely the cue ball came to rest after first strokes that potted a red. Only first strokes count, since all agents play these
+from the same positions. Bars: what followed any pot, with 95 % intervals.
 """
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.backend_bases import FigureCanvasBase
-from matplotlib.patches import Circle, Polygon, Rectangle
-from matplotlib.patheffects import withStroke
 
-from commands.files import save_figure
+from commands import picture_style
 from snooker_env import Table
 from snooker_env.game import BallOn
-from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
-from snooker_env.render import BAULK_LINE, COLOURS, CUSHION, D_ARC, RAIL, SPOT_MARKS, outline
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
+from snooker_env.render import BAULK_LINE, COLOURS, CUSHION, D_ARC, SPOT_MARKS, outline
+from snooker_env.render.diagrams import bandwidth_of, density_of, level_of
 
 from .report import main_condition
 
-mpl.use("Agg")
-import matplotlib.pyplot as plt
-
 MOST = 3
 """Agents side by side."""
-CLOTH, RUBBER, WOOD, LINE = "#1d6b4c", "#154f38", "#4a2f22", "#7fb49c"
-WENT_IN, MISSED = "#ffe9a8", "#06130d"
-BARS = ("#c8963e", "#3f6f8f", "#8a8f98")
-INK, LEAST, LARGEST = 14_000.0, 2.0, 20.0
-"""All dots of the fullest table together, the smallest and the largest dot [points squared]."""
+DENSEST = 4.0
+"""The end of the colours: times the density of places spread evenly over the table."""
+BARS = (picture_style.BLUE, picture_style.ORANGE, picture_style.GREY)
 FIGURES = (
-    ("next_pot_after_a_pot", "next pot after a pot", 100, "{:.0f} %"),
-    ("easy_pot_left_by_a_pot", "an easy pot is left by a pot", 100, "{:.0f} %"),
-    ("colour_value", "value of the colour potted", 1, "{:.2f}"),
-    ("high_colour_after_a_red", "pink or black after a red", 100, "{:.0f} %"),
-    ("points_a_visit", "points a visit", 1, "{:.1f}"),
+    ("next_pot_after_a_pot", "Next pot\nafter a pot", 100, "{:.0f} %"),
+    ("easy_pot_left_by_a_pot", "A pot leaves\nan easy pot", 100, "{:.0f} %"),
+    ("high_colour_after_a_red", "Pink or black\nafter a red", 100, "{:.0f} %"),
+    ("colour_value", "Mean value of\ncolours potted", 1, "{:.2f}"),
+    ("points_a_visit", "Points\na visit", 1, "{:.1f}"),
 )
 
 
@@ -50,84 +43,99 @@ def first_reds(strokes):
     return strokes.cue[chosen], strokes.made[strokes.following[chosen]]
 
 
-def draw(report, strokes, file):
-    """Draw the first agents of the report; ``strokes``: label -> list of the ``Strokes`` of each run in the main condition."""
-    labels = [agent["label"] for agent in report["agents"]][:MOST]
+def figures_of(report, strokes):
+    """What is drawn, JSON-able, of the first agents of a report; ``strokes``: label -> list of the ``Strokes`` of each run."""
     at = main_condition(report)
     rows = {r["agent"]: r for r in report["results"] if all(r[key] == value for key, value in at.items())}
-    names = 0.2 + 0.08 * max(map(len, labels))  # inches, as wide as the longest name beside its bar
-    width = 2.75 * len(labels) + names + 2.5
-    figure = plt.figure(figsize=(width, 6.6), facecolor="white")
-    grid = figure.add_gridspec(
-        len(FIGURES), len(labels) + 2, width_ratios=[2.6] * len(labels) + [names, 2.4], left=0.015, right=0.985, top=0.79, bottom=0.03,
-        wspace=0.05, hspace=0.7,
-    )  # fmt: skip
-    dots = [first_reds(strokes[label][0]) for label in labels]  # of one run each: as many dots as there were chances
-    size = float(np.clip(INK / max(1, *(len(places) for places, _ in dots)), LEAST, LARGEST))
-    for k, (label, (places, went_in)) in enumerate(zip(labels, dots, strict=True)):
-        table(figure.add_subplot(grid[:, k]), label, places, went_in, size)
-    for k, (name, title, scale, form) in enumerate(FIGURES):
-        bars(figure.add_subplot(grid[k, -1]), labels, [rows[label]["figures"][name] for label in labels], title, scale, form)
-    visits = rows[labels[0]]["visits"]
-    figure.text(0.2 / width, 0.95, "Where the cue ball stops after a potted red", fontsize=15, weight="bold")
-    figure.text(
-        0.2 / width, 0.908, f"First strokes on the same {visits:,} held-out tables, noise {at['noise']}", fontsize=10
-    )  # fmt: skip
-    for x, colour, text in ((0.2 / width, WENT_IN, "the colour after it went in"), (2.5 / width, MISSED, "it did not")):
-        figure.text(x, 0.873, "●", color=colour, fontsize=11, va="center", path_effects=[withStroke(linewidth=1.0, foreground="#555555")])
-        figure.text(x + 0.22 / width, 0.873, text, fontsize=10, va="center")
-    edge = 1 - (names + 2.4) / width
-    figure.text(edge, 0.908, "All strokes of these visits", fontsize=10)
-    figure.text(edge, 0.873, "easy: its line may err by 4 mrad; lines: 95 % intervals", fontsize=8, va="center", color="#555555")
-    save_figure(figure, file, dpi=110)
-    plt.close(figure)
+    agents = {}
+    for agent in report["agents"][:MOST]:
+        places, scored = first_reds(strokes[agent["label"]][0])  # of one run each: the same chances
+        figures = {name: rows[agent["label"]]["figures"][name] for name, *_ in FIGURES}
+        agents[agent["label"]] = {"places": np.round(places, 3).tolist(), "next_scores": scored.tolist(), "figures": figures}
+    visits = next(iter(rows.values()))["visits"]
+    return {"version": report["version"], "visits": visits, "noise": at["noise"], "agents": agents}
 
 
-def table(axes, label, places, went_in, size):
-    """One agent's table, its black end up, with its dots."""
-    parts = outline(Table.preset("match"))
-    for margin, colour in ((RAIL, WOOD), (CUSHION, CLOTH)):
-        hx, hy = HALF_WIDTH + margin, HALF_LENGTH + margin
-        axes.add_patch(Rectangle((-hx, -hy), 2 * hx, 2 * hy, color=colour, lw=0))
-    for polygon in parts.cushions:
-        axes.add_patch(Polygon(polygon, color=RUBBER, lw=0))
-    for x, y, radius in parts.falls:
-        axes.add_patch(Circle((x, y), radius, color="#0a0a0a", lw=0))
-    for line in (BAULK_LINE, D_ARC):
-        axes.plot(*line.T, color=LINE, lw=0.8)
-    for spot, colour in zip(SPOT_MARKS, COLOURS[16:], strict=True):
-        axes.plot(*spot, "o", color=colour / 255, ms=6.5, mec="white", mew=0.6, zorder=4)
-    shuffled = np.random.default_rng(0).permutation(len(places))  # neither colour always on top
-    colours = np.where(went_in, WENT_IN, MISSED)
-    axes.scatter(
-        *places[shuffled].T,
-        s=size,
-        c=colours[shuffled],
-        lw=0,
-        alpha=0.85,
-        zorder=3,
+def draw(report, strokes, file):
+    """Draw the first agents of the report; ``strokes``: label -> list of the ``Strokes`` of each run in the main condition."""
+    draw_figures(figures_of(report, strokes), file)
+
+
+def draw_figures(found, file):
+    """Draw what ``figures_of`` has found."""
+    agents, visits = found["agents"], found["visits"]
+    note = (
+        f"First strokes that potted a red, from the same {visits:,} held-out tables, with {found['noise']} execution errors.\n"
+        "Colour: how often the cue ball stops there; line: the densest area, which holds half of all. Below: all strokes of these\n"
+        "visits (an easy pot: the aim may err by 0.23° or more), black lines: 95 % intervals."
     )
-    axes.set(xlim=(-HALF_WIDTH - RAIL, HALF_WIDTH + RAIL), ylim=(-HALF_LENGTH - RAIL, HALF_LENGTH + RAIL), aspect="equal")
+    foot = f"python -m agents.evaluate --picture, snooker_env {found['version']}"
+    with picture_style.drawing() as plt:
+        figure, _ = picture_style.page(plt, 8.6, "Where the cue ball stops after a potted red", note, foot=foot)
+        upper, lower = figure.subfigures(2, 1, height_ratios=(4.9, 1.1 + 0.22 * len(agents)))
+        axes, shown = upper.subplots(1, len(agents), squeeze=False)[0], None
+        for ax, (label, of) in zip(axes, agents.items(), strict=True):
+            shown = table(ax, label, np.array(of["places"]).reshape(-1, 2), np.array(of["next_scores"], bool))
+        ticks = range(int(DENSEST) + 1)
+        picture_style.colour_bar(upper, shown, list(axes), "times the density of an even spread", ticks, extend="max")
+        for k, (ax, (name, title, scale, form)) in enumerate(zip(lower.subplots(1, len(FIGURES)), FIGURES, strict=True)):
+            names = list(agents) if k == 0 else [""] * len(agents)
+            bars(ax, names, [of["figures"][name] for of in agents.values()], title, scale, form)
+        picture_style.save(figure, file)
+        plt.close(figure)
+
+
+def table(axes, label, places, went_in):
+    """One agent's table, its black end up, with the density of its places; what is drawn in colour."""
+    from matplotlib.patches import Circle, Polygon, Rectangle
+
+    parts, high = outline(Table.preset("match")), np.array([HALF_WIDTH, HALF_LENGTH])
+    axes.add_patch(Rectangle(tuple(-high - CUSHION), *(2 * (high + CUSHION)), fc=picture_style.GRID, ec=picture_style.GREY, lw=1.0))
+    axes.add_patch(Rectangle(tuple(-high), *(2 * high), fc="white", lw=0))
+    inner, shown = high - BALL_RADIUS, None
+    if len(places):
+        density, _ = density_of(np.clip(places, -inner, inner), -inner, inner, bandwidth_of(places))
+        times = density * 4 * inner.prod()
+    else:
+        times = np.zeros((2, 2))
+    edges = (-inner[0], inner[0], -inner[1], inner[1])
+    shown = axes.imshow(times.T, extent=edges, origin="lower", vmin=0, vmax=DENSEST, cmap=picture_style.HEAT, zorder=1, aspect="equal")
+    if len(places):
+        axes.contour(times.T, levels=[level_of(times, 0.5)], extent=edges, colors=[picture_style.INK], linewidths=1.0, zorder=2)
+    for polygon in parts.cushions:
+        axes.add_patch(Polygon(polygon, fc=picture_style.GREY, lw=0, zorder=3))
+    for x, y, radius in parts.falls:
+        axes.add_patch(Circle((x, y), radius, fc=picture_style.INK, lw=0, zorder=3.5))
+    for line in (BAULK_LINE, D_ARC):
+        axes.plot(*line.T, color=picture_style.GREY, lw=0.9, zorder=2.5)
+    for spot, colour in zip(SPOT_MARKS, COLOURS[16:], strict=True):
+        axes.plot(*spot, "o", color=colour / 255, ms=6.5, mec="white", mew=1.0, zorder=4)
+    reach = high + CUSHION + 0.02
+    axes.set(xlim=(-reach[0], reach[0]), ylim=(-reach[1], reach[1]), aspect="equal")
     axes.axis("off")
-    share = 100 * went_in.mean() if len(went_in) else float("nan")
-    axes.set_title(f"{label}\nthe colour follows in {share:.0f} %", fontsize=11)
+    axes.set_title(label, loc="center")
+    share = f"{100 * went_in.mean():.0f} %" if len(went_in) else "none"
+    axes.text(0.5, -0.01, f"the next stroke scores: {share}", transform=axes.transAxes, ha="center", va="top", size=picture_style.TEXT)
+    return shown
 
 
 def bars(axes, labels, figures, title, scale, form):
     """One figure of every agent, with its interval."""
+    largest = max([scale * (f["high"] or f["value"] or 0) for f in figures] + [1e-9])
     for k, f in enumerate(figures):
         if f["value"] is None:
             continue
-        value = scale * f["value"]
-        axes.barh(-k, value, color=BARS[k], height=0.72)
+        axes.barh(-k, scale * f["value"], color=BARS[k], height=0.72)
         if f["low"] is not None:
-            axes.plot([scale * f["low"], scale * f["high"]], [-k, -k], color="#222222", lw=1.2)
+            axes.plot([scale * f["low"], scale * f["high"]], [-k, -k], color=picture_style.INK, lw=1.4)
         high = scale * (f["high"] if f["high"] is not None else f["value"])
-        axes.text(high, -k, "  " + form.format(value), va="center", fontsize=9)
-    axes.set_title(title, fontsize=10, loc="left")
-    axes.set_xlim(0, 1.25 * max([scale * (f["high"] or f["value"] or 0) for f in figures] + [1e-9]))
+        axes.text(high + 0.05 * largest, -k, form.format(scale * f["value"]), va="center", size=picture_style.SMALL)
+    axes.set_title(title, size=picture_style.TEXT)
+    axes.set_xlim(0, 1.6 * largest)
+    axes.set_ylim(-len(figures) + 0.4, 0.6)
     axes.set_yticks([-k for k in range(len(labels))], labels)
-    axes.tick_params(labelsize=9, length=0)
+    axes.tick_params(length=0, labelcolor=picture_style.INK)
     axes.set_xticks([])
-    for side in ("top", "right", "bottom"):
-        axes.spines[side].set_visible(False)
+    axes.grid(False)
+    axes.spines["bottom"].set_visible(False)
+    axes.patch.set_visible(False)

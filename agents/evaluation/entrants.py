@@ -1,4 +1,4 @@
-"""Who is compared? Players by name and trained models, one for each training seed, with what is known of how they were made."""
+"""Who is compared? Players by name and trained models, one for each training seed, and how each was trained."""
 
 import glob
 import json
@@ -42,7 +42,7 @@ class Entrant:
             found = [path] if is_player(path) or Path(path).exists() else sorted(glob.glob(path))
             if not found:
                 known = ", ".join((*NAMES, *pretrained()))
-                allowed = f"must be {known}, MODULE:CLASS, or name models that are there: a .zip, a run folder, a pattern"
+                allowed = f"must be {known}, MODULE:CLASS, or name existing models: a .zip, a run folder, a pattern"
                 raise refuse("agent", path, allowed)
             runs += found
         if equals and not label:
@@ -55,7 +55,7 @@ class Entrant:
         return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs), trust, options)
 
     def trained(self):
-        """What is known of how each run was made: a dict a run, {} for a player that was not trained."""
+        """How each run was trained, as far as its files say: a dict a run, {} for a player that was not trained."""
         return [self._training(run) for run in self.runs]
 
     @property

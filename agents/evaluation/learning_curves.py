@@ -1,11 +1,15 @@
-"""How fast do agents learn? A picture of the visits they play in training, over the time they have trained and over their shots.
+"""How fast do agents learn? A chart of the points a visit in training, over the time they have trained and over their shots.
 
-    python -m agents.curves "ppo_mask=runs/mask-?" "pots only=runs/gamma0-?" [--out agents/pictures/curves.png]
+    python -m agents.curves "ppo_mask=runs/mask-?" "pots only=runs/gamma0-?" [--json FILE] [--out agents/pictures/curves.png]
+    python -m agents.curves --from                    the chart again, from agents/pictures/curves.json
 
 Read from the ``results.json`` of finished runs (train.py). Thin lines: one training seed each, points a visit of the last 1,000 visits on
-the tables of training, exploring. Discs, and the line of ``ghost_ball``: held-out tables, a run at its end playing what it thinks best,
+the tables of training, exploring. Discs, and the line of ``ghost_ball``: held-out tables, a run at its end, without exploration,
 with two standard errors. A run that imitated first starts its line where it begins to play; what a run with --start brought along is not
 counted. Shots are taken to be spread evenly over the time, and the machine was shared: minutes say a factor, not a percentage.
+
+The runs of version 0.1.0 were not kept. In their place agents/pictures/curves.json holds, for each agent, the range of its seeds' lines,
+read off the chart of that version, and the ends with 95 % intervals from agents/results.
 """
 
 import argparse
@@ -15,24 +19,23 @@ from pathlib import Path
 from commands.lifecycle import command, needs
 
 with needs("agents.curves"):
-    import matplotlib as mpl
     import numpy as np
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-    from commands.files import save_figure, writable
+    from commands import picture_style
+    from commands.files import writable, write_atomic
+    from snooker_env import __version__
     from snooker_env.checks import choice, refuse
 
     from .destinations import formats
     from .entrants import Entrant
 
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
 PICTURE = Path(__file__).parents[1] / "pictures" / "curves.png"
+KEPT = PICTURE.with_suffix(".json")
 LEVELS = ("trained", "ghost_ball")
-"""Of whom a run's score on held-out visits is drawn: its own at its end, the plain player's across."""
+"""Whose score on held-out visits is drawn: the run's own at its end, and that of the rule-based player."""
 LEAST = 0.1
 """Points a visit; the scale is logarithmic, lines below it are not drawn, discs are drawn there."""
+PANELS = (("minutes", "minutes of training, imitation included"), ("shots", "shots played in training"))
 
 
 def run_of(path):
@@ -53,57 +56,97 @@ def run_of(path):
         raise refuse("run", str(file), "must be what today's train.py writes") from None
 
 
-def draw(agents, file):
-    """Draw ``agents``: label -> list of ``run_of``."""
-    figure, sides = plt.subplots(1, 2, figsize=(11, 4.6), sharey=True, layout="constrained")
-    for k, (label, runs) in enumerate(agents.items()):
-        colour = f"C{k % 10}"
-        for i, run in enumerate(runs):
-            score, error = run["levels"]["trained"]
-            for axes, x, end in zip(sides, (run["minutes"], run["shots"]), run["end"][::-1], strict=True):
-                drawn = run["points"] >= LEAST
-                axes.plot(x[drawn], run["points"][drawn], color=colour, lw=1.0, alpha=0.8)
-                axes.errorbar(
-                    end, max(score, LEAST), 2 * error, fmt="o", ms=4, color=colour, elinewidth=0.9, label=label if i == 0 else None
-                )
+def figures_of(agents):
+    """What is drawn of ``agents``, JSON-able: label -> list of ``run_of``."""
+    found = {}
+    for label, runs in agents.items():
+        lines, ends = [], []
+        for run in runs:
+            seen, (score, error), (shots, minutes) = run["points"] >= LEAST, run["levels"]["trained"], run["end"]
+            lines.append({name: run[name][seen].tolist() for name in ("minutes", "shots", "points")})
+            interval = {"points": max(score, LEAST), "low": max(score - 2 * error, LEAST), "high": max(score + 2 * error, LEAST)}
+            ends.append({"shots": shots, "minutes": minutes, **interval})
+        found[label] = {"lines": lines, "ends": ends}
     level = next(iter(agents.values()))[0]["levels"]["ghost_ball"][0]
-    for axes in sides:
-        axes.axhline(level, color="#888888", lw=0.9, ls=":")
-    sides[0].annotate("ghost_ball", (0.01, level), xycoords=("axes fraction", "data"), fontsize=8, color="#555555", va="bottom")
-    for axes, name in zip(sides, ("minutes of training, imitation included", "shots played in training"), strict=True):
-        axes.set(xscale="log", yscale="log", xlabel=name)
-        for axis, subs in ((axes.xaxis, (1,)), (axes.yaxis, (1, 2, 5))):
-            axis.set_major_locator(LogLocator(subs=subs))
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
-            axis.set_minor_locator(NullLocator())
-        axes.grid(alpha=0.25, which="both", lw=0.5)
-        for side in ("top", "right"):
-            axes.spines[side].set_visible(False)
-    sides[0].set_ylabel("points a visit")
-    sides[0].legend(frameon=False, fontsize=9)
-    figure.suptitle("Lines: in training, exploring. Discs and ghost_ball: held-out visits, at the end, playing the best", fontsize=11)
-    save_figure(figure, file, dpi=110)
-    plt.close(figure)
+    return {"version": __version__, "ghost_ball": level, "agents": found}
+
+
+def draw(found, file):
+    """Draw what ``figures_of`` gives, or what is kept of it."""
+    note = (
+        "Lines and bands (range of the training seeds): visits of training, with exploration. Discs: the finished agents on held-out\n"
+        "tables, without exploration; vertical lines: 95 % intervals. ghost_ball: the rule-based player."
+    )
+    with picture_style.drawing() as plt:
+        foot = f"python -m agents.curves, snooker_env {found['version']}, professional execution errors"
+        figure, sides = picture_style.page(plt, 5.4, "How fast the agents learn: points a visit", note, foot=foot, columns=2, sharey=True)
+        for (label, of), colour in zip(found["agents"].items(), _cycle(picture_style.SERIES), strict=False):
+            for axes, (name, _) in zip(sides, PANELS, strict=True):
+                for line in of.get("lines", ()):
+                    axes.plot(line[name], line["points"], color=colour, lw=1.2, alpha=0.85)
+                if "bands" in of:
+                    band = of["bands"][name]
+                    axes.fill_between(band["x"], band["low"], band["high"], color=colour, alpha=0.55, lw=1.0)
+                for i, end in enumerate(of["ends"]):
+                    reach = [[end["points"] - end["low"]], [end["high"] - end["points"]]]
+                    axes.errorbar(end[name], end["points"], reach, fmt="o", ms=6, color=colour, mec="white", mew=0.8, elinewidth=1.4,
+                                  label=label if i == 0 else None)  # fmt: skip
+        for axes, (_, name) in zip(sides, PANELS, strict=True):
+            axes.axhline(found["ghost_ball"], color=picture_style.INK, lw=1.1, ls=":")
+            picture_style.log_axis(axes.xaxis)
+            picture_style.log_axis(axes.yaxis, subs=(1, 2, 5))
+            axes.set_xlabel(name)
+        sides[0].annotate("ghost_ball", (0.01, found["ghost_ball"]), xycoords=("axes fraction", "data"), va="bottom",
+                          size=picture_style.SMALL, color=picture_style.INK)  # fmt: skip
+        sides[0].set_ylabel("points a visit")
+        sides[1].legend(loc="lower right")
+        picture_style.save(figure, file)
+        plt.close(figure)
+
+
+def _cycle(colours):
+    while True:
+        yield from colours
 
 
 @command("agents.curves")
 def main(argv=None):
     """Check, draw. Exit code 0."""
     p = argparse.ArgumentParser("python -m agents.curves", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("agents", nargs="+", metavar="AGENT", help="a run folder, or LABEL=FOLDER,FOLDER,... or patterns")
+    p.add_argument("agents", nargs="*", metavar="AGENT", help="a run folder, or LABEL=FOLDER,FOLDER,... or patterns")
+    p.add_argument("--from", dest="kept", type=Path, nargs="?", const=KEPT, metavar="FILE",
+                   help="no runs: draw the figures that --json wrote [agents/pictures/curves.json]")  # fmt: skip
+    p.add_argument("--json", type=Path, metavar="FILE", help="write what is drawn into this file")
     p.add_argument("--out", type=Path, default=PICTURE, help="the picture [agents/pictures/curves.png]")
     args = p.parse_args(argv)
     try:
         choice("out", args.out.suffix, formats())
-        agents = {agent.label: [run_of(run) for run in agent.runs] for agent in map(Entrant.of, args.agents)}
-        if len(agents) < len(args.agents):
-            raise refuse("agents", " ".join(args.agents), "must have another label each")
-        judged = {run["levels"]["ghost_ball"] for runs in agents.values() for run in runs}
-        if len(judged) > 1:
-            raise refuse("agents", " ".join(args.agents), "must have been judged on the same tables: ghost_ball's score differs")
-        writable("out", args.out)
+        if (args.kept is None) == (not args.agents):
+            raise refuse("agents", " ".join(args.agents), "must be runs, or none with --from FILE")
+        found = figures_of(_runs(args.agents)) if args.kept is None else _kept(args.kept)
+        for name in ("json", "out"):
+            writable(name, getattr(args, name))
     except ValueError as error:
         p.error(str(error))
-    draw(agents, args.out)
+    if args.json:
+        write_atomic(args.json, (json.dumps(found, indent=1) + "\n").encode())
+    draw(found, args.out)
     print(args.out)
     return 0
+
+
+def _kept(file):
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise refuse("from", str(file), "must be a file that --json wrote") from None
+
+
+def _runs(texts):
+    """label -> list of ``run_of``. Raises ValueError."""
+    agents = {agent.label: [run_of(run) for run in agent.runs] for agent in map(Entrant.of, texts)}
+    if len(agents) < len(texts):
+        raise refuse("agents", " ".join(texts), "must have another label each")
+    if len({run["levels"]["ghost_ball"] for runs in agents.values() for run in runs}) > 1:
+        raise refuse("agents", " ".join(texts), "must have been judged on the same tables: ghost_ball's score differs")
+    return agents

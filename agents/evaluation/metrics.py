@@ -1,64 +1,18 @@
-"""What is counted in the visits that an agent played, and which figures follow? Each with its interval, and relative to another agent's."""
+"""How good is an agent under one condition? Its figures with intervals, and its scores relative to those of other agents."""
 
 import zlib
 from dataclasses import dataclass
 
 import numpy as np
 
-from snooker_env.game import POT_WINDOWS, BallOn
+from snooker_env.benchmark import FIGURES, Resamples, figure, iqm
 
 from .entrants import Entrant
-from .rollouts import CENTURY, MAXIMUM, Strokes
-from .statistics import Resamples, interval, iqm
 
-EASY = POT_WINDOWS["easy"][0]
-HIGH = 6
-"""Pink and black are colours of high value."""
-FIGURES = {
-    "points_a_visit": ("points", "visits"),
-    "pots_a_visit": ("pots", "visits"),
-    "fouls_a_visit": ("fouls", "visits"),
-    "centuries": ("centuries", "visits"),
-    "maximums": ("maximums", "visits"),
-    "clearances": ("clearances", "visits"),
-    "pot_rate": ("pots", "strokes"),
-    "next_pot_after_a_pot": ("followed", "goes_on"),
-    "easy_pot_left_by_a_pot": ("easy", "goes_on"),
-    "colour_value": ("colour_points", "colours"),
-    "high_colours": ("high", "colours"),
-    "high_colour_after_a_red": ("high_after_red", "reds"),
-}
-"""Each is a ratio of two sums over visits, see ``counts``."""
 BELOW = sorted({below for _, below in FIGURES.values()})
 """What figures are a share or a mean of: how often there was any, a run, is kept with them."""
 SCORES = ("points", "pots")
 """Of these there are inter-quartile means and ratios to other agents, too."""
-
-
-def counts(s: Strokes):
-    """What is counted in each visit: name -> (visits,)."""
-    next_points = np.append(s.points, 0.0)[s.following]  # of the stroke after; 0 after the last
-    red = s.made & (s.ball_on == BallOn.RED)
-    colour = s.made & s.colour
-    entries = {
-        "points": s.points, "pots": s.made, "strokes": np.ones(len(s.points)), "fouls": s.foul, "goes_on": s.goes_on,
-        "followed": s.goes_on & (next_points > 0), "easy": s.goes_on & (s.tolerance >= EASY), "colours": colour,
-        "colour_points": colour * s.points, "high": colour & (s.points >= HIGH), "reds": red, "high_after_red": red & (next_points >= HIGH),
-        "clearances": s.clears,
-    }  # fmt: skip
-    sums = {name: s.a_visit(values) for name, values in entries.items()}
-    breaks = {"centuries": sums["points"] >= CENTURY, "maximums": sums["points"] >= MAXIMUM}
-    return sums | {"visits": np.ones(s.visits)} | {name: made.astype(float) for name, made in breaks.items()}
-
-
-def figure(value, samples):
-    """A figure with its interval; None where there is none."""
-    low, high = interval(samples)
-    return {"value": _number(value), "low": _number(low), "high": _number(high)}
-
-
-def _number(x):
-    return float(x) if np.isfinite(x) else None
 
 
 def _quotient(above, below):

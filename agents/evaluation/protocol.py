@@ -1,4 +1,4 @@
-"""How well do agents play, and is it positional play? The project's protocol: held-out tables, every level of noise, several seeds.
+"""How well do agents play, and is it positional play? A research tool: held-out tables, all noise levels, several training seeds.
 
     python -m agents.evaluate --agent ghost_ball runs/ppo_mask-0
     python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against ghost_ball "pots only" \\
@@ -6,17 +6,17 @@
     python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/reference-*" --fidelity fast reference --noise professional
     python -m agents.evaluate --agent search --visits 50 --layouts held_out --noise professional
 
-Every agent plays the same tables with the same errors of execution (as far as it plays as many strokes): 2,000 opened tables that no
-training sees, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every agent plays under every value given to
---noise, --fidelity and --physics: agents that were trained under A and B, played under A and B, make the table of A against B. (The aim
-of a discrete choice is solved with the physics that is played.)
+Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that are never used in
+training, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every agent plays under every value of --noise,
+--fidelity and --physics, so agents that were trained under A and B make a table of A against B. (The aim of a discrete choice is solved
+with the physics that is played.) Results for the leaderboard are made by ``python -m snooker_env.benchmark`` instead.
 
-Agents are named as ``NAME`` (a player of agents/players, a model of agents/pretrained), as a model's .zip or run folder, as
-LABEL=PATH,PATH,... for one that was trained with several seeds (a PATH may be a pattern), or as MODULE:CLASS for a player of your own,
-whose module is imported and so run. Models of train.py and agents/pretrained are read as plain data. Any other model of
-Stable-Baselines3 or sb3-contrib, trained on a visit by what the environment shows, holds pickled Python code, which runs when it is
-loaded: it needs --trust and, where its actions were not read as usual, --options, as aim=target.
-Intervals are 95 % bootstrap intervals over training seeds and visits (agents/evaluation/statistics.py); the ratios are paired: same
+An agent is a ``NAME`` (a player of agents/players, a model of agents/pretrained), a model's .zip or run folder, LABEL=PATH,PATH,... with
+one PATH for each training seed (a PATH may be a pattern), or MODULE:CLASS for a player of your own, whose module is imported. Models of
+train.py and agents/pretrained are read as plain data. Any other model of Stable-Baselines3 or sb3-contrib that was trained on a visit
+with the environment's own observation holds pickled Python code, which runs when it is loaded: it needs --trust and, if its actions are
+not the default ones, --options, for example aim=target.
+Intervals are 95 % bootstrap intervals over training seeds and visits (snooker_env/benchmark/statistics.py); the ratios are paired: same
 tables above and below.
 """
 
@@ -39,6 +39,7 @@ with needs("agents.evaluate"):
     from commands.physics_option import physics_option
     from commands.provenance import commit, processor
     from snooker_env import __version__
+    from snooker_env.benchmark import HELD_OUT_SEED, RESAMPLES, counts, play_visits, tables_of
     from snooker_env.checks import choice, integer, parse_fidelity, refuse
     from snooker_env.game import plan_of
     from snooker_env.tasks import Noise
@@ -46,10 +47,8 @@ with needs("agents.evaluate"):
     from ..learning.models import pretrained
     from ..players.by_name import NAMES
     from .entrants import Entrant, options_of
-    from .metrics import EntrantMetrics, counts
+    from .metrics import EntrantMetrics
     from .report import AXES, main_condition, markdown, show
-    from .rollouts import HELD_OUT_SEED, play, tables_of
-    from .statistics import RESAMPLES
 
 PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
 """Visits on each layout."""
@@ -62,7 +61,7 @@ def play_agent(agent, condition, seeds, budget, resamples):
     """``EntrantMetrics`` by every run of the agent on the tables with these seeds."""
     options = {"layout": condition["layout"], "noise": condition["noise"], "fidelity": condition["fidelity"]}
     physics = physics_option(condition["physics"])
-    runs = [play(agent.player(k, budget), len(seeds), first_seed=seeds, physics=physics, **options) for k in range(len(agent.runs))]
+    runs = [play_visits(agent.player(k, budget), len(seeds), first_seed=seeds, physics=physics, **options) for k in range(len(agent.runs))]
     each = [counts(strokes) for strokes in runs]
     return EntrantMetrics(agent, {name: np.stack([one[name] for one in each]) for name in each[0]}, runs, resamples)
 
@@ -194,7 +193,7 @@ def main(argv=None):
         p.error(str(error))
     snooker_env.warmup()
     for agent in agents:  # compiled before the clock runs
-        play(agent.player(0, args.budget), 2)
+        play_visits(agent.player(0, args.budget), 2)
     report = {
         "command": "python -m agents.evaluate " + shlex.join(argv), **provenance(),
         "protocol": {

@@ -28,7 +28,7 @@ AS_IT_STANDS = {"layout": [""], "noise": [""], "fidelity": ["", "standard"], "ph
 def results_of(run):
     """Every figure of a finished run and its ``Trained`` agent, once both are sound. Raises ValueError."""
     try:
-        found = json.loads((run / "results.json").read_text())
+        found = json.loads((run / "results.json").read_text(encoding="utf-8"))
         card_of(found, "")
         name_of(found, "any")
     except (OSError, ValueError, KeyError, TypeError, IndexError):

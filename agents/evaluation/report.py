@@ -16,14 +16,10 @@ from pathlib import Path
 from commands.lifecycle import command, needs
 
 with needs("agents.report"):
-    import numpy as np
-
     from commands.files import write_atomic
+    from snooker_env.benchmark import CENTURY, MAXIMUM, most_points, unseen
     from snooker_env.checks import refuse
-    from snooker_env.game import VALUES, layout
 
-    from .rollouts import CENTURY, MAXIMUM
-    from .statistics import unseen
     from .text_tables import TextTable, say
 
 SEEDS = 5
@@ -45,7 +41,7 @@ def _pm(figure, form="{:.2f}", scale=1.0):
 
 
 def _trials(row, below):
-    """How often a run could have done it: the entry ``below`` of what agents/evaluation/metrics.py counts. None if that was not kept."""
+    """How often a run could have done it: the entry ``below`` of what snooker_env/benchmark/counts.py counts. None if that was not kept."""
     f, visits = row["figures"], row["visits"]
     known = {"visits": visits, "strokes": row["strokes"] / row["runs"]}
     if f["pots_a_visit"]["value"] is not None and f["clearances"]["value"] is not None:
@@ -69,13 +65,6 @@ def _share(row, name, form="{:.1f}", scale=100.0):
             most = unseen(n)
             figure = figure | ({"low": 0.0, "high": most} if figure["value"] == 0.0 else {"low": 1.0 - most, "high": 1.0})
     return _pm(figure, form, scale)
-
-
-def most_points(name):
-    """The most points that a visit on the layout of this name can bring."""
-    _, on_table = layout(name, np.random.default_rng(0))
-    reds, colours = int(on_table[1:16].sum()), int(VALUES[16:] @ on_table[16:])
-    return colours + reds * (8 if colours else 1)
 
 
 def _between(values, form="{:,.0f}"):
@@ -164,7 +153,7 @@ def fairness(report):
             unknown = [label for label, values in given.items() if None in values]
             values = [value for some in given.values() for value in some]
             if unknown:
-                said.append(f"Whether the trained agents had equal {name} cannot be said: not known of {', '.join(unknown)}.")
+                said.append(f"Whether the trained agents had equal {name} is not known: no record for {', '.join(unknown)}.")
             elif max(values) <= (1 + share) * min(values):
                 said.append(f"The trained agents had equal {name} ({_between(values)}).")
             else:
@@ -269,12 +258,12 @@ def _columns(against, most):
 
 LEGEND = (
     "[low, high]: 95 % bootstrap interval over training seeds and visits. Where a thing was never seen, or always, it is the exact "
-    "one-sided 95 % bound instead (0 of 30 visits: at most 9.5 %): of tables and luck, each trial as likely as the other; runs of several "
-    "seeds on the same tables count once, and other seeds may differ. IQM: inter-quartile mean, that of the middle half of all visits. "
-    "times X: points over those of X on the same tables, paired. next pot: pots that left a ball and were followed by another. easy left: "
-    'of these, those that left a pot whose line may err by 4 mrad, as on "pots:easy". high: pink or black, of all colours potted, and '
-    "after all reds potted. ms: a decision's time, all tables played at once. What cannot be on a layout, and rows and columns without a "
-    "figure, are left out."
+    "one-sided 95 % bound instead (0 of 30 visits: at most 9.5 %): over tables and execution errors, for equally likely trials; "
+    "runs of several seeds on the same tables count once, and other seeds may differ. IQM: inter-quartile mean, that of the middle "
+    "half of all visits. times X: points over those of X on the same tables, paired. next pot: pots that left a ball and were "
+    'followed by another. easy left: of these, those that left a pot whose line may err by 4 mrad, as on "pots:easy". high: pink or '
+    "black, of all colours potted, and after all reds potted. ms: a decision's time, all tables played at once. What cannot occur "
+    "on a layout, and rows and columns without a figure, are left out."
 )
 
 

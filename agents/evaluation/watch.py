@@ -1,4 +1,4 @@
-"""What does an agent's play look like? One visit, told stroke by stroke and written as a replay, or as a film.
+"""How does an agent play a visit? Printed stroke by stroke, and written as a replay or a film.
 
     python -m agents.watch --agent ppo_foresight --out break.html
     python -m agents.watch --agent search --at-least 50 --out break.mp4
@@ -21,17 +21,17 @@ with needs("agents.watch"):
 
     import snooker_env as sn
     from commands.files import writable
+    from snooker_env.benchmark import HELD_OUT_SEED
     from snooker_env.checks import choice, integer, number, refuse
 
     from .entrants import Entrant
-    from .rollouts import HELD_OUT_SEED
 
 FILMS = (".mp4", ".gif")
 SUFFIXES = (".html", ".json", *FILMS)
 
 
 def visit(player, seed, **options):
-    """A ``SnookerEnv`` after one whole visit of the player, with its history; the same visit as ``rollouts.play`` gives for that seed."""
+    """A ``SnookerEnv`` after one whole visit of the player, with its history; the same visit as ``play_visits`` gives for that seed."""
     options = {**player.options, **options}
     env = sn.SnookerEnv(**options)
     tables = sn.SnookerVectorEnv(1, threads=1, **options)
@@ -47,7 +47,7 @@ def visit(player, seed, **options):
     return env
 
 
-def told(replay):
+def described(replay):
     """A line for each stroke."""
     for k, stroke in enumerate(replay.to_dict()["strokes"], 1):
         cue = stroke["cue"]
@@ -104,7 +104,7 @@ def found(args):
 
 @command("agents.watch")
 def main(argv=None):
-    """Play, tell, write."""
+    """Play, print, write."""
     p = parser()
     args = p.parse_args(argv)
     try:
@@ -116,7 +116,7 @@ def main(argv=None):
     except ValueError as error:
         p.error(str(error))
     replay = sn.replay(env, title=f"{label}: {env.points} points, {args.noise}'s errors, table {seed}", players=[label])
-    for line in told(replay):
+    for line in described(replay):
         print(line)
     print(f"{label}: {env.points} points in {len(replay)} strokes (table {seed}, layout {args.layout}, noise {args.noise})")
     if args.out:
@@ -125,6 +125,7 @@ def main(argv=None):
     else:
         file = Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
         replay.save(file)
-        print(f"opened: {file}")
-        webbrowser.open(file.as_uri())
+        print(f"written: {file}", flush=True)
+        if not webbrowser.open(file.as_uri()):
+            print("No browser was found: open this file in one, or choose its place with --out break.html")
     return 0

@@ -1,1 +1,1 @@
-"""What an agent sees: the pots on the table, the positions that strokes lead to, and the errors that these are tried under."""
+"""What do agents observe? The pots on the table, simulated afterstates, and the noise samples of the simulation."""

@@ -1,7 +1,7 @@
-"""Which pots are there besides the direct ones, and where must the cue ball be sent for them? Geometry alone.
+"""Which indirect pots does a position offer, and where must the cue ball be sent for them? From geometry alone.
 
-* bank: the object ball goes off one cushion into a pocket. It is sent at the pocket's mirror image in the line along which a ball's
-  centre meets that cushion: the nose less R.
+* bank: the object ball goes off one cushion into a pocket. It is aimed at the pocket's mirror image in the line where a ball's centre
+  meets that cushion: the nose less R.
 * plant: the object ball A drives another ball B into a pocket. Both must be on and may go down together: reds with a red on.
 * cannon: the object ball A goes off another ball into a pocket. Rolling, it keeps after the impact 5/7 of the velocity that it then has
   and 2/7 of the one before.
@@ -10,7 +10,8 @@ Every shot is a chain of straight legs, and no other ball may be nearer than 2 R
 one of the object ball's direction, magnified by path / (2 R cos cut) as in ``game.pots``, and again at the next impact. The half window
 of the pocket, divided by all of it, is the shot's geometric tolerance.
 
-The geometry knows neither throw nor how a cushion bends a path, which is worth several degrees: ``aimer`` finds the aims.
+The geometry leaves out throw and the true rebound off a cushion, which change directions by several degrees: ``aim_search`` solves the
+aims in the simulator.
 """
 
 from math import asin, atan2, cos, hypot, sin, sqrt
@@ -142,7 +143,7 @@ def _plants(positions, present, ball, other, shots, count):
             continue
         half = width / (2.0 * run)
         aside = abs(atan2(ux * dy - uy * dx, ux * dx + uy * dy))
-        if apart < _CLOSE and aside < half:  # struck full it goes in: two balls that touch know no other line
+        if apart < _CLOSE and aside < half:  # struck full it goes in: two balls this close have one line only
             half -= aside
             dx, dy = ux, uy
         mx, my = bx - reach * dx, by - reach * dy  # where A meets B

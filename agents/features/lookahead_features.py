@@ -1,11 +1,10 @@
-"""Where would the cue ball go? Some strokes at the two widest pots, simulated a few times: what an agent sees that looks one shot ahead.
+"""What does an agent with a one-shot lookahead observe? The simulated outcomes of 12 strokes at each of the two widest pots.
 
-Behind ``pot_features.with_pots`` come ``STROKES_SEEN`` rows, one for each stroke at each of these pots, with what it would lead to: means
-over the errors of ``NOISE_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play these
-strokes and no others. That costs 120 simulated shots a decision: the agent is slower than one that only sees the table, far quicker than
-``search``.
+The observation is ``pot_features.with_pots`` followed by ``STROKES_SEEN`` rows, one for each stroke at each of these pots: means of its
+outcomes over the errors of ``NOISE_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play
+only these strokes. A decision costs 120 simulated shots: slower than an agent that observes the table alone, far quicker than ``search``.
 
-Two pots and a few strokes, with several noise samples of each: one outcome does not show what errors do to the next pot.
+Several noise samples a stroke are needed: one outcome does not show how execution errors affect the next pot.
 """
 
 import numpy as np
@@ -38,7 +37,7 @@ _TOPS = np.array(TOPS)[PICKS % len(TOPS)] / TOPS[-1]
 
 
 class ForesightView:
-    """Looks ahead on the tables of a ``SnookerVectorEnv``."""
+    """The observation with a one-shot lookahead on the tables of a ``SnookerVectorEnv``."""
 
     space = SPACE
 
@@ -46,7 +45,7 @@ class ForesightView:
         self._threads, self._tables = threads, None
 
     def __call__(self, tables, observations, rows=None):
-        """What is seen of the tables ``rows`` (all if None), whose observations are given: float32 (n, SHOWN + STROKES_SEEN * ENTRIES)."""
+        """The view of the tables ``rows`` (all if None), from their flat observations: float32 (n, SHOWN + STROKES_SEEN * ENTRIES)."""
         rows = np.arange(tables.num_envs) if rows is None else np.flatnonzero(rows)
         ahead = self.ahead(tables, Positions.of(tables)[rows], tables.action_masks()[rows][:, PICKS])
         return np.concatenate([with_pots(observations), ahead.reshape(len(rows), -1)], 1)
@@ -77,10 +76,10 @@ class ForesightView:
         return seen
 
     def masks(self, tables):
-        """Which choices may be played: those looked at, of those that there are."""
+        """Which choices may be played: the simulated ones, where the pot exists."""
         return tables.action_masks() & _CHOSEN
 
 
 def worth_by_rule(ahead):
-    """Points that the strokes of rows (n, STROKES_SEEN, ENTRIES) promise, value left included; -inf where there is none."""
+    """Expected points of the strokes of rows (n, STROKES_SEEN, ENTRIES), with the value of the afterstate; -inf where there is no pot."""
     return np.where(ahead[..., THERE] > 0, 7.0 * ahead[..., POINTS] + RULE_OF_THUMB[0] * ahead[..., VALUE], -np.inf)

@@ -1,10 +1,10 @@
-"""Which noise samples does a look ahead try? Five that stand for all; ``python -m agents.noise_samples`` finds them again.
+"""Which noise samples does the lookahead use? Five representative ones; ``python -m agents.noise_samples`` finds them again.
 
-Where a shot under execution noise leads is a mean over five numbers (errors of speed, side, top, aim, elevation). A mean over a few draws
-is poor when they happen to lie on one side. ``NOISE_SAMPLES`` are keys of streams (``game.philox``) whose errors have been chosen: of each
-kind they are nearly the five values that are equally likely (-1.28, -0.52, 0, 0.52, 1.28 standard deviations), and one kind says little of
-another. They are the same for all positions and strokes, so strokes differ by their merits. Errors of variance 1 would lie further out
-and, five being few, see more misses than there are.
+The outcome of a shot under execution noise is an expectation over five errors (speed, side, top, aim, elevation). A mean over a few random
+draws is poor when they happen to lie on one side. ``NOISE_SAMPLES`` are keys of random streams (``game.philox``), selected so that the five
+errors of each kind are close to five equally likely values (-1.28, -0.52, 0, 0.52, 1.28 standard deviations) and that different kinds are
+nearly uncorrelated. All positions and strokes use the same samples (common random numbers), so strokes are compared under equal luck. Five
+errors scaled to variance 1 would lie further out and overstate the number of misses.
 """
 
 import argparse
@@ -21,7 +21,7 @@ with needs("agents.noise_samples"):
 NOISE_SAMPLES = (354, 1840, 979, 2326, 3875)
 """Keys of the streams."""
 WEIGHTS = np.array([1.0, 0.5, 0.5, 1.0, 0.1])
-"""How much it matters that the errors of speed, side, top, aim and elevation are spread well."""
+"""Importance of an even spread of the errors of speed, side, top, aim and elevation."""
 
 
 @entry
@@ -33,7 +33,7 @@ def _errors(keys, noise, out):
 
 
 def errors_of(keys):
-    """What the streams with these ``keys`` draw for a first shot: (n, 5) standard normal errors of speed, side, top, aim, elevation."""
+    """The standard normal errors that the streams with these ``keys`` draw for a first shot: (n, 5), speed, side, top, aim, elevation."""
     small = Noise(aim_deg=1e-3, speed_abs=1e-3, offset_mm=1e-3, elevation_deg=1e-3).pack(1.0)
     out = np.empty((len(keys), 5))
     _errors(np.asarray(keys, np.uint64), small, out)
@@ -41,8 +41,8 @@ def errors_of(keys):
 
 
 def unevenness(errors):
-    """How unevenly sets of errors (..., k, 5) are spread: weighted squares of their distances from k equally likely errors, and of how much
-    one error of a set says of another."""
+    """How unevenly sets of errors (..., k, 5) are spread: weighted squares of the distances from k equally likely values, plus weighted
+    squares of the correlations between kinds."""
     k = errors.shape[-2]
     apart = np.sort(errors, axis=-2) - np.array([NormalDist().inv_cdf((i + 0.5) / k) for i in range(k)])[:, None]
     products = np.einsum("...ki,...kj->...ij", errors, errors) / k * (1.0 - np.eye(5))
@@ -50,10 +50,8 @@ def unevenness(errors):
 
 
 def find(k, keys=5_000, starts=20, seed=0):
-    """k of the first ``keys`` keys, as even as exchanging one at a time makes them, the best of so many starts; and their unevenness.
-
-    The median unevenness of sets drawn at random comes third.
-    """
+    """(k of the first ``keys`` keys, their unevenness, the median unevenness of random sets): a search that exchanges one key at a time,
+    the best of ``starts`` random starts."""
     errors, rng = errors_of(np.arange(1, keys + 1)), np.random.default_rng(seed)
     best, least = np.zeros(k, np.int64), np.inf
     for _ in range(starts):
@@ -72,7 +70,7 @@ def find(k, keys=5_000, starts=20, seed=0):
 
 @command("agents.noise_samples")
 def main(argv=None):
-    """Find them and print them: seconds. Exit code 0."""
+    """Find the samples and print them; takes seconds. Exit code 0."""
     argparse.ArgumentParser(
         "python -m agents.noise_samples", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     ).parse_args(argv)

@@ -1,4 +1,4 @@
-"""What does a learning agent see? The flat observation and, behind it, the pots that the table offers."""
+"""What does a learning agent observe? The flat observation, followed by features of the direct pots."""
 
 from math import hypot, log10
 
@@ -15,7 +15,7 @@ POT_ENTRIES = 13
 """Numbers shown of each of the ``tasks.POTS`` widest pots, see ``with_pots``."""
 SHOWN = OBSERVATION_SIZE + POTS * POT_ENTRIES
 
-# Entries that change sign when the table is seen in a mirror, left and right exchanged.
+# Entries that change sign when the table is mirrored, left and right exchanged.
 BALL_X = 0
 POT_X, CUT = (1, 9, 11), 3
 TOLERANCE = 7
@@ -60,8 +60,8 @@ def with_pots(observations):
     """Flat observations (n, OBSERVATION_SIZE) with the four widest direct pots appended, ``POT_ENTRIES`` numbers each, 0 where none is.
 
     1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance, the ball's value and place (x, y),
-    the pocket's place. A small network cannot find these lines itself in a few minutes: without them the same run makes a third of the
-    pots.
+    the pocket's place. A small network does not find these lines by itself in a few minutes: without them the same run makes a third of
+    the pots.
     """
     shown = np.empty((len(observations), SHOWN), np.float32)
     _add_pots(np.ascontiguousarray(observations), shown)
@@ -69,16 +69,16 @@ def with_pots(observations):
 
 
 VIEW_SPACE = spaces.Box(-1.0, 1.0, (SHOWN,), np.float32)
-"""What the agent sees."""
+"""The observation space of the agent."""
 
 
 class PotsView:
-    """The view of an agent that sees the table and its pots: ``with_pots``."""
+    """The view with the table and its pots: ``with_pots``."""
 
     space = VIEW_SPACE
 
     def __call__(self, tables, observations, rows=None):
-        """What is seen of the tables ``rows``, whose observations are given."""
+        """The view of the tables ``rows``, from their flat observations."""
         return with_pots(observations)
 
     def masks(self, tables):
@@ -87,14 +87,14 @@ class PotsView:
 
 
 class PlainView:
-    """The view of a model that was not made here: the observation of that ``kind`` as the environment shows it."""
+    """The view of a model from elsewhere: the environment's own observation of that ``kind``."""
 
     def __init__(self, kind):
         self._kind = kind
         self.space = observation_space(kind)
 
     def __call__(self, tables, observations, rows=None):
-        """What is seen of the tables ``rows``, whose flat observations are given."""
+        """The view of the tables ``rows``, from their flat observations."""
         return shaped_observations(self._kind, observations)
 
     def masks(self, tables):

@@ -1,4 +1,4 @@
-"""How are tables shown to an agent? By a view: its pots, or what strokes at them lead to as well; for training, as an SB3 ``VecEnv``."""
+"""How are tables shown to an agent? By a view: the pots, or the pots and simulated outcomes; for training, as an SB3 ``VecEnv``."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ def view_of(name, threads=None):
 
 
 def training_tables(n, threads=None, view="pots", **options):
-    """n tables of ``SnookerVecEnv``, seen through a view: an SB3 ``VecEnv``."""
+    """n tables of ``SnookerVecEnv`` with the observations of a view: an SB3 ``VecEnv``."""
     from stable_baselines3.common.vec_env import VecEnvWrapper
 
     from snooker_env.sb3 import SnookerVecEnv
@@ -24,7 +24,7 @@ def training_tables(n, threads=None, view="pots", **options):
     shown, base = view_of(view, threads), SnookerVecEnv(n, threads=threads, **options)
 
     class Viewed(VecEnvWrapper):
-        """All tables in one go. What is seen of a visit that ended holds the pots only: nothing is learned from what comes after it."""
+        """All tables at once. A terminal observation holds the pots only: nothing is learned from the state after it."""
 
         def reset(self):
             return shown(base.tables, self.venv.reset())
@@ -41,7 +41,7 @@ def training_tables(n, threads=None, view="pots", **options):
 
         @property
         def running(self):
-            """Rewards and strokes so far of the visits going on, for ``episode`` in their last info: no state of a table holds them."""
+            """Returns and lengths so far of the running visits, for ``episode`` in their last info; not in the state of a table."""
             return base.episode_returns.copy(), base.episode_lengths.copy()
 
         @running.setter

@@ -1,1 +1,1 @@
-"""How agents learn: hyper-parameters, networks, imitation of the search, runs that can be interrupted, and the files of trained models."""
+"""How do agents learn? Hyperparameters, networks, imitation of the search, runs that can be resumed, and the files of trained models."""

@@ -1,4 +1,4 @@
-"""What is kept of a run while it goes on? Checkpoints, the learning curve and an orderly stop, by a callback of SB3."""
+"""How is a running training saved and stopped? Checkpoints, the learning curve and an orderly stop, by a callback of SB3."""
 
 import signal
 import time
@@ -15,13 +15,12 @@ POINTS_OF_THE_CURVE = 20
 
 
 class Stop:
-    """While it is open SIGINT and SIGTERM are only noted, and the run is saved as soon as what it plays has been learned from. A second
-    signal, either of the two, acts at once."""
+    """A context that records SIGINT and SIGTERM: the run is saved and ends after the current update. A second signal acts at once."""
 
     def __init__(self):
         self.signal = None
         self.running = "this round of positions"
-        """What is finished before the run is saved, in words."""
+        """The work that is finished before the run is saved, in words."""
 
     def __enter__(self):
         self._before = {number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)}
@@ -36,22 +35,22 @@ class Stop:
         signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         name = signal.Signals(number).name
-        rich.get_console().print(f"\n{name}: saving after {self.running} ... (once more stops at once, without a save)")
+        rich.get_console().print(f"\n{name}: saving after {self.running} ... (a second signal stops at once, without saving)")
 
 
 def rollout_of(model):
-    """Shots of all tables between two updates: training runs in whole rollouts."""
+    """Shots between two updates, of all tables: training runs in whole rollouts."""
     off_policy = hasattr(model, "train_freq")  # their n_steps is that of n-step returns
     return model.n_envs * (model.train_freq.frequency if off_policy else model.n_steps)
 
 
 def goal_of(model, steps):
-    """Shots played when training to ``steps`` ends."""
+    """The number of shots at the end of a training to ``steps``."""
     return model.num_timesteps + rollout_of(model) * -(-max(0, steps - model.num_timesteps) // rollout_of(model))
 
 
 class RunCallback(BaseCallback):
-    """Keeps the run: progress bar, learning curve, checkpoints, and an orderly stop."""
+    """Progress bar, learning curve, checkpoints and an orderly stop."""
 
     def __init__(self, out, settings, seconds, curve, imitation, running, stop, progress):
         super().__init__()
@@ -65,12 +64,12 @@ class RunCallback(BaseCallback):
 
     @property
     def seconds(self):
-        """Training time, with that before a resume."""
+        """Training time [s], with the time before a resume."""
         return self.seconds_before + time.perf_counter() - self.started
 
     def _on_training_start(self):
         self.started = time.perf_counter()
-        if self.running is not None:  # the reset with which learn() began took them for new visits
+        if self.running is not None:  # learn() begins with a reset, which set them to 0
             tables: Any = self.training_env
             tables.running = self.running
         self.bar.start()
@@ -78,10 +77,10 @@ class RunCallback(BaseCallback):
         self.task = self.bar.add_task(self.settings.agent, total=total, completed=self.num_timesteps)
 
     def _on_rollout_start(self):
-        # here, and only here, everything played so far has been learned from: a checkpoint loses nothing
+        # only here is there no rollout that has not been learned from: a checkpoint loses nothing
         recent = [visit["r"] for visit in self.model.ep_info_buffer or ()]
         due = self.num_timesteps >= len(self.curve) * self.settings.steps // POINTS_OF_THE_CURVE
-        if recent and due and self.num_timesteps > (self.curve[-1]["steps"] if self.curve else -1):  # a resume comes here a second time
+        if recent and due and self.num_timesteps > (self.curve[-1]["steps"] if self.curve else -1):  # a resume calls this a second time
             self.curve.append({"steps": self.num_timesteps, "points": round(float(np.mean(recent)), 3)})
         if recent:
             self.bar.update(self.task, description=f"{self.settings.agent} {np.mean(recent):.2f} points a visit")
@@ -91,7 +90,7 @@ class RunCallback(BaseCallback):
 
     def _on_step(self):
         self.bar.update(self.task, completed=self.num_timesteps)
-        return not self.stopping  # SB3 can stop only here; the one shot played since the save is played again after a resume
+        return not self.stopping  # SB3 can stop only here; the one shot since the save is repeated after a resume
 
     def _on_training_end(self):
         self.seconds_before, self.started = self.seconds, time.perf_counter()
@@ -105,17 +104,17 @@ class RunCallback(BaseCallback):
 
 
 LEAST, SHARE = 30.0, 0.01
-"""Seconds of imitation that a kill may lose, and the share of its time that saves may take: slow saves come less often.
+"""Seconds of imitation that a kill may lose, and the largest share of its time for saving: slow saves come less often.
 
-Of every imitated position 3.3 kB are kept (of agents that look ahead): the default's 10,000 make a checkpoint of 35 MB, written in half a
-second; ``imitation.KEPT`` positions, the most, 170 MB.
+A checkpoint holds 3.3 kB for each imitated position (of agents with a lookahead): 35 MB for the default's 10,000, written in half a second,
+and 170 MB for ``imitation.KEPT`` positions, the most.
 """
 
 
 def imitate(imitation, out, settings, model, stop, progress):
-    """Let the agent imitate the search to the end, with checkpoints in between; whether it came to the end."""
+    """Pre-train by imitation, with checkpoints in between. Returns whether it was completed."""
     bar = rich.progress.Progress(disable=not progress)
-    task = bar.add_task(f"{settings.agent} learns from the search", total=imitation.states, completed=imitation.done)
+    task = bar.add_task(f"{settings.agent}: imitating the search", total=imitation.states, completed=imitation.done)
     last, cost = time.perf_counter(), 0.0
     with bar:
         while imitation.done < imitation.states:

@@ -1,8 +1,8 @@
-"""How is an agent made? By its hyper-parameters (``hyperparams/NAME.yml``, as RL Baselines3 Zoo writes them), with Stable-Baselines3.
+"""How is an agent defined? By its hyperparameters (``hyperparams/NAME.yml``, in the format of RL Baselines3 Zoo), with Stable-Baselines3.
 
-To the Zoo's keys come ``algo`` (a file's name says which agent it is, not which algorithm), ``view`` (what it sees: pots or foresight),
-``imitation`` (positions in which it imitates the search first) and ``first_aim_std`` (exploration of the aim at the start).
-``learning_rate: lin_X`` falls linearly from X to nearly 0.
+Additional keys: ``algo`` (the algorithm; the file is named after the agent), ``view`` (the observation: pots or foresight), ``imitation``
+(positions of pre-training by imitation) and ``first_aim_std`` (exploration of the aim at the start). ``learning_rate: lin_X`` falls
+linearly from X to nearly 0.
 """
 
 import ast
@@ -19,11 +19,11 @@ ENV_ID = "Snooker-v0"
 ACTION_OPTIONS = {"action": "box", "aim": "absolute", "elevation": False, "placement": False}
 """Options of the environment that say how actions are read, with its defaults: they belong to the agent."""
 SHOT_OPTIONS = ("noise", "physics", "table", "fidelity")
-"""Those that say how a shot goes: the same in training and at the end."""
+"""Options that decide the outcome of a shot: the same in training and evaluation."""
 TRAINING_OPTIONS = ("layout", "reward")
-"""Those of training alone."""
+"""Options of training alone."""
 BY_OPTION = ("n_timesteps", "n_envs", "imitation")
-"""Keys with an option of train.py of their own: --steps, --envs, --imitate."""
+"""Keys that have their own option of train.py: --steps, --envs, --imitate."""
 
 
 def rate(field, value, low, high):
@@ -43,17 +43,17 @@ KINDS = {
     "gamma": (number, 0, 1), "gae_lambda": (number, 0, 1), "ent_coef": (number, 0, 1), "vf_coef": (number, 0, 10),
     "learning_rate": (rate, 0, 1), "first_aim_std": (number, 1e-6, 10),
 }  # fmt: skip
-"""What the hyper-parameters may be: kind, least, most. Advantages are normalised, so a batch has two shots at least."""
+"""Kind, least and largest value of each hyperparameter. Advantages are normalised, so a batch has at least two shots."""
 
 
 def names():
-    """The agents that there are recipes for."""
+    """The agents with a recipe."""
     return sorted(file.stem for file in FOLDER.glob("*.yml"))
 
 
 @dataclass
 class Recipe:
-    """What makes an agent: ``settings`` are its hyper-parameters, the algorithm's own and those named here."""
+    """The definition of an agent: the keys named here, and in ``settings`` the algorithm's own hyperparameters."""
 
     name: str
     algo: str
@@ -70,9 +70,9 @@ class Recipe:
     def of(cls, name, changes=(), env_kwargs=None, **given):
         """The recipe of that name with some "key=value" changed, then options of the environment and other keys. Raises ValueError.
 
-        Algorithm, policy, its network, view and action fit each other: to change them is to write another recipe.
+        Algorithm, policy, network, view and action belong together: a change of them needs a recipe of its own.
         """
-        found = yaml.safe_load((FOLDER / f"{choice('agent', name, names())}.yml").read_text())[ENV_ID]
+        found = yaml.safe_load((FOLDER / f"{choice('agent', name, names())}.yml").read_text(encoding="utf-8"))[ENV_ID]
         found = {"view": "pots", "imitation": 0, "first_aim_std": None} | found
         changed = _changes(changes, [key for key, value in found.items() if key == "env_kwargs" or (key in KINDS and value is not None)])
         usual = found["env_kwargs"]
@@ -92,18 +92,18 @@ class Recipe:
         rate = settings["learning_rate"]
         if isinstance(rate, str) and rate.startswith("lin_"):
             settings["learning_rate"] = LinearSchedule(float(rate[4:]), 1e-5, 1.0)
-        if "n_steps" in settings:  # few tables make small rollouts
+        if "n_steps" in settings:  # few tables give small rollouts
             settings["batch_size"] = min(settings["batch_size"], settings["n_steps"] * tables.num_envs)
         model = algorithm_class(self.algo)(policy(self.policy), tables, seed=seed, device="cpu", stats_window_size=1000, **settings)
         if self.first_aim_std is not None:
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
-        # SB3 saves and restores what it does not know, too
+        # SB3 saves and restores additional attributes, too
         model.recipe, model.env_options, model.view = self.name, dict(self.env_kwargs), self.view
-        model.start, model.imitated = None, 0  # where its weights came from: see ``models.load_weights``; positions it imitated in
+        model.start, model.imitated = None, 0  # origin of its weights, see ``models.load_weights``; positions of imitation
         return model
 
     def new_network(self, observation_space, action_space):
-        """The untrained network (an SB3 policy) of ``new_model`` alone, for weights that are there already."""
+        """The untrained network (an SB3 policy) of ``new_model`` alone, for given weights."""
         network = policy(self.policy)
         if isinstance(network, str):
             network = algorithm_class(self.algo).policy_aliases[network]
@@ -111,7 +111,7 @@ class Recipe:
 
 
 def value_of(text):
-    """What a text on the command line means: a Python literal, or itself."""
+    """The value of a text on the command line: a Python literal, or the text itself."""
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
@@ -119,7 +119,7 @@ def value_of(text):
 
 
 def _changes(changes, keys):
-    """What the "key=value" of ``changes`` say, each key at most once."""
+    """The values of the "key=value" in ``changes``, each key at most once."""
     free, found = [key for key in keys if key not in BY_OPTION], {}
     for change in changes:
         key, equals, value = change.partition("=")
@@ -133,8 +133,8 @@ def _changes(changes, keys):
 
 
 def _options(options, more, usual, policy):
-    """The environment's options and ``more`` of them; where ``policy`` needs it, actions must be read as ``usual``. Their values are
-    checked by the environment itself."""
+    """The environment's options with ``more`` of them; where ``policy`` needs it, actions must be read as ``usual``. The environment checks
+    the values."""
     known = (*ACTION_OPTIONS, *SHOT_OPTIONS, *TRAINING_OPTIONS)
     if not isinstance(options, dict):
         raise refuse("env_kwargs", options, f"must be a dict with keys of {', '.join(known)}")
@@ -159,7 +159,7 @@ def algorithm_class(name):
 
 
 def policy(name):
-    """A policy class of ``networks`` or ``mixture_policy``, or a name that SB3 knows."""
+    """A policy class of ``networks`` or ``mixture_policy``, or a name of SB3's own."""
     from . import mixture_policy, networks
 
     return getattr(mixture_policy, name, getattr(networks, name, name))

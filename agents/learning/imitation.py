@@ -1,12 +1,13 @@
-"""Can an agent start from what the search knows? A masked policy imitates what the search finds one shot deep; PPO goes on from there.
+"""How is a policy pre-trained by imitation? It is fitted to the one-shot values of the search; PPO continues from there.
 
-``train.py`` does it for the recipes that say so (``imitation``), or with ``--imitate POSITIONS``.
+``train.py`` does this for the recipes with ``imitation``, or with ``--imitate POSITIONS``.
 
-The expert: in positions of real visits some of the choices are played on copies of the table under execution noise, once each. A choice is
-worth its points and, if the visit goes on, the value, by the rule of thumb, of the position it leaves (``prospects_of``), the search's own
-measure. The learner: state value + TEMPERATURE * (log-probability - its mean) is fitted to these worths by least squares, all tries of a
-position at once. So the policy becomes the softmax of what its choices are worth, and the critic their mean under it. The visits are
-played by the learner, so it learns where it will be (DAgger, Ross et al. 2011), and half of the tries are its own best.
+The expert: in positions of played visits some of the choices are simulated under execution noise, once each. The value of a choice is its
+points plus, if the visit goes on, the value of its afterstate by the search's rule of thumb (``prospects_of``).
+
+The learner: state value + TEMPERATURE * (log-probability - its mean) is fitted to these values by least squares, all trials of a position
+at once. The policy becomes the softmax of the values of its choices, and the critic their mean under it. The visits are played by the
+learner, so that it is trained on the states that it will meet (DAgger, Ross et al. 2011); half of the trials are its own best choices.
 """
 
 import time
@@ -18,29 +19,26 @@ import torch
 from snooker_env.planning import Planner, prospects_of, spread_of
 
 TRIES = 48
-"""Choices tried in each position: half of them the learner's best, half at random. Where there are no more than half of them, each is tried
-twice."""
+"""Trials in each position: half of them the learner's best choices, half random. Where there are at most half as many choices, each is
+tried twice."""
 TEMPERATURE = 1.0
-"""Points that make a choice e times as likely."""
+"""The difference in points that makes a choice e times as likely."""
 KEPT = 50_000
-"""Positions that are learned from again and again."""
+"""Size of the buffer of positions that gradient steps are drawn from."""
 BATCH, PER_UPDATE = 512, 8
 """Positions in the batch of a gradient step, and new positions for each step."""
 RATE = 3e-3
 
 
 class Expert:
-    """Says what choices are worth on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the position left."""
+    """Evaluates choices on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the afterstate."""
 
     def __init__(self, tables, threads, rng, ahead=True):
         self._tables, self._rng, self._ahead, self._planner = tables, rng, ahead, Planner(tables, threads=threads)
         self._spread = spread_of(self._planner.noise, self._planner.physics)
 
     def worth(self, picks, there):
-        """Points that the choices ``picks`` (n, k) that are ``there`` (n, k) brought, one try of each, with the value of what they left.
-
-        float32 (n, k), 0 where there is none.
-        """
+        """Values [points] of the choices ``picks`` (n, k) from one simulation each: float32 (n, k), 0 where ``there`` (n, k) is False."""
         row, column = np.nonzero(there)
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
         points, goes_on, left, _ = self._planner.play(self._tables, row, picks[row, column], keys)
@@ -50,9 +48,9 @@ class Expert:
 
 
 def to_try(scores, masks, rng):
-    """``TRIES`` choices of each row of masks (n, SIZE), half with the highest scores, half at random; and which of them are there.
+    """``TRIES`` choices of each row of masks (n, SIZE), half with the highest scores, half random; and which of them are valid.
 
-    A choice can be in both halves; where there are fewer choices than a half holds, all of them are in both.
+    A choice can be in both halves; if there are fewer valid choices than half of ``TRIES``, all of them are in both.
     """
     half = TRIES // 2
     best = np.argpartition(np.where(masks, -scores, np.inf), half, axis=1)[:, :half]
@@ -62,9 +60,9 @@ def to_try(scores, masks, rng):
 
 
 class Imitation:
-    """The imitation in that many ``states``, positions of visits that ``model.policy`` plays itself; with gamma 0 only points count.
+    """Imitation in ``states`` positions of visits that ``model.policy`` plays; with gamma = 0 the value is the points alone.
 
-    ``before``: of ``get_state``, when the model and its tables are as they were then: it goes on bit for bit as if it had not stopped.
+    ``before``: of ``get_state``, with the model and its tables restored: the result equals that of an uninterrupted run, bit for bit.
     """
 
     def __init__(self, model, venv, states, seed, threads, before=None):
@@ -84,18 +82,18 @@ class Imitation:
 
     @property
     def seconds(self):
-        """Time of imitation so far."""
+        """Duration of the imitation so far [s]."""
         return self._seconds + time.perf_counter() - self._began
 
     def get_state(self):
-        """What the rest depends on, beside the model, its tables and its random generators; the positions kept are most of it."""
+        """The state of the imitation, beside the model, its tables and its random generators; most of it is the buffer of positions."""
         return {
             "done": self.done, "curve": self.curve, "kept": self._kept, "losses": list(self._losses), "seconds": self.seconds,
             "rng": self._rng.bit_generator.state, "optimizer": self._optimizer.state_dict(),
         }  # fmt: skip
 
     def round(self):
-        """The present position of every table; a twentieth of all makes an entry of ``curve``."""
+        """Learn from the present position of every table and play on. Every twentieth of all positions gives an entry of ``curve``."""
         policy, n = self._model.policy, self._venv.num_envs
         for group in self._optimizer.param_groups:
             group["lr"] = RATE * (1.0 - self.done / self.states) + 1e-5
@@ -116,7 +114,7 @@ class Imitation:
 
 
 def _fit(policy, optimizer, rounds):
-    """One gradient step; the mean square error [points^2]."""
+    """One gradient step. Returns the mean square error [points^2]."""
     seen, masks, picks, there, worths = (np.concatenate(column) for column in zip(*rounds, strict=True))
     features = policy.extract_features(torch.as_tensor(seen))
     distribution = policy._get_action_dist_from_latent(features)

@@ -1,4 +1,4 @@
-"""Which process owns a run's folder? The one that holds its lock; none once that process has ended, whatever ended it."""
+"""Which process owns a run's folder? The one that holds its lock; no process once that one has ended, however it ended."""
 
 import os
 import platform
@@ -18,9 +18,9 @@ NAME = "train.lock"
 class Lock:
     """Holds ``folder`` until ``release`` or the end of the process. Raises ValueError, naming the holder, if another process does.
 
-    The system's lock (flock) on the file ``train.lock`` counts, not that the file is there: one that kill -9 left is no obstacle. Where
-    there is no flock (Windows) the file itself is the lock: after a kill it has to be deleted, as the error says. A file system that
-    knows no locks is reported and not locked.
+    The system's lock (flock) on the file ``train.lock`` counts, not the file's existence: one left by kill -9 is no obstacle. Without
+    flock (Windows) the file itself is the lock: after a kill it has to be deleted, as the error explains. On a file system without locks
+    a warning is printed and nothing is locked.
     """
 
     def __init__(self, folder):
@@ -47,7 +47,7 @@ class Lock:
                 return file
             if self._is(file):
                 return file
-            file.close()  # its last holder took the file away in between
+            file.close()  # its last holder deleted the file in between
 
     def _is(self, file):
         """Is this open file the one at the lock's path?"""
@@ -60,17 +60,17 @@ class Lock:
             raise self._taken(f"; if that process is gone, delete {self._path}") from None
 
     def _taken(self, more):
-        """The complaint that another process holds the folder."""
+        """The ValueError for a folder that another process holds."""
         who = self._path.read_text(encoding="utf-8", errors="replace").strip() if self._path.exists() else ""
         pid = who.split()[1] if who.startswith("process ") else "PID"
         return refuse(
-            "out", str(self._folder), f"must be a folder that no other train.py uses: {who or 'another process'} does. Let it end, or stop "
+            "out", str(self._folder), f"must be a folder that no other train.py uses: {who or 'another process'} does. Wait, or stop "
             f"it, which saves it (kill -INT {pid}), or give another --out{more}",
         )  # fmt: skip
 
     def release(self):
-        """Let others have the folder."""
-        own = self._is(self._file)  # not that of another run, in a new folder where this one was before it was moved
+        """Release the folder."""
+        own = self._is(self._file)  # the folder may have been moved and another run started at its old path
         if fcntl is None:
             self._file.close()
         if own:

@@ -1,4 +1,4 @@
-"""How can a policy learn an angle of the full circle? It knows the lines of the pots: a mixture of strokes, one for each pot offered.
+"""How can a policy learn an angle of the full circle? By a mixture of strokes, one along the line of each direct pot.
 
 A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots. Here the geometry is in the
 policy and the environment sees plain numbers. The density of an action (speed, side, top, aim) is::
@@ -7,7 +7,7 @@ policy and the environment sees plain numbers. The density of an action (speed, 
 
 The weights are a softmax of the pots' scores. line_k is the direction to the pot's ghost ball, and turn_k moves the ghost ball round the
 object ball by the angle that ``Throw`` has learned for this cut, path and stroke: the aim is drawn after the stroke that it belongs to. It
-is explored in parts of each pot's own tolerance. A table that offers no pot has one component: a full hit on the nearest ball on.
+is explored in units of each pot's own tolerance. A table without a direct pot has one component: a full hit on the nearest ball on.
 
     python train.py --agent ppo_absolute
 """
@@ -33,10 +33,10 @@ LINE_ENTRIES = 6
 (OFFERED, LINE, SIN_CUT, COS_CUT, PATH, TOLERANCE) = range(LINE_ENTRIES)
 
 LEAST_TOLERANCE = 5e-4
-"""Exploring more finely [rad] than a professional can aim (0.03 degrees) shows nothing."""
+"""Least scale of the exploration [rad]: about a professional's error of aim (0.03 degrees)."""
 THROW_UNIT = 0.3
-"""Unit of the learned turn of the line of centres [rad]: a few times the largest throw: Adam's steps are of one size whatever the unit,
-and what throws is learned from whether a ball went in."""
+"""Unit of the learned turn of the line of centres [rad]: a few times the largest throw. Adam's steps have one size whatever the unit, and
+the throw is learned from pots and misses alone."""
 
 
 def lines_of(seen):
@@ -65,7 +65,7 @@ def nearest_image(turn):
 
 
 class LineReader(TableReader):
-    """What ``TableReader`` gives, and behind it ``lines_of``, flat."""
+    """The features of ``TableReader`` followed by ``lines_of``, flattened."""
 
     def __init__(self, observation_space, width=32):
         super().__init__(observation_space, width)
@@ -79,8 +79,8 @@ class LineReader(TableReader):
 class Throw(nn.Module):
     """Lines (n, POTS, LINE_ENTRIES) and strokes (n, POTS, 3) -> the angle / pi by which to turn each line, at first 0.
 
-    Friction throws the object ball off the line of centres. Two balls on a wide cloth know no left or right, nor where the table ends: the
-    angle depends on cut, path and stroke alone, and it changes its sign in a mirror.
+    Friction throws the object ball off the line of centres. The angle depends on cut, path and stroke alone, not on the place on the table,
+    and changes its sign in a mirror.
     """
 
     def __init__(self, width=32):
@@ -112,7 +112,7 @@ class Throw(nn.Module):
 
 
 class MixtureHead(nn.Module):
-    """What ``LineReader`` gives -> the parameters of a ``StrokeMixture``, but for the deviations."""
+    """The features of ``LineReader`` -> the parameters of a ``StrokeMixture``, but for the deviations."""
 
     def __init__(self):
         super().__init__()
@@ -133,7 +133,7 @@ class MixtureHead(nn.Module):
         there, first = lines[:, :, OFFERED] > 0.0, torch.arange(POTS, device=read.device) == 0
         none = ~there.any(1, keepdim=True)
         out = self.pot(codes)
-        scores = out[:, :, 0] + torch.log(lines[:, :, TOLERANCE])  # without anything learned: as often as it is wide
+        scores = out[:, :, 0] + torch.log(lines[:, :, TOLERANCE])  # before training: in proportion to the pot's width
         log_weights = torch.log_softmax(scores.masked_fill(~there & ~(none & first), -1e8), 1)
         means = torch.where((none & first)[:, :, None], self.no_pot(read[:, :CONTEXT])[:, None], out[:, :, 1:])
         means = torch.stack([means[:, :, 0], means[:, :, 1] * side, means[:, :, 2]], 2)
@@ -148,7 +148,7 @@ class StrokeMixture(Distribution):
         return MixtureHead(), nn.Parameter(torch.full((4,), float(log_std_init)))
 
     def proba_distribution(self, log_weights, means, lines, aims_of, log_std):
-        """Set the parameters: what ``MixtureHead`` gives, and the deviations."""
+        """Set the parameters: the output of ``MixtureHead``, and the deviations."""
         self.log_weights, self.means, self.aims_of = log_weights, means, aims_of
         self.stds, self.aim_stds = log_std[:3].exp(), lines[:, :, TOLERANCE] / pi * log_std[3].exp()
         return self
@@ -162,7 +162,7 @@ class StrokeMixture(Distribution):
         return torch.logsumexp(self.log_weights - 0.5 * off - scale, 1)
 
     def entropy(self):
-        """That of weight and component together: the mixture's own where the components do not overlap, else a little more."""
+        """The joint entropy of weight and component: that of the mixture where components do not overlap, else an upper bound."""
         own = self.stds.log().sum() + self.aim_stds.log() + 2.0 * log(2.0 * pi) + 2.0
         return (self.log_weights.exp() * (own - self.log_weights)).sum(1)
 
@@ -186,7 +186,7 @@ class StrokeMixture(Distribution):
         return self.proba_distribution(log_weights, means, lines, aims_of, log_std).get_actions(deterministic)
 
     def log_prob_from_params(self, log_weights, means, lines, aims_of, log_std):
-        """The same with their logarithmic densities."""
+        """Actions of the mixture with these parameters, and their logarithmic densities."""
         actions = self.actions_from_params(log_weights, means, lines, aims_of, log_std)
         return actions, self.log_prob(actions)
 

@@ -1,8 +1,9 @@
-"""What is kept of a trained agent in a file, and how is it read? Figures as JSON, and weights; nothing of a file is unpickled.
+"""How is a trained agent stored in a file and read again? As JSON and weights; nothing in a file is unpickled.
 
 ``train.py`` writes zips of Stable-Baselines3, which ``PPO.load`` reads by running the pickles in their ``data``; ``agents.publish`` writes
-zips of ``model.json`` and ``policy.pth`` alone. Of either this reads the entries ``KEPT`` as plain JSON and the tensors of ``policy.pth``
-(``torch.load`` with ``weights_only``). The network is made by today's recipe of that name: no name in a file leads to any code but that.
+zips of ``model.json`` and ``policy.pth`` alone. From either this module reads the entries ``KEPT`` as plain JSON and the tensors of
+``policy.pth`` (``torch.load`` with ``weights_only``). The network is built from the current recipe of that name: a file cannot name any
+other code.
 """
 
 import io
@@ -23,25 +24,25 @@ WEIGHTS = "policy.pth"
 
 @dataclass
 class Trained:
-    """A trained agent as a file describes it; the names are those that train.py gives to SB3's own models."""
+    """A trained agent as described in a file; the names are the attributes that train.py sets on SB3's own models."""
 
     policy: Any
     """Its network, an SB3 policy."""
     recipe: str
     view: str
     env_options: dict
-    """``SnookerEnv`` arguments that it was trained with."""
+    """``SnookerEnv`` arguments of its training."""
     num_timesteps: int
     gamma: float
     seed: int | None
     imitated: int | None
-    """Positions in which it imitated the search; None: not known."""
+    """Positions of pre-training by imitation; None: unknown."""
     start: dict | None
-    """Where its weights came from, see ``models.load_weights``."""
+    """Origin of its initial weights, see ``models.load_weights``."""
 
     @property
     def action_space(self):
-        """Of the tables that it was trained on."""
+        """The action space of the tables that it was trained on."""
         return self.policy.action_space
 
 
@@ -71,12 +72,12 @@ KEPT = {
     "imitated": _count,
     "start": _dict,
 }
-"""The entries that are read, and what makes sure of each."""
+"""The entries that are read, with the check of each."""
 MAY_BE_NONE = ("seed", "imitated", "start")
 
 
 class _MismatchError(Exception):
-    """These are not the weights of today's network."""
+    """These are not the weights of the current network."""
 
 
 def read(path, field):
@@ -89,31 +90,31 @@ def read(path, field):
             key: None if found.get(key) is None and key in MAY_BE_NONE else check(key, found.get(key)) for key, check in KEPT.items()
         }  # fmt: skip
         seen = found["seen"] if "seen" in found else found["observation_space"]["_shape"][0]
-    except Exception as error:  # whatever zip and JSON make of a file that is something else
+    except Exception as error:  # any error of zip or JSON on a file of another kind
         raise refuse(field, str(path), f"must be a model that train.py saved ({str(error)[:300]})") from None
     try:
         return Trained(_network(path, described, seen), **described)
     except _MismatchError:
-        raise refuse(field, str(path), f"must be a model of today's {described['recipe']}: this one is older, train it again") from None
+        raise refuse(field, str(path), f"must be a model of the current {described['recipe']}: this one is older, train it again") from None
     except ImportError:
         raise
-    except Exception as error:  # whatever zip and torch make of weights that are something else
+    except Exception as error:  # any error of zip or torch on weights of another kind
         why = f"its {WEIGHTS} must hold weights and nothing else: {type(error).__name__}"
         raise refuse(field, str(path), f"must be a model that train.py saved ({why})") from None
 
 
 def _network(path, described, seen):
-    """Today's network with the weights of a file."""
+    """The current network with the weights of a file."""
     import torch
 
     try:
         recipe = Recipe.of(described["recipe"], env_kwargs=described["env_options"])
         tables = SnookerVectorEnv(1, **described["env_options"])
-        with torch.random.fork_rng(devices=[]):  # the first weights are drawn, and forgotten
+        with torch.random.fork_rng(devices=[]):  # the initial weights are replaced below
             network = recipe.new_network(view_of(described["view"]).space, tables.single_action_space)
     except ImportError:
         raise
-    except Exception:  # options or parts that are no more
+    except Exception:  # options or parts that no longer exist
         raise _MismatchError from None
     if network.observation_space.shape != (seen,):
         raise _MismatchError
@@ -136,7 +137,7 @@ def _weights(path, most):
     except ValueError:
         raise _MismatchError from None
     with zipfile.ZipFile(file) as inner:
-        if sum(info.file_size for info in inner.infolist()) > most:  # packed a second time
+        if sum(info.file_size for info in inner.infolist()) > most:  # compressed a second time
             raise _MismatchError
     file.seek(0)
     return torch.load(file, map_location="cpu", weights_only=True)
@@ -147,13 +148,13 @@ def _forms(weights):
 
 
 def packed(trained):
-    """A ``Trained`` agent as the bytes of a zip that holds ``model.json`` and ``policy.pth`` alone; the same each time."""
+    """A ``Trained`` agent as the bytes of a zip with ``model.json`` and ``policy.pth`` alone; reproducible."""
     import torch
 
     described = {key: getattr(trained, key) for key in KEPT} | {"seen": trained.policy.observation_space.shape[0]}
     weights, file = io.BytesIO(), io.BytesIO()
     torch.save(dict(trained.policy.state_dict()), weights)
-    with zipfile.ZipFile(file, "w") as made:  # ZipInfo: without the time of day
+    with zipfile.ZipFile(file, "w") as made:  # ZipInfo: without a time stamp
         made.writestr(zipfile.ZipInfo(PLAIN), json.dumps(described, indent=1) + "\n")
         made.writestr(zipfile.ZipInfo(WEIGHTS), weights.getvalue())
     return file.getvalue()

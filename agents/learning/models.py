@@ -1,4 +1,4 @@
-"""Where are trained agents, and what is taken from them? Pre-trained models, the model of a run's folder, weights to start from."""
+"""Where are trained models found? Pre-trained ones, the model of a run's folder, and weights to start from."""
 
 import io
 from pathlib import Path
@@ -9,20 +9,20 @@ from .model_files import read
 
 PRETRAINED = Path(__file__).parents[1] / "pretrained"
 CHECKPOINT = "checkpoint.pkl"
-"""What a run's folder holds until, and after, its model is there."""
+"""A run's folder holds it from the first save on."""
 
 
 def pretrained():
-    """The names of the pre-trained models that there are."""
+    """The names of the pre-trained models."""
     return sorted(file.stem for file in PRETRAINED.glob("*.zip"))
 
 
 def file_of(path, field):
-    """The model's file that a path means. Raises ValueError, naming ``field``."""
+    """The model's file for a path to a file or a run's folder. Raises ValueError, naming ``field``."""
     file = path / "model.zip" if path.is_dir() else path
     if not file.is_file():
         unfinished = (path / CHECKPOINT).is_file()
-        ends = f"; this run has not ended, it goes on with: python train.py --resume --out {path}" if unfinished else ""
+        ends = f"; this run has not ended, continue it with: python train.py --resume --out {path}" if unfinished else ""
         raise refuse(field, str(path), f"must be a model's .zip or a folder that holds model.zip{ends}")
     return file
 
@@ -37,7 +37,7 @@ def load_trained(path, field):
 
 
 def load_weights(model, path):
-    """Give a model the weights of another of the same agent; ``model.start`` says which. Raises ValueError."""
+    """Load the weights of another model of the same agent into ``model``; ``model.start`` records its origin. Raises ValueError."""
     other = load_trained(path, "start")
     if other.recipe != model.recipe:
         raise refuse("start", str(path), f"must be a model of {model.recipe}, not of {other.recipe}")

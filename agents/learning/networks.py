@@ -1,10 +1,10 @@
-"""What network reads a snooker table? Small networks shared by balls and by pots, sums over them, a head that scores every stroke.
+"""Which networks read a snooker table? Small networks shared by balls and by pots, sums over them, and a head that scores every stroke.
 
 The order of balls or pots must not matter: each ball's row goes through one network and each pot's through another (deep sets,
 Zaheer et al. 2017). Masked sums of the balls' codes, of the pots' codes and the game's state make the context. The score of a
-stroke at a pot comes from that pot's code and the context, by the same weights for every pot. A table is nearly the same in a mirror: it
-is read with the cue ball on the right, and the choice of side spin is turned back.
-(Yellow and green have sides: a flag says which half it was.)
+stroke at a pot comes from that pot's code and the context, by the same weights for every pot. The table is nearly symmetric: it is read
+mirrored so that the cue ball is on the right, and the choice of side spin is mirrored back. (Yellow and green break the symmetry: an
+input gives the half that the cue ball was on.)
 """
 
 from itertools import pairwise
@@ -33,7 +33,7 @@ def mlp(*sizes):
 
 
 class TableReader(BaseFeaturesExtractor):
-    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, and -1 where the table was read in the mirror, else 1."""
+    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, and -1 where the table was mirrored, else 1."""
 
     def __init__(self, observation_space, width=32):
         super().__init__(observation_space, CONTEXT + POTS * POT + 1)
@@ -69,7 +69,7 @@ class TableReader(BaseFeaturesExtractor):
 
 
 class StrokeHead(nn.Module):
-    """What ``TableReader`` gives -> a score for each of the POTS * STROKES choices."""
+    """The features of ``TableReader`` -> a score for each of the POTS * STROKES choices."""
 
     def __init__(self):
         super().__init__()
@@ -87,7 +87,7 @@ class StrokeHead(nn.Module):
 
 
 class ForesightReader(TableReader):
-    """What is seen with ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context and a code for each outcome."""
+    """The view ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context and a code for each outcome."""
 
     def __init__(self, observation_space):
         super().__init__(observation_space)
@@ -110,7 +110,7 @@ class ForesightReader(TableReader):
 
 
 class OutcomeHead(nn.Module):
-    """What ``ForesightReader`` gives -> a score for each of all choices; only the simulated ones may be played."""
+    """The features of ``ForesightReader`` -> a score for each of all choices; only the simulated ones may be played."""
 
     def __init__(self):
         super().__init__()
@@ -125,7 +125,7 @@ class OutcomeHead(nn.Module):
 
 
 class ValueHead(nn.Module):
-    """The context -> the return to be expected."""
+    """The context -> the expected return."""
 
     def __init__(self, width=128):
         super().__init__()
@@ -152,12 +152,12 @@ class _Policy(MaskableActorCriticPolicy):
 
 
 class TablePolicy(_Policy):
-    """Sees the table and its pots, scores all strokes."""
+    """Observes the table and its pots, scores all strokes."""
 
     reader, head = TableReader, StrokeHead
 
 
 class ForesightPolicy(_Policy):
-    """Sees what ``foresight`` shows, scores the strokes that were simulated."""
+    """Observes the view ``foresight``, scores the simulated strokes."""
 
     reader, head = ForesightReader, OutcomeHead

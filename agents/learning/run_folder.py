@@ -1,4 +1,4 @@
-"""What does a run's folder hold, and how does a run go on from it? Its checkpoint, whose it is, and what another run may find there."""
+"""How is a run resumed from its folder? The checkpoint, the lock, and the checks of a folder before use."""
 
 import io
 import pickle
@@ -18,11 +18,11 @@ from .lock import Lock
 from .models import CHECKPOINT, zipped
 
 _UNFINISHED = re.compile(r"(checkpoint\.pkl|model\.zip|results\.json)(\.\d+)?\.tmp")
-"""What a process that was killed was writing."""
+"""Unfinished files of a process that was killed."""
 
 
 def claimed(out, resume):
-    """The ``Lock`` on the folder of a new run (made here) or of one to resume. Raises ValueError if it is not fit for that, or taken."""
+    """The ``Lock`` on the folder of a new run (made here) or of one to resume. Raises ValueError if the folder is unfit or in use."""
     if not (out / LOCK).exists():
         _check(out, resume)
     out.mkdir(parents=True, exist_ok=True)
@@ -31,7 +31,7 @@ def claimed(out, resume):
         for file in out.iterdir():
             if _UNFINISHED.fullmatch(file.name):
                 file.unlink()
-        _check(out, resume)  # again: what is there now will stay
+        _check(out, resume)  # again: from now on no other run changes it
     except BaseException:
         lock.release()
         raise
@@ -49,28 +49,28 @@ def _check(out, resume):
     held = sorted(name for name in names if name not in ("tb", LOCK) and not _UNFINISHED.fullmatch(name))
     if held:
         others = f"is not empty (it holds {', '.join(held[:3])})"
-        raise refuse("out", str(out), f"{others}: --resume goes on with it, --out names another")
+        raise refuse("out", str(out), f"{others}: --resume continues it, --out names another folder")
 
 
 def go_on(out):
-    """How to go on with what was saved there."""
-    return f"Go on with:  python train.py --resume --out {shlex.quote(str(out))}"
+    """The command that continues the run saved there, as a sentence."""
+    return f"Continue with:  python train.py --resume --out {shlex.quote(str(out))}"
 
 
 def kept(out):
-    """What is left of a run that was stopped in between, in one sentence."""
+    """What was saved of a run that was interrupted, in one sentence."""
     if (out / CHECKPOINT).is_file():
-        return f"The last checkpoint is whole. {go_on(out)}"
-    return "Nothing was saved yet: begin the run anew."
+        return f"The last checkpoint is complete. {go_on(out)}"
+    return "Nothing was saved yet: start the run again."
 
 
-def save_checkpoint(out, settings, model, seconds, curve, imitation, teaching=None):
-    """All that training and its curve depend on, tables and random generators included: a resumed run equals an uninterrupted one.
+def save_checkpoint(out, settings, model, seconds, curve, imitation, imitating=None):
+    """Save the state of training, with tables and random generators: a resumed run equals an uninterrupted one.
 
-    ``teaching``: of ``Imitation.get_state`` while the agent imitates the search, else None.
+    ``imitating``: of ``Imitation.get_state`` while the agent imitates the search, else None.
     """
     state = {
-        "settings": asdict(settings), "seconds": seconds, "curve": curve, "imitation": imitation, "teaching": teaching,
+        "settings": asdict(settings), "seconds": seconds, "curve": curve, "imitation": imitation, "imitating": imitating,
         "model": zipped(model), "replay": getattr(model, "replay_buffer", None), "tables": model.get_env().env_method("get_state"),
         "running": model.get_env().running,
         "random": (np.random.get_state(), torch.get_rng_state(), model.action_space),  # noqa: NPY002 - SB3 draws from the global one
@@ -80,18 +80,19 @@ def save_checkpoint(out, settings, model, seconds, curve, imitation, teaching=No
 
 def stale(out):
     """The ValueError for a checkpoint that cannot be used."""
-    wanted = "must be a whole checkpoint of today's train.py: this one is broken or older, start the run anew"
+    wanted = "must be a complete checkpoint of the current train.py: this one is damaged or older, start the run again"
     return refuse("resume", str(out / CHECKPOINT), wanted)
 
 
 def read_checkpoint(out, settings):
     """The checkpoint and the settings in it, made by the class ``settings``. Raises ValueError."""
     try:
-        state = {"teaching": None} | pickle.loads((out / CHECKPOINT).read_bytes())  # it came later than the rest
+        state = pickle.loads((out / CHECKPOINT).read_bytes())
+        state.setdefault("imitating", state.get("teaching"))  # its name before 0.3, and later than the rest
         was = settings(**state["settings"])
         if not state.keys() >= {"model", "tables", "random", "replay", "running", "imitation", "curve", "seconds"}:
             raise KeyError
-    except Exception:  # whatever pickle makes of a file that is something else
+    except Exception:  # any error of pickle on a file of another kind
         raise stale(out) from None
     return state, was
 
@@ -99,14 +100,16 @@ def read_checkpoint(out, settings):
 def load_model(out, state, algo, envs):
     """The agent of a checkpoint, its tables and random generators as they were. Raises ValueError."""
     try:
-        model = algorithm_class(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu", seed=None)  # it would seed the tables anew
+        model = algorithm_class(algo).load(
+            io.BytesIO(state["model"]), env=envs, device="cpu", seed=None
+        )  # a seed here would reseed the tables
         model.seed = state["settings"]["seed"]
         if state["replay"] is not None:
             model.replay_buffer = state["replay"]
         numpy_state, torch_state, model.action_space = state["random"]
         np.random.set_state(numpy_state)  # noqa: NPY002
         torch.set_rng_state(torch_state)
-        envs.set_options([{"state": table} for table in state["tables"]])  # for the reset with which learning or teaching begins
+        envs.set_options([{"state": table} for table in state["tables"]])  # for the reset at the beginning of learning or imitation
     except Exception:  # of an older network, or with a part missing
         raise stale(out) from None
     return model

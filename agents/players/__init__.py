@@ -1,1 +1,1 @@
-"""Who plays: the built-in players, the search, and trained models by name."""
+"""Which players are there? The built-in ones, the search, and trained models by name."""

@@ -1,7 +1,7 @@
-"""Where must a pot found by geometry be aimed? Each shot is tried in the simulator without errors, at aims around its line and at a few
-speeds: the widest run of neighbouring aims that pot is the shot, its middle the aim.
+"""Where must a pot found by geometry be aimed? Each shot is simulated without execution errors, at aims around its line and a few speeds.
+The widest interval of aims that pot gives the shot, and its middle the aim.
 
-The player "geometric" plays so: python -m agents.evaluate --agent geometric
+The player "geometric" uses it: python -m agents.evaluate --agent geometric
 """
 
 from math import atan2
@@ -33,14 +33,14 @@ def widest_run(good):
 
 
 class Aimer:
-    """Finds shots at the tables of an environment with aim="absolute": plain strokes all of them.
+    """Finds shots on the tables of an environment with aim="absolute", all of them strokes without spin.
 
-    ``speed`` [m/s] of the first one tried.
+    ``speed``: cue speed [m/s] of the first attempt.
     """
 
     def __init__(self, tables, speed):
         self._planner, self._speed = Planner(tables, noise="none", threads=1), speed
-        indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), BallOn.RED, *self._bed)  # compiled now, not while a decision is timed
+        indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), BallOn.RED, *self._bed)  # compile now, so that decision times exclude it
 
     @property
     def _bed(self):
@@ -49,8 +49,8 @@ class Aimer:
     def actions(self, at):
         """An action (4,) float32 for each of n ``Positions``.
 
-        First the widest direct pot along its solved line or, without a direct pot, the line to the nearest ball on. If that pots nothing
-        without errors, the direct pot that the simulator finds the widest; else such an indirect one; else the first line all the same.
+        In this order, until one pots without execution errors: the widest direct pot along its solved line; the direct pot with the widest
+        interval of aims; the indirect pot with the widest one. If none does, the first line (without a direct pot: to the nearest ball on).
         """
         n, ball_on = len(at), at.ball_on.copy()
         shots, counts = np.empty((n, 1, COLUMNS)), np.empty(n, np.int64)
@@ -66,8 +66,8 @@ class Aimer:
         return actions
 
     def widest(self, one, shots):
-        """Of these shots the one with the widest run of aims that pot, tried on the only position of ``one``: (its action, half the width
-        [rad], which shot, which speed); None if none goes in."""
+        """The shot with the widest interval of aims that pot, simulated on the only position of ``one``: (its action, half the width [rad],
+        index of the shot, index of the speed); None if none pots."""
         if len(shots) == 0:
             return None
         lines = self._solve(one, np.zeros(len(shots), np.int64), shots, SPEEDS).ravel()
@@ -76,14 +76,14 @@ class Aimer:
         best = int(np.argmax(widths))
         if widths[best] == 0.0:
             return None
-        # once more where it goes in and a step further: now the width is known to a few percent
+        # scan the potting interval again, one step wider: its width is then accurate to a few percent
         reach = 0.5 * widths[best] + 2.0 * reaches[best] / AIMS
         finer = self._scan(one, speeds[best : best + 1], middles[best : best + 1], np.array([reach]))
         middle, width = (finer[0][0], finer[1][0]) if finer[1][0] > 0.0 else (middles[best], widths[best])
         return actions_of(speeds[best : best + 1], [middle])[0], 0.5 * width, *divmod(best, len(SPEEDS))
 
     def _scan(self, one, speeds, lines, reaches):
-        """Of the widest run of aims that pot within ``reaches`` of ``lines``: middle and width [rad], (m,) each; width 0 if none does."""
+        """Middle and width [rad] of the widest interval of aims that pot, within ``reaches`` of ``lines``: (m,) each, 0 if none does."""
         steps = 2.0 * reaches / AIMS
         aims = lines[:, None] + steps[:, None] * (np.arange(AIMS) - 0.5 * (AIMS - 1))
         tries = actions_of(np.repeat(speeds, AIMS), aims.ravel())

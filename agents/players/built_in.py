@@ -1,10 +1,12 @@
-"""How do the built-in players play? At random, the widest pot, one shot ahead, or any pot that geometry finds; all behind one method.
+"""How do the built-in players play? At random, the widest pot, a one-shot lookahead, or any pot that geometry finds.
 
-A player says with ``options`` how it wants its tables (``SnookerEnv`` arguments), and ``act(tables, observations, going)`` gives an action
-for each of the n tables of a ``SnookerVectorEnv`` with flat observations. Only the tables ``going`` (n,) bool matter; the others get any.
+The interface of a player:
 
-A player that compares strokes may say how: ``rank(tables, observations, going)`` gives for each table going its actions, best first, and
-its own score of each, a list of (actions, scores). Its first is the one that it plays. ``sn.advise`` shows them.
+* ``options``: how its actions are read, as arguments of ``SnookerEnv``.
+* ``act(tables, observations, going)``: an action for each of the n tables of a ``SnookerVectorEnv`` with flat observations. Only those of
+  the running tables, ``going`` (n,) bool, are played.
+* ``rank(tables, observations, going)``, optional, for a player that compares strokes: for each running table its actions, best first, and
+  its score of each, a list of (actions, scores). The first is the one that ``act`` plays. ``sn.advise`` shows them.
 """
 
 from typing import Any
@@ -22,14 +24,33 @@ ABSOLUTE = {"aim": "absolute"}
 
 
 class Random:
-    """Any action, each as likely."""
+    """Uniformly random actions.
+
+    Parameters
+    ----------
+    options : dict, optional
+        How its actions are read; the discrete choices by default.
+    seed : int
+        Of its random numbers.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> from agents.players.built_in import Random
+    >>> player = Random(seed=1)
+    >>> tables = sn.SnookerVectorEnv(2, **player.options)
+    >>> observations, _ = tables.reset(seed=0)
+    >>> player.act(tables, observations, np.ones(2, bool)).shape
+    (2,)
+    """
 
     def __init__(self, options=None, seed=0):
         self.options = DISCRETE if options is None else options
         self._rng = np.random.default_rng(seed)
 
     def act(self, tables, observations, going):
-        """Random actions; of the choices only those that are there."""
+        """Random actions; with discrete choices only the valid ones (the pots that exist)."""
         if self.options.get("action") != "discrete":
             return self._rng.uniform(-1.0, 1.0, tables.action_space.shape).astype(np.float32)
         order = self._rng.random((len(going), CHOICES))
@@ -37,7 +58,13 @@ class Random:
 
 
 class GhostBall:
-    """The widest direct pot, aim solved, without spin, at one soft speed [m/s]: no thought of where the cue ball goes."""
+    """The widest direct pot, aim solved, without spin, at one soft speed: a baseline without positional play.
+
+    Parameters
+    ----------
+    speed : float
+        Cue speed [m/s], one of ``snooker_env.tasks.SPEEDS``.
+    """
 
     options = DISCRETE
 
@@ -49,14 +76,14 @@ class GhostBall:
         return np.full(len(going), self._stroke)
 
     def rank(self, tables, observations, going):
-        """The same stroke at every pot of each table going, widest first; the score is the tolerance of its aim [rad]."""
+        """The same stroke at every pot of each running table, widest first; the score is the tolerance of its aim [rad]."""
         found = pots(Positions.of(tables)[going])
         there = [max(1, many) for many in (found.ball >= 0).sum(axis=1).tolist()]
         return [(self._stroke + STROKES * np.arange(many), found.tolerance[k, :many]) for k, many in enumerate(there)]
 
 
 class Lookahead:
-    """What ``ppo_foresight`` sees, rated by a rule of thumb instead of a network: the mean of points and the value of what is left."""
+    """The observation of ``ppo_foresight``, scored by a rule instead of a network: mean points plus the mean value of the afterstates."""
 
     options = DISCRETE
 
@@ -64,13 +91,13 @@ class Lookahead:
         self._foresight = ForesightView()
 
     def act(self, tables, observations, going):
-        """The stroke that promises most at each table going."""
+        """The stroke with the highest score on each running table."""
         picks = np.zeros(len(going), np.int64)
         picks[going] = PICKS[self._worth(tables, going).argmax(1)]
         return picks
 
     def rank(self, tables, observations, going):
-        """The strokes looked at on each table going, best first; the score is what each promises [points]."""
+        """The simulated strokes of each running table, best first, with their scores [points]."""
         ranked = []
         for worth in self._worth(tables, going):
             order = np.argsort(-worth, kind="stable")[: max(1, np.isfinite(worth).sum())]
@@ -78,13 +105,19 @@ class Lookahead:
         return ranked
 
     def _worth(self, tables, going):
-        """What the picks promise on each table going [points]; -inf where there is no such pot."""
+        """Scores of the simulated strokes on each running table [points]; -inf where there is no such pot."""
         at, masks = Positions.of(tables)[going], tables.action_masks()[going][:, PICKS]
         return worth_by_rule(self._foresight.ahead(tables, at, masks))
 
 
 class Geometric:
-    """Pots found by geometry, their aims by the simulator without errors: direct, else banks, plants and cannons, see ``indirect_pots``."""
+    """Direct pots, else banks, plants and cannons (``indirect_pots``); aims are solved in the simulator without execution errors.
+
+    Parameters
+    ----------
+    speed : float
+        Cue speed [m/s] of its first attempt.
+    """
 
     options = ABSOLUTE
 
@@ -94,7 +127,7 @@ class Geometric:
         self._aimer: Any = None
 
     def act(self, tables, observations, going):
-        """An aim and a speed for each table going."""
+        """An aim and a speed for each running table: float32 (n, 4)."""
         if self._tables is not tables:
             self._tables, self._aimer = tables, Aimer(tables, self._speed)
         actions = np.zeros((len(going), 4), np.float32)

@@ -1,8 +1,8 @@
-"""Which player does a name mean? One that is built in, a pre-trained model, a model's file or folder, or MODULE:CLASS of one's own.
+"""Which player does a name stand for? A built-in player, a pre-trained model, a model's file or run folder, or MODULE:CLASS.
 
-Any class of players (``built_in`` says what a player is) that is made without arguments can be named as MODULE:CLASS: the module is
-imported and so runs, it is the user's own code. Of the environment it may choose how its actions are read
-(``hyperparameters.ACTION_OPTIONS``); the other options are given to it. What reads models is imported only when a name means one.
+MODULE:CLASS is a class of your own whose constructor takes no arguments (``built_in`` defines the interface); its module is imported.
+Such a player chooses how its actions are read (``hyperparameters.ACTION_OPTIONS``); the evaluation sets all other options. The code that
+reads models is imported only when it is needed.
 """
 
 import importlib

@@ -1,11 +1,11 @@
-"""Which stroke is best, when strokes are simulated before one is chosen? A Monte Carlo search under execution noise, two shots deep.
+"""Which stroke is best by simulation? A Monte Carlo search under execution noise, two shots deep.
 
-Strokes are simulated many times from the state of the table, each time with other execution errors. A shot is worth its points and, if
-the visit goes on, the value of the position that it leaves. Sequential halving [Karnin, Koren & Somekh 2013] spends the budget: all
-candidates are simulated a few times, the better ones more often, and so on. The finalists are compared two shots deep: from positions that
-they left, the best next shot is searched without errors; it counts by the chance to make it times what it brings.
+Strokes are simulated many times from the state of the table, each time with new execution errors. A stroke's score is its points plus, if
+the visit goes on, the value of its afterstate. Sequential halving [Karnin, Koren & Somekh 2013] spends the budget: all candidates are
+simulated a few times, the better ones more often, and so on. The finalists are compared two shots deep: from their afterstates the best
+next shot is searched without errors, and its score is weighted by the chance to pot it.
 
-All candidates of a round meet the same noise samples (common random numbers): they differ by their own merits, not by luck.
+All candidates of a round use the same noise samples (common random numbers): they are compared under equal luck.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -20,19 +20,33 @@ from snooker_env.tasks import STROKES, TOPS, choice_of
 from ..features.pot_features import with_pots
 
 KEEP = 3
-"""Of a round's candidates one in so many goes on to the next."""
+"""One in ``KEEP`` candidates of a round goes on to the next round."""
 FINALISTS = 6
 DEEP = 0.4
 """Share of the budget for the second shot."""
 NEXT_SHOTS = 16
-"""Shots simulated from each position that a finalist left."""
+"""Shots simulated from each afterstate of a finalist."""
 
 
 class Search:
-    """Searches for the best shot with ``budget`` simulated shots a decision, at least two.
+    """The player that searches for the best shot by simulation: see this module's docstring.
 
-    ``value``: worth [points] of flat observations with pots (``pot_features.with_pots``), (m, n) -> (m,), in place of the rule of thumb;
-    ``threads``: tables searched at once; any number of them gives the same shots.
+    Parameters
+    ----------
+    budget : int
+        Simulated shots a decision, at least 2.
+    seed : int
+        Of the noise samples and candidates.
+    value : callable, optional
+        Values [points] of observations with pots (``pot_features.with_pots``), (m, n) -> (m,), in place of the rule of thumb.
+    threads : int, optional
+        Tables searched in parallel; all processors by default. The shots found do not depend on it.
+
+    Examples
+    --------
+    >>> from agents.players.search import Search
+    >>> Search(budget=500).options
+    {'aim': 'absolute'}
     """
 
     options = {"aim": "absolute"}  # noqa: RUF012 - a player's options are read, never changed
@@ -49,14 +63,14 @@ class Search:
         return sum(worker.noisy.shots + worker.exact.shots for worker in self._workers)
 
     def act(self, tables, observations, going):
-        """The shot found for each table that is going."""
+        """The best shot of each running table: float32 (n, 4)."""
         actions = np.zeros((tables.num_envs, 4), np.float32)
         for k, (found, _) in zip(np.flatnonzero(going).tolist(), self.rank(tables, observations, going), strict=True):
             actions[k] = found[0]
         return actions
 
     def rank(self, tables, observations, going):
-        """The finalists on each table going, best first; the score is what each is worth [points]."""
+        """The finalists of each running table, best first, with their scores [points]."""
         if self._tables is not tables:
             self._tables, self._workers = tables, [_Worker(self, tables) for _ in range(self._threads)]
         ranked, positions = {}, Positions.of(tables)
@@ -73,7 +87,7 @@ class Search:
 
 
 class _Worker:
-    """The search at one table after the other, in one thread."""
+    """The search, one table after the other, in one thread."""
 
     def __init__(self, search, tables):
         self.budget, self._value = search.budget, search.value
@@ -82,18 +96,18 @@ class _Worker:
         self._sure, self._spread = noise.silent, spread_of(noise, self.noisy.physics)
 
     def _values(self, left, observations):
-        """What the positions left are worth [points], and the chances of their widest pots."""
+        """Values of the afterstates [points], and the chances of their widest pots."""
         values, chances = prospects_of(left, self._spread, SURE if self._sure else RULE_OF_THUMB)
         return values if self._value is None else np.asarray(self._value(with_pots(observations)), np.float64), chances
 
     def ranked(self, at, rng):
-        """The finalists at the one position ``at``, best first: actions and what each is worth."""
+        """The finalists at the one position ``at``, best first: actions and scores."""
         candidates, scores = self._finalists(at, rng)
         order = np.argsort(-scores, kind="stable")
         return candidates[order], scores[order]
 
     def _finalists(self, at, rng):
-        """The actions that were compared last, and what each is worth."""
+        """The actions of the last round, and their scores."""
         if self._sure:
             return self._exactly(at, rng)
         deep = int(DEEP * self.budget) if self.budget >= 200 else 0
@@ -104,7 +118,7 @@ class _Worker:
         scores, records = sums, None
         for r in range(rounds):
             n = len(candidates)
-            each = max(1, (shallow - spent) // (rounds - r) // n)  # one each is never too many: all rounds hold less than twice the first
+            each = max(1, (shallow - spent) // (rounds - r) // n)  # one each always fits: all rounds hold less than twice the first
             keys = rng.integers(0, 2**64 - 1, each, dtype=np.uint64)
             points, goes_on, left, seen = self.noisy.play(
                 at, np.zeros(n * each, np.int64), np.repeat(candidates, each, 0), np.tile(keys, n)
@@ -123,7 +137,7 @@ class _Worker:
         return candidates, scores
 
     def _exactly(self, at, rng):
-        """The finalists without execution noise: one simulation of a candidate is enough, so more of them are searched two shots deep."""
+        """The finalists without execution noise: one simulation each is enough, so that more candidates are searched two shots deep."""
         candidates = self._candidates(at, max(1, self.budget // 2), self.budget, rng)
         n = len(candidates)
         points, goes_on, left, seen = self.exact.play(at, np.zeros(n, np.int64), candidates)
@@ -137,7 +151,7 @@ class _Worker:
         return candidates, scores
 
     def _candidates(self, at, most, without_pots, rng):
-        """At most so many strokes at the direct pots, evenly from all pots; where there is none, so many random shots at the balls on."""
+        """At most ``most`` strokes at the direct pots, evenly from all; without one ``without_pots`` random shots at the balls on."""
         if pots(at, most=1).ball[0, 0] < 0:
             return _at_balls(at.positions[0], np.flatnonzero(at.balls_on[0]), without_pots, rng)
         picks = np.flatnonzero(action_masks(at)[0])
@@ -167,7 +181,7 @@ class _Worker:
         return points.mean(axis=1) + goes_on.mean(axis=1) * mean
 
     def _next_shots(self, chances, rng):
-        """Choices (m, NEXT_SHOTS) for the second shot where the pots have these chances: usual strokes at the two likeliest."""
+        """Choices (m, NEXT_SHOTS) for the second shot, from the chances of the pots: common strokes at the two likeliest pots."""
         order = np.argsort(-chances, axis=1, kind="stable")
         half = NEXT_SHOTS // 2
         widest = np.concatenate([np.repeat(order[:, :1], half, 1), np.repeat(order[:, 1:2], NEXT_SHOTS - half, 1)], axis=1)
@@ -176,7 +190,7 @@ class _Worker:
 
 
 def _at_balls(positions, balls, n, rng):
-    """n actions that send the cue ball somewhere at one of the ``balls``, with any speed and spin: for breaks, plants and luck."""
+    """n random actions that send the cue ball at one of the ``balls``, with any speed and spin: for break-offs, plants and flukes."""
     to = positions[rng.choice(balls, n)] - positions[0]
     reach = np.arcsin(np.minimum(1.0, 2.0 * BALL_RADIUS / np.hypot(*to.T)))
     turned = (np.arctan2(to[:, 1], to[:, 0]) + rng.uniform(-1.0, 1.0, n) * reach) / np.pi
@@ -185,7 +199,7 @@ def _at_balls(positions, balls, n, rng):
 
 
 def _rank(groups):
-    """How many earlier entries are equal to each."""
+    """The number of earlier equal entries, for each entry."""
     order = np.argsort(groups, kind="stable")
     ranks = np.empty(len(groups), np.int64)
     sorted_groups = groups[order]

@@ -1,7 +1,7 @@
-"""How does a trained agent play? A model of Stable-Baselines3 as a player: one of ``train.py`` or, with consent, any other.
+"""How does a trained model become a player? ``ModelPlayer``: for a model of ``train.py`` or, with ``trust``, any other SB3 model.
 
-What ``train.py`` and ``agents.publish`` write is read by ``model_files``, which unpickles nothing. Any other model of Stable-Baselines3 or
-sb3-contrib is a file whose pickles run when it is loaded: ``load_other``, with consent.
+Files of ``train.py`` and ``agents.publish`` are read by ``model_files``, which unpickles nothing. Any other model of Stable-Baselines3 or
+sb3-contrib holds pickled code, which runs when it is loaded: ``load_other`` needs ``trust``.
 """
 
 import inspect
@@ -9,10 +9,8 @@ import inspect
 import numpy as np
 from gymnasium import spaces
 
-from snooker_env import SnookerVectorEnv
+from snooker_env.benchmark import FittingModel
 from snooker_env.checks import integer, number
-from snooker_env.tasks import OBSERVATIONS
-from snooker_env.tasks.saved_models import SavedModel, outline
 
 from ..features.pot_features import PlainView
 from ..features.views import view_of
@@ -21,13 +19,25 @@ from ..learning.model_files import Trained, read
 from ..learning.models import file_of, load_trained
 
 UNKNOWN = dict.fromkeys(("layout", "noise", "fidelity", "physics"), "unknown")
-"""What is known of the training of a model that ``train.py`` did not make."""
+"""The training record of a model that ``train.py`` did not make."""
 
 
 class ModelPlayer:
-    """A trained agent (``Trained``, or a model of Stable-Baselines3) that sees the tables by a ``view``; it plays what it rates highest.
+    """A trained model as a player: its greedy (deterministic) actions.
 
-    ``foreign``: it sees no more than the environment shows, and train.py did not make it.
+    Parameters
+    ----------
+    model : Trained or stable_baselines3 model
+        Whatever has a ``policy`` of Stable-Baselines3.
+    options : dict
+        How its actions are read: arguments of ``SnookerEnv``, such as ``{"action": "discrete"}``.
+    view : view
+        What it observes, see ``features.views``.
+
+    Attributes
+    ----------
+    foreign : bool
+        Whether it observes the environment's own observation: a model that ``train.py`` did not make.
     """
 
     def __init__(self, model, options, view):
@@ -36,7 +46,7 @@ class ModelPlayer:
         self._masked = "action_masks" in inspect.signature(model.policy.predict).parameters
 
     def act(self, tables, observations, going):
-        """The model's own choice for the tables going."""
+        """The model's greedy actions for the running tables: float32 (n, k) or int (n,)."""
         seen = self._view(tables, observations[going], going)
         masks = {"action_masks": self._view.masks(tables)[going]} if self._masked else {}
         actions = np.zeros(tables.action_space.shape, tables.action_space.dtype)
@@ -44,10 +54,10 @@ class ModelPlayer:
         return actions
 
     def rank(self, tables, observations, going):
-        """The choices of a masked policy, the likeliest first, with their probabilities; of any other its own action, without a score."""
+        """The choices of a masked policy by probability, highest first; of any other policy its one action, without a score."""
         if not self._masked or not isinstance(tables.single_action_space, spaces.Discrete):
             return [(action[None], None) for action in self.act(tables, observations, going)[going]]
-        import torch  # here: whoever plays no model waits for none
+        import torch  # here: players without a model need no torch
 
         policy, masks = self.model.policy, self._view.masks(tables)[going]
         seen, _ = policy.obs_to_tensor(self._view(tables, observations[going], going))
@@ -59,7 +69,7 @@ class ModelPlayer:
 
 
 def player_options(env_options):
-    """Of the options an agent was trained with, those that say how its actions are read."""
+    """The options that say how actions are read, from those that an agent was trained with."""
     return {key: env_options[key] for key in ACTION_OPTIONS if key in env_options}
 
 
@@ -73,27 +83,19 @@ def _player(trained):
 
 
 def load_any(path, trust, options):
-    """The same of ``train.py`` or, with ``trust``, any other model of Stable-Baselines3 or sb3-contrib, see ``load_other``."""
+    """A ``ModelPlayer`` of ``train.py`` or, with ``trust``, of any other model of Stable-Baselines3 or sb3-contrib, see ``load_other``."""
     file = file_of(path, "agent")
     trained = read(file, "agent")
     return load_other(file, trust, options) if trained is None else _player(trained)
 
 
 def load_other(file, trust, options):
-    """A ``ModelPlayer`` that train.py did not make, trained on a visit by what the environment shows; ``options``: of ``ACTION_OPTIONS``.
+    """A ``ModelPlayer`` that train.py did not make, trained with the environment's own observation. ``options``: ``ACTION_OPTIONS``.
 
-    Raises ValueError: before any code in the file runs, if by what it says it does not fit, or without ``trust``.
+    Raises ValueError without ``trust``, or if the spaces described in the file do not fit; both before any code in the file runs.
     """
-    saved = SavedModel.of(file, "agent")
-    options = ({"action": "discrete"} if saved.action[0] == "Discrete" else {}) | options
-    actions, views = SnookerVectorEnv(1, **options).single_action_space, [PlainView(kind) for kind in OBSERVATIONS]
-    fitting = [view for view in views if outline(view.space) == saved.observation]
-    other_view = saved.refused("must be a model that sees the observation of a visit, flat or balls, and nothing else")
-    other_actions = saved.refused(f"must be a model whose actions are {actions}: --options says how they were read, as placement=True")
-    if not fitting:
-        raise other_view
-    if outline(actions) != saved.action:
-        raise other_actions
+    fitting = FittingModel.of(file, options)
+    saved = fitting.saved
     try:
         seed = saved.data.get("seed")
         known = {
@@ -102,10 +104,6 @@ def load_other(file, trust, options):
         }  # fmt: skip
     except ValueError as error:
         raise saved.refused(f"must be a model saved by Stable-Baselines3 ({error})") from None
-    network = saved.network(trust, "--trust")
-    if network.observation_space != fitting[0].space:  # a file may say one thing and hold another
-        raise other_view
-    if network.action_space != actions:
-        raise other_actions
-    trained = Trained(network, saved.algorithm[1], "plain", UNKNOWN | options, imitated=None, start=None, **known)
-    return ModelPlayer(trained, options, fitting[0])
+    network = fitting.network(trust)
+    trained = Trained(network, saved.algorithm[1], "plain", UNKNOWN | fitting.options, imitated=None, start=None, **known)
+    return ModelPlayer(trained, fitting.options, PlainView(fitting.observation))

@@ -15,7 +15,7 @@ from commands.lifecycle import any_terminal, what_is_missing
 
 STOPPED = 130
 """Exit code after Ctrl-C, as shells have it."""
-PICTURES = Path(__file__).parents[1] / "pictures"
+PICTURES, FIGURES = (Path(__file__).parents[1] / name for name in ("pictures", "figures"))
 _written = []
 _transcripts = []
 """The file for what is printed, once a command has been given ``--out``."""
@@ -25,10 +25,11 @@ class Command(argparse.ArgumentParser):
     """The parser of ``python -m benchmarks.NAME``, with the options that all of them take.
 
     ``doc``: of its module. ``pictures``: names of the pictures it draws with matplotlib; ``files``: of others that it always writes, both
-    into ``folder`` unless ``--out`` names another. ``seed``: the usual one, if anything is drawn at random.
+    into ``folder`` unless ``--out`` names another. ``redraws``: ``--from`` draws the pictures from the figures that ``--json`` wrote.
+    ``seed``: the usual one, if anything is drawn at random.
     """
 
-    def __init__(self, name, doc, *, pictures=(), files=(), folder=PICTURES, seed=None):
+    def __init__(self, name, doc, *, pictures=(), files=(), folder=PICTURES, seed=None, redraws=False):
         super().__init__(f"python -m benchmarks.{name}", description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
         self._name, self._pictures, self._files, self._folder = name, pictures, files, folder
         made = " and ".join((*pictures, *files))
@@ -38,14 +39,27 @@ class Command(argparse.ArgumentParser):
         self.add_argument("--json", type=Path, metavar="FILE", help="write every figure into this file")
         if pictures:
             self.add_argument("--no-pictures", action="store_true", help="draw nothing")
+        if redraws:
+            kept = FIGURES / f"{name}.json"
+            says = f"measure nothing, draw from the figures that --json wrote [{kept.relative_to(root)}]"
+            self.add_argument("--from", dest="kept", type=Path, nargs="?", const=kept, metavar="FILE", help=says)
         if seed is not None:
             self.add_argument(
                 "--seed", type=at_least(0), default=seed, metavar="N", help=f"seed of everything that is drawn at random [{seed}]"
             )
 
     def options(self, argv=None):
-        """The options, once it is certain that the files can be written. ``folder``: where they go; ``pictures``: whether any are drawn."""
+        """The options, once it is certain that the files can be written.
+
+        ``folder``: where they go; ``pictures``: whether any are drawn; ``figures``: those of ``--from``, None if all is to be measured.
+        """
         found = self.parse_args(argv)
+        found.figures = None
+        if getattr(found, "kept", None) is not None:
+            try:
+                found.figures = json.loads(found.kept.read_text(encoding="utf-8"))
+            except (OSError, ValueError) as error:
+                self.error(f"argument --from: {found.kept}: {getattr(error, 'strerror', None) or error}")
         found.folder = found.out or self._folder
         found.pictures = bool(self._pictures) and not found.no_pictures
         written = [found.folder / name for name in (*(self._pictures if found.pictures else ()), *self._files)]
@@ -105,7 +119,7 @@ def run(main):
     except (KeyboardInterrupt, ImportError) as error:
         _alarm(0.0)
         code = _explained(error)
-    except BrokenPipeError:  # nobody reads on: python -m benchmarks.paper | head
+    except BrokenPipeError:  # the reader has left: python -m benchmarks.paper | head
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 1
     finally:

@@ -16,7 +16,7 @@ import snooker_env
 def texts():
     """The package's source: path from the package (posix) -> text."""
     root = Path(snooker_env.__file__).parent
-    return {path.relative_to(root).as_posix(): path.read_text() for path in sorted(root.rglob("*.py"))}
+    return {path.relative_to(root).as_posix(): path.read_text(encoding="utf-8") for path in sorted(root.rglob("*.py"))}
 
 
 def load(name, changed, modules, more=""):
@@ -28,7 +28,7 @@ def load(name, changed, modules, more=""):
         for path, text in changed.items():
             target = aside / name / path
             target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text)
+            target.write_text(text, encoding="utf-8")
         os.replace(aside, folder)
     sys.path.insert(0, str(folder))
     try:

@@ -12,7 +12,7 @@ cushion in closed form, with friction at the nose but none at the cloth; the cus
 once where its centre crosses the edge of a pocket."""
 
 _FLIES = "if kind == events.POT and state[i] != FALLING"
-"""Where the engine asks whether a ball at the edge of a pocket can meet a jaw behind it."""
+"""Where the engine tests whether a ball at the edge of a pocket can meet a jaw behind it."""
 
 _ADDED = '''
 
@@ -36,7 +36,7 @@ def _smooth_cushion(v, w, nx, ny, phys, e):
     f1, f2 = -k * a1, -k * a2
     q = 2.5 / R
     after = (vx + f1, -e * vy - sin_t * f2, vz)
-    return _to_world(after, nx, ny), _to_world((wx + q * f2, wy + q * sin_t * f1, wz - q * cos_t * f1), nx, ny), True
+    return _to_table(after, nx, ny), _to_table((wx + q * f2, wy + q * sin_t * f1, wz - q * cos_t * f1), nx, ny), True
 
 
 @kernel

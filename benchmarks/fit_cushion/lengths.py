@@ -75,7 +75,7 @@ def print_lengths(ends):
     print(f"""
 Players say about 5 lengths for the hardest stroke; a ball thrown as hard as possible was measured to go 4.25 to 4.75 (Stevenage 1996).
 "match" is short of that: {shipped[0]} at 7 to 9 m/s, {shipped[1]} at 10 to 13, which is a maximum. Part of it is the cloth: with this
-cushion the ramp asks for a rolling resistance of about {QUICK:g}, which gives {quick[0]} and {quick[1]}. With the livelier end of the
+cushion the ramp needs a rolling resistance of about {QUICK:g}, which gives {quick[0]} and {quick[1]}. With the livelier end of the
 power's interval as well it is {both[0]} and {both[1]}: the measured lengths, if balls were thrown at 10 to 13 m/s. "paper" has
 {paper[0]} and {paper[1]}, by a restitution that does not fall, which the rebounds above 2.5 m/s contradict.
 The constants are not bent to these lengths.""")

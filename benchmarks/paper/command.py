@@ -15,11 +15,13 @@ from . import other_data, paper_shots
 from .paper_shots import MEASURED_TO, QUANTITIES
 
 FILES = ("paper.png", "paper_data.png")
+PATH = 81
+"""Points of a path that is kept."""
 LABELS = dict(zip(QUANTITIES, ("cue ball's speed", "object ball's speed", "cue ball's angle", "object ball's angle"), strict=True))
 
 
 def measure():
-    """Every figure, JSON-able, and apart from them the shots of Fig. 1 and the curves of Fig. 6, which hold paths."""
+    """Every figure."""
     found = paper_shots.predictions()
     shots = paper_shots.spin_shots()
     curves = [paper_shots.curved_path(mu) for mu in paper_shots.CURVED["mu_bb"]]
@@ -27,16 +29,17 @@ def measure():
         "tables": paper_shots.table_rows(found),
         "models": paper_shots.model_rows(found),
         "head_on": paper_shots.head_on(),
-        "curved": [{k: v for k, v in c.items() if k != "path"} for c in curves],
+        "curved": [c | {"path": c["path"][::5].round(6).tolist()} for c in curves],
         "spins": [
-            {"top": top, "side": side, "aim_shift_deg": shift, "cue_ball": s.positions[0].tolist(), "duration": s.duration}
+            {"top": top, "side": side, "aim_shift_deg": shift, "cue_ball": s.positions[0].tolist(), "duration": s.duration,
+             "path": s.at(np.linspace(0.0, s.duration, PATH))[0][:, 0].round(4).tolist()}
             for top, side, shift, s in shots
         ],
         "throw_a14": other_data.a14(),
         "throw_domenech": other_data.domenech(),
         "cushion": other_data.cushion(),
     }  # fmt: skip
-    return figures, shots, curves
+    return figures
 
 
 def print_tables(rows):
@@ -162,25 +165,27 @@ def print_cushion(c):
         print(f"  {name}: off by {ranges[0]} up to {limit:g} m/s, by {ranges[1]} above")
 
 
-def draw(folder, figures, shots, curves):
+def draw(folder, figures):
     """Both pictures into ``folder``."""
     from . import pictures
 
     paper, data = (folder / name for name in FILES)
-    pictures.paper(paper, figures, shots, curves)
+    pictures.paper(paper, figures)
     pictures.data(data, figures)
     print(f"\n{paper}\n{data}")
 
 
 def main(argv=None):
     """Command line."""
-    options = Command("paper", __doc__, pictures=FILES).options(argv)
-    figures, shots, curves = measure()
-    print_tables(figures["tables"])
-    print_models(figures["models"])
-    print_figures(figures)
-    print_throw(figures["throw_a14"], figures["throw_domenech"])
-    print_cushion(figures["cushion"])
-    save_json(options.json, figures)
+    options = Command("paper", __doc__, pictures=FILES, redraws=True).options(argv)
+    figures = options.figures
+    if figures is None:
+        figures = measure()
+        print_tables(figures["tables"])
+        print_models(figures["models"])
+        print_figures(figures)
+        print_throw(figures["throw_a14"], figures["throw_domenech"])
+        print_cushion(figures["cushion"])
+        save_json(options.json, figures)
     if options.pictures:
-        draw(options.folder, figures, shots, curves)
+        draw(options.folder, figures)

@@ -1,6 +1,6 @@
 """What do the paper's equations give for its own shots? Tables 1 and 2, models without friction or spin, Figs. 1, 4 and 6.
 
-Paper: Mathavan, Jackson & Parkin (2014), constants of ``Physics.preset("paper")``. Used by ``python -m benchmarks.paper``. World frame of a
+Paper: Mathavan, Jackson & Parkin (2014), constants of ``Physics.preset("paper")``. Used by ``python -m benchmarks.paper``. Frame of a
 shot: the cue ball comes along +x and cuts the object ball to its left, angles in degrees from +x; units SI.
 """
 
@@ -126,7 +126,7 @@ def table_rows(found):
 
 
 def model_rows(found):
-    """How each model does: errors [%] of the measurement per shot, rms of all shots and without shot 1, how many the camera cannot tell."""
+    """How each model does: errors [%] of the measurement per shot, rms of all shots and without shot 1, how many the camera allows."""
     seen = measured()
     limits = np.array(list(MEASURED_TO.values()))
     out = {}
@@ -166,7 +166,7 @@ CURVED = {"v0": 2.0, "cut": 40.0, "mu_bb": (0.05, 0.1, 0.2)}
 
 
 def curved_path(mu_bb):
-    """Fig. 6: the object ball's path while it slips, from ``simulate`` and from the paper's parabola (section 2.5, slips mended).
+    """Fig. 6: the object ball's path while it slips, from ``simulate`` and from the paper's parabola (section 2.5, misprints corrected).
 
     The parabola, in X'Y' turned by psi = Phi'' - 90 deg so that the slip s'' is along +Y': X' keeps its speed, Y' is braked by mu_s g,
     for T_S = 2 s'' / (7 mu_s g); the ball rolls off at psi + atan2(Y'_S, X'_S).

@@ -225,9 +225,17 @@ def says(figures):
 
 def main():
     """Command line."""
-    parser = Command("pockets", __doc__, pictures=(FILE,))
+    parser = Command("pockets", __doc__, pictures=(FILE,), redraws=True)
     parser.add_argument("--quick", action="store_true", help="fewer speeds and distances, for a test")
     options = parser.options()
+    figures = measure(options) if options.figures is None else options.figures
+    if options.pictures:
+        picture.draw(figures, options.folder / FILE)
+        print(f"\n{options.folder / FILE}")
+
+
+def measure(options):
+    """Measure and print everything; the figures."""
     physics = sn.Physics.preset("match")
     engines = {"before": Engine(variants.load()._run, variants.AT_ONCE), "after": Engine()}
     speeds, distances = (QUICK_SPEEDS, QUICK_DISTANCES) if options.quick else (SPEEDS, DISTANCES)
@@ -246,10 +254,9 @@ def main():
     print("\nWhat follows")
     for line in lines:
         print(f"* {line}")
-    save_json(options.json, plain(figures | {"says": lines}))
-    if options.pictures:
-        picture.draw(figures, options.folder / FILE)
-        print(f"\n{options.folder / FILE}")
+    figures = plain(figures | {"says": lines})
+    save_json(options.json, figures)
+    return figures
 
 
 def plain(x):

@@ -1,4 +1,4 @@
-"""Is the yardstick itself right? One pair, a published break, half the step, twice the stiffness; the other rule by another road.
+"""Is the reference model right? One pair, a published break, half the step, twice the stiffness; the other rule by a second method.
 
 Used by ``python -m benchmarks.rack``.
 """
@@ -21,8 +21,10 @@ PUBLISHED = {0: 1.79, 1: 1.20, 2: 1.57, 4: 1.42, 5: 0.12, 7: 1.31, 8: 0.25, 11: 
 
 
 def checks(models):
-    """Is the yardstick itself right?"""
-    print("The yardstick checked\n  one pair against this project's impact model (rolling cue ball; largest difference over the speed)")
+    """Is the compliant reference model right?"""
+    print(
+        "The reference model checked\n  one pair against this project's impact model (rolling cue ball; largest difference over the speed)"
+    )
     figures = {}
     floating = sn.Physics.preset("paper", g=1e-9)  # the impact model has no weight
     for name, law in LAWS.items():
@@ -33,7 +35,7 @@ def checks(models):
                 n = np.array([sin(cut), cos(cut)])
                 r = np.array([[0, 0], 2 * R * n])
                 v, w = rolling(r, np.array([0.0, 1.0]), speed)
-                # the law with q = 1/2 has the wanted restitution at 5 m/s along the line of centres only: compare where it has
+                # the law with q = 1/2 has the intended restitution at 5 m/s along the line of centres only: compare where it has
                 if law.q == 0.5 and (cut or speed < 5.0):
                     continue
                 dt, span = (STEP, 1e-3) if speed > 0.5 else (5 * STEP, 2e-3)

@@ -7,7 +7,7 @@
 * **Simultaneous**: one linear complementarity problem over all touching contacts, no friction, solved by projected Gauss-Seidel: the
   compression impulses L >= 0 with closing speeds u <= 0 and L u = 0, times 1 + e. With one e for all contacts and no friction this is
   both Newton's law in Moreau's form (u+ + e u- complementary to L) and Poisson's (L grows by e L in restitution). Then the engine.
-* **Compliant**: the yardstick. All balls, contacts as springs with dampers, in micro-steps of 0.1 us for 10 ms; then the engine.
+* **Compliant**: the reference. All balls, contacts as springs with dampers, in micro-steps of 0.1 us for 10 ms; then the engine.
   F = k d^p + c d^q d', never pulling, d the overlap. Hertz: p = 3/2, k = (4/3) (E / (2 (1 - nu^2))) sqrt(R / 2), the resin's E = 5 GPa and
   nu = 0.34: round figures, and what twice the stiffness changes is printed. q = 1/4 (Tsuji 1992) loses the same share at every speed;
   q = 1/2 (Kuwabara & Kono 1987) loses more at speed. Linear: p = 1, q = 0, with Hertz's contact time at 5 m/s. c is set so that one
@@ -304,23 +304,31 @@ def verdict(models, figures):
 
 def main():
     """Command line."""
-    parser = Command("rack", __doc__, pictures=(FILE,), seed=0)
+    parser = Command("rack", __doc__, pictures=(FILE,), seed=0, redraws=True)
     parser.add_argument("--shots", type=at_least(1), default=100, help="whole shots of each kind")
     parser.add_argument("--orders", type=at_least(1), default=100, help="numberings of the rack")
     parser.add_argument("--racks", type=at_least(1), default=30, help="loose racks for each gap")
     parser.add_argument("--physics", choices=("paper", "match"), default="paper", help="restitution and friction")
     options = parser.options()
+    figures = measure(options) if options.figures is None else options.figures
+    if options.pictures:
+        picture(options.folder / FILE, figures)
+
+
+def measure(options):
+    """Measure and print everything; the figures."""
     models = Models(sn.Physics.preset(options.physics))
     rng = np.random.default_rng(options.seed)
     figures: dict = {"physics": options.physics, "seed": options.seed, "checks": checks(models), "cradle": cradle(models)}
     figures["head-on"], states = head_on(models)
+    figures["after"] = {name: {"velocities": v.tolist(), "shares": x.tolist()} for name, (v, x) in states.items()}
     figures["offsets"] = offsets(models)
     with ThreadPoolExecutor(os.cpu_count()) as workers:
         figures["gaps"] = gaps(models, options.racks, rng, workers)
         figures["orders"] = orders(models, options.orders, rng)
         figures["whole shots"], samples = whole_shots(models, options.shots, rng, workers)
+    figures["distances"] = {f"{kind}; {name}": x.tolist() for (kind, name), x in samples.items()}
     figures["cost"] = cost(models)
     figures["verdict"] = verdict(models, figures)
     save_json(options.json, figures)
-    if options.pictures:
-        picture(options.folder / FILE, states, figures, samples)
+    return figures

@@ -1,4 +1,4 @@
-"""How do touching balls move when their contacts are springs with dampers, followed in micro-steps? The yardstick of the rack.
+"""How do touching balls move when their contacts are springs with dampers, followed in micro-steps? The reference for the rack.
 
 Used by ``python -m benchmarks.rack``, whose docstring states the contact laws, the constants and what the cloth does.
 """

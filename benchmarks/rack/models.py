@@ -1,4 +1,4 @@
-"""What does each model make of a break, and how far apart are two of them? The contact laws, the sequence, the simultaneous solution.
+"""How does each model resolve a break, and how far apart are two of them? The contact laws, the sequence, the simultaneous solution.
 
 Used by ``python -m benchmarks.rack``, whose docstring states the models and the measures.
 """
@@ -26,7 +26,7 @@ def sharers(x):
 
 
 def apart(r):
-    """Positions with the last nanometres of overlap taken out, as the engine wants them."""
+    """Positions with the last nanometres of overlap taken out, as the engine needs them."""
     r = r.copy()
     for _ in range(1000):
         d = r[None] - r[:, None]

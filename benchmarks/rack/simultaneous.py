@@ -52,7 +52,7 @@ def simultaneous(r, v, e):
 
 
 def simultaneous_by_nnls(r, v, e):
-    """The same by another road: the velocities nearest to v that close no contact are those of a non-negative least squares problem."""
+    """The same by a second method: the velocities nearest to v that close no contact are those of a non-negative least squares problem."""
     i, j, nx, ny = contacts(r)
     rows = np.zeros((len(i), len(r), 2))
     for m in range(len(i)):

@@ -21,7 +21,7 @@ NEEDS = (
     "msgpack-numpy>=0.4.8", "pyyaml>=5.2", "click>=8.0", "pillow>=6.2", "h5py>=3.10", "h11>=0.16", "rich>=14,<15", "numpy-quaternion",
     "panda3d>=1.10.13", "panda3d-gltf>=1.2", "panda3d-simplepbr>=0.12",
 )  # fmt: skip
-"""What its wheel asks for; of panda3d (its window) the wheel pins a development build that PyPI has not, so any release is taken."""
+"""Its wheel's requirements; of panda3d (its window) the wheel pins a development build that is not on PyPI, so any release is taken."""
 
 _MAX_EVENTS = 20_000
 _WARM_UP = 5  # shots of each kind
@@ -29,7 +29,7 @@ _CHILD_SECONDS = 1500
 
 
 class PeerError(RuntimeError):
-    """The peer cannot be had, or does not run, here; the message says why, in one line."""
+    """The peer cannot be installed or run here; the message says why, in one line."""
 
 
 def _pip(python, *arguments):

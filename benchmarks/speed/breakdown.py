@@ -150,13 +150,13 @@ def instrumented(texts):
         out[name] = text + "\nfrom benchmarks.speed.breakdown import enter, leave\n"
         read += change.read
     if read != calls:
-        raise RuntimeError(f"{calls} calls of the pieces in the engine, {read} of them in plain statements: mend PIECES")
+        raise RuntimeError(f"{calls} calls of the pieces in the engine, {read} of them in plain statements: correct PIECES")
     return out
 
 
 def load():
     """The copy's ``engine`` and ``simulation`` modules."""
-    more = Path(__file__).read_text()  # ``enter`` and ``leave`` are compiled into the copy
+    more = Path(__file__).read_text(encoding="utf-8")  # ``enter`` and ``leave`` are compiled into the copy
     return package_copies.load("snooker_env_profile", instrumented(package_copies.texts()), ["physics.engine", "simulation"], more)
 
 

@@ -6,10 +6,9 @@ import time
 import numpy as np
 
 import snooker_env as sn
+from commands import picture_style, provenance
 from snooker_env.physics.impact import contact
 from snooker_env.simulation import MAX_EVENTS, _run
-
-from .._common.command import pyplot, save_figure
 
 BALLS = (2, 3, 4, 6, 8, 11, 15, 22)
 BATCHES = tuple(4**k for k in range(9))  # 1 to 65,536
@@ -115,32 +114,41 @@ def print_growth(found):
             print(f"  {name:20s}" + "".join(f"{row[name]:9.2f}" for row in found[key]))
 
 
-def draw(found, file):
+def draw(figures, file):
     """Four panels."""
-    plt = pyplot()
-
-    figure, ((by_balls, by_event), (by_batch, by_thread)) = plt.subplots(2, 2, figsize=(10, 7.5), layout="constrained")
-    balls = [row["balls"] for row in found["balls"]]
-    median, low, high = np.array([row["us"] for row in found["balls"]]).T
-    by_balls.fill_between(balls, low, high, alpha=0.2, lw=0, label="5 % to 95 % of shots")
-    by_balls.plot(balls, median, "o-", label="median")
-    by_balls.set(xlabel="balls on the table", ylabel="us a shot", title="Random shots", ylim=(0, None), xticks=balls)
-    for kind, of in found["events"].items():
-        events, us = np.array(of["events"]), np.array(of["us"])
-        line = by_event.plot(*by_events(events, us), "o-", label=f"{kind}, medians", zorder=3)
-        by_event.scatter(np.maximum(events, 1), us, s=3, alpha=0.25, color=line[0].get_color(), lw=0)
-    by_event.set(xscale="log", yscale="log", xlabel="events in the shot", ylabel="us a shot", title="Each shot")
-    for name, label in (("kernel us", "kernel"), ("simulate_batch us", "simulate_batch")):
-        by_batch.plot([r["shots"] for r in found["batch"]], [r[name] for r in found["batch"]], "o-", label=label)
+    found = figures["growth"]
+    foot = f"python -m benchmarks.speed --parts growth; {provenance.line(figures['machine'])}"
+    note = "Fidelity standard. kernel: the compiled engine alone; simulate_batch: with checks of the input and result objects."
+    with picture_style.drawing() as plt:
+        figure, ((by_balls, by_event), (by_batch, by_thread)) = picture_style.page(
+            plt, 7.6, "How the time of a simulated shot grows", note, foot=foot, rows=2, columns=2
+        )
+        balls = [row["balls"] for row in found["balls"]]
+        median, low, high = np.array([row["us"] for row in found["balls"]]).T
+        by_balls.fill_between(balls, low, high, alpha=0.18, lw=0, label="5 % to 95 % of shots")
+        by_balls.plot(balls, median, "o-", label="median")
+        by_balls.set(xlabel="balls on the table", ylabel="time of a shot [µs]", title="With the balls on the table")
+        by_balls.set_ylim(0, 1.35 * high.max())
+        by_balls.set_xticks([2, 4, 6, 8, 11, 15, 22])
+        for kind, of in found["events"].items():
+            events, us = np.array(of["events"]), np.array(of["us"])
+            (line,) = by_event.plot(*by_events(events, us), "o-", label=f"{kind}: medians", zorder=3)
+            by_event.scatter(np.maximum(events, 1), us, s=4, alpha=0.25, color=line.get_color(), lw=0)
+        by_event.set(xlabel="events in the shot", ylabel="time of a shot [µs]", title="With the events in a shot")
         rows = found["threads"]
-        by_thread.plot([r["threads"] for r in rows], [1e6 / r[name] for r in rows], "o-", label=label)
-    by_batch.set(xscale="log", yscale="log", xlabel="shots in the batch", ylabel="us a shot", title="Random 22-ball shots, 1 thread")
-    kernel = found["threads"][0]["kernel us"]
-    threads = [r["threads"] for r in found["threads"]]
-    by_thread.plot(threads, [1e6 / kernel * t for t in threads], ":", color="grey", label="kernel, if threads cost nothing")
-    title = f"Random 22-ball shots, batch of {found['threads'][0]['shots']}"
-    by_thread.set(xlabel="threads", ylabel="shots a second", title=title, ylim=(0, None), xticks=threads)
-    for axes in (by_balls, by_event, by_batch, by_thread):
-        axes.grid(alpha=0.3)
-        axes.legend(frameon=False, fontsize=8)
-    save_figure(figure, file, dpi=110)
+        for name, label in (("kernel us", "kernel"), ("simulate_batch us", "simulate_batch")):
+            by_batch.plot([r["shots"] for r in found["batch"]], [r[name] for r in found["batch"]], "o-", label=label)
+            by_thread.plot([r["threads"] for r in rows], [1e6 / r[name] for r in rows], "o-", label=label)
+        by_batch.set(xlabel="shots in a batch", ylabel="time of a shot [µs]", title="With the batch (22 balls, 1 thread)")
+        threads, kernel = [r["threads"] for r in rows], rows[0]["kernel us"]
+        by_thread.plot(threads, [1e6 / kernel * t for t in threads], ":", color=picture_style.GREY, label="kernel times the threads")
+        title = f"With the threads (22 balls, {rows[0]['shots']:,} shots)"
+        by_thread.set(xlabel="threads", ylabel="shots a second", title=title, ylim=(0, None), xticks=threads)
+        by_thread.yaxis.set_major_formatter(picture_style.number)
+        picture_style.log_axis(by_event.xaxis)
+        picture_style.log_axis(by_event.yaxis)
+        picture_style.log_axis(by_batch.xaxis, decades=2)
+        picture_style.log_axis(by_batch.yaxis, subs=(1, 2, 3, 5))
+        for axes in (by_balls, by_event, by_batch, by_thread):
+            axes.legend(loc="lower left" if axes is by_thread else "upper right" if axes is by_batch else "upper left")
+        picture_style.save(figure, file)

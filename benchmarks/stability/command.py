@@ -39,13 +39,21 @@ def table_of(title, results, limits):
 
 def main():
     """Command line; the exit code."""
-    parser = Command("stability", __doc__, pictures=(FILE,), seed=0)
+    parser = Command("stability", __doc__, pictures=(FILE,), seed=0, redraws=True)
     parser.add_argument("--fuzz", type=at_least(0), default=1_000_000, help="random shots; 0 for none")
     parser.add_argument("--threads", type=at_least(1), default=2, help="of the fuzz [2]")
     parser.add_argument("--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot of the fuzz again")
     options = parser.options()
     if options.replay:
         return int(not fuzz.replay(*options.replay))
+    figures = measure(options) if options.figures is None else options.figures
+    if options.pictures:
+        draw(options.folder / FILE, figures)
+    return int(bool(figures["failed"]))
+
+
+def measure(options):
+    """Measure and print everything; the figures."""
     impacts, shots = impact_extremes(), shot_extremes()
     print("\n".join(table_of("impacts (worst figures)", impacts, IMPACT_LIMITS)), end="\n\n")
     print("\n".join(table_of("shots (worst figures)", shots, SHOT_LIMITS)), end="\n\n")
@@ -63,19 +71,16 @@ def main():
     ]
     failed += ["mirror symmetry"] * bool(symmetry[1].max() > 0 or fuzzed.any()) + ["fuzz"] * bool(found and found.failures)
     print("\nall invariants hold" if not failed else "\nFAILED: " + "; ".join(failed))
-    if options.json:
-        figures = {
-            "impacts": {k: f | {"played": n, "failed": verdict(f, IMPACT_LIMITS)} for k, (n, f) in impacts.items()},
-            "shots": {k: f | {"played": n, "failed": verdict(f, SHOT_LIMITS)} for k, (n, f) in shots.items()},
-            "allowed": {"impacts": IMPACT_LIMITS, "shots": SHOT_LIMITS}, "euler": euler, "three at once": order,
-            "symmetry": {
-                "mirror": float(max(symmetry[1].max(), fuzzed.max())), "mirrored": len(symmetry[1]) + len(fuzzed),
-                "factor a contact": growth(symmetry[0], symmetry[2]),
-            },
-        }  # fmt: skip
-        if found:
-            figures["fuzz"] = fuzz.figures_of(found, options.seed)
-        save_json(options.json, figures)
-    if options.pictures:
-        draw(options.folder / FILE, impacts, shots, euler, symmetry, found)
-    return int(bool(failed))
+    contacts, mirror, turned = symmetry
+    figures = {
+        "impacts": {k: f | {"played": n, "failed": verdict(f, IMPACT_LIMITS)} for k, (n, f) in impacts.items()},
+        "shots": {k: f | {"played": n, "failed": verdict(f, SHOT_LIMITS)} for k, (n, f) in shots.items()},
+        "allowed": {"impacts": IMPACT_LIMITS, "shots": SHOT_LIMITS}, "euler": euler, "three at once": order,
+        "symmetry": {
+            "mirror": float(max(mirror.max(), fuzzed.max())), "mirrored": len(mirror) + len(fuzzed),
+            "factor a contact": growth(contacts, turned), "contacts": contacts.tolist(), "turned": turned.tolist(),
+        },
+        "fuzz": fuzz.figures_of(found, options.seed) if found else None, "failed": failed,
+    }  # fmt: skip
+    save_json(options.json, figures)
+    return figures

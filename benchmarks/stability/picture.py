@@ -1,97 +1,159 @@
-"""What do the extremes look like? Draws ``stability.png`` from the figures of ``python -m benchmarks.stability``."""
+"""How near to the limits do the extremes come? Draws ``stability.png`` from the figures of ``python -m benchmarks.stability``."""
+
+import re
 
 import numpy as np
 
+from commands import picture_style
+
 from .. import fuzz
-from .._common import invariants as invariants
-from .._common.command import pyplot, save_figure
-from .impacts import IMPACT_LIMITS
-from .shots import SHOT_LIMITS
-from .symmetry import growth
+from .._common import invariants
 
 LEAST_SHOWN = 1e-9
+FROM, FAILS = 1e-6, 1.0
+"""The scale of the colours: shares of what is allowed."""
+GROUPS = (
+    (r"mu_s \S+, mu_bb \S+", "mu_s 0 to 1, mu_bb 0 to 1"),
+    (r"cushion: mu_s \S+, mu_c \S+", "cushion: mu_s 0 to 1, mu_c 0 to 1"),
+    (r"(.*), gap \S+", r"\1"),
+    (r"... at a cushion, 5,000 rad/s", "cushion: spins of 5,000 rad/s"),
+    (r"... at a cushion", "cushion: speeds 1e-9 to 50 m/s"),
+    (r"(e_b, e_c) = [01]", r"\1 = 0 and 1"),
+    (r"(e_b|mu_bb|mu_c) = [01]", r"\1 = 0 and 1"),
+    (r"(mu_s) = .*", r"\1 = 0.001 to 1"),
+    (r"(mu_r) = .*", r"\1 = 0.001 and 1"),
+)
+"""Extremes that share a line, by their names; of several the worst figure is shown."""
+SAYS = {
+    "unsolved": "not\nsolved", "energy": "energy\ngained", "momentum": "momen-\ntum", "parting": "still\nclosing",
+    "mirror": "mirror\nimage", "lost": "not\nended", "events": "number\nof events", "overlap": "balls\noverlap",
+    "in cushion": "in the\ncushion", "rest": "speed\nat rest", "log": "log not\ncorrect", "jump": "path\njumps",
+    "energy at impact": "energy,\nimpact", "energy between": "energy,\nbetween",
+}  # fmt: skip
 
 
-def draw(path, impacts, shots, euler, symmetry, found):
-    """Four pictures: margins, the paper's scheme, growth of rounding, the fuzz."""
-    plt = pyplot()
-
-    figure, axes = plt.subplots(2, 2, figsize=(16, 16), width_ratios=(1.25, 1), height_ratios=(1.6, 1), layout="constrained")
-    margins(axes[0, 0], impacts, shots)
-    scheme(axes[0, 1], euler)
-    chaos(axes[1, 1], *symmetry)
-    invariants_of_fuzz(axes[1, 0], found)
-    save_figure(figure, path, dpi=90)
-
-
-def margins(axis, impacts, shots):
-    """Worst figure over what is allowed, of every extreme and invariant."""
-    rows = [
-        (name, limits, figures)
-        for results, limits in ((impacts, IMPACT_LIMITS), (shots, SHOT_LIMITS))
-        for name, (_, figures) in results.items()
-    ]
-    columns = list(dict.fromkeys([*IMPACT_LIMITS, *SHOT_LIMITS]))
-    values = np.full((len(rows), len(columns)), np.nan)
-    for k, (_, limits, figures) in enumerate(rows):
-        for name, limit in limits.items():
-            x = figures[name]
-            ratio = (x + 0.1) / 0.2 * 10 if limit == 0 and x > 0 else 0.0 if limit == 0 else x / limit
-            values[k, columns.index(name)] = np.log10(max(ratio, LEAST_SHOWN))
-    shown = axis.imshow(values, aspect="auto", cmap="RdYlGn_r", vmin=-6, vmax=2)
-    axis.set_xticks(range(len(columns)), columns, rotation=35, ha="right", fontsize=8)
-    axis.set_yticks(range(len(rows)), [name for name, _, _ in rows], fontsize=7)
-    axis.set_title("worst figure over what is allowed, log10 (red above 0: fails; white: does not apply)", fontsize=10)
-    axis.figure.colorbar(shown, ax=axis, shrink=0.7)
+def draw(path, figures):
+    """Four charts: margins of impacts and shots, the paper's scheme, the fuzz, growth of rounding."""
+    note = (
+        "Each extreme is played and its invariants are checked. In the tables: the worst violation as a share of what is allowed.\n"
+        "Above 1 it fails; empty cells are below one millionth or never violated."
+    )
+    failed = figures["failed"]
+    result = "all invariants hold" if not failed else f"FAILED: {len(failed)} invariants"
+    foot = f"python -m benchmarks.stability: {result}"
+    impacts, shots = (grouped(figures[what], figures["allowed"][what]) for what in ("impacts", "shots"))
+    with picture_style.drawing() as plt:
+        figure, _ = picture_style.page(plt, 14.0, "How near impacts and shots at the extremes come to breaking a law", note, foot=foot)
+        upper, middle, lower = figure.subfigures(3, 1, height_ratios=(3.9, 4.9, 3.7))
+        left, right = upper.subplots(1, 2, width_ratios=(1, 1.05))
+        _margins(left, impacts, "Impacts")
+        _scheme(right, figures["euler"])
+        whole = middle.subplots()
+        shown = _margins(whole, shots, "Shots")
+        picture_style.colour_bar(middle, shown, whole, "share of what is allowed", (1e-6, 1e-4, 1e-2, 1))
+        left, right = lower.subplots(1, 2, width_ratios=(1.5, 1))
+        _fuzz(left, figures["fuzz"])
+        _rounding(right, figures["symmetry"])
+        picture_style.save(figure, path)
 
 
-def scheme(axis, euler):
+def share(figure, limit):
+    """A figure over what is allowed; where nothing is allowed, 10 and more for any."""
+    if limit == 0:
+        return 0.0 if figure <= 0 else 10.0 * figure
+    return max(figure / limit, 0.0)
+
+
+def grouped(results, limits):
+    """{line: {invariant: the worst share of what is allowed}}."""
+    lines: dict[str, dict[str, float]] = {}
+    for name, row in results.items():
+        line = name
+        for pattern, text in GROUPS:
+            if re.fullmatch(pattern, name):
+                line = re.sub(pattern, text, name)
+                break
+        shares = lines.setdefault(line, dict.fromkeys(limits, 0.0))
+        for what, limit in limits.items():
+            shares[what] = max(shares[what], share(row[what], limit))
+    return lines
+
+
+def _margins(axes, lines, title):
+    """A table in colour: extremes down, invariants across."""
+    from matplotlib.colors import ListedColormap, LogNorm
+
+    columns = list(next(iter(lines.values())))
+    values = np.array([list(row.values()) for row in lines.values()])
+    blues = picture_style.colours_of("Blues", np.linspace(0.08, 0.75, 255))
+    shown = axes.imshow(
+        np.where(values >= FROM, values, np.nan), norm=LogNorm(FROM, FAILS), aspect="auto",
+        cmap=ListedColormap(blues).with_extremes(over=picture_style.ORANGE),
+    )  # fmt: skip
+    for k, row in enumerate(values):
+        for c, x in enumerate(row):
+            if x >= FROM:
+                text = f"{x:.2f}" if x >= 0.01 else f"$10^{{{np.log10(x):.0f}}}$"
+                axes.text(c, k, text, ha="center", va="center", size=picture_style.SMALL, color="white" if x > 0.05 else picture_style.INK)
+    for edge in np.arange(0.5, len(values) - 1):
+        axes.axhline(edge, color=picture_style.PAGE, lw=1)
+    for edge in np.arange(0.5, len(columns) - 1):
+        axes.axvline(edge, color=picture_style.PAGE, lw=1)
+    axes.set_xticks(range(len(columns)), [SAYS[name] for name in columns])
+    axes.set_yticks(range(len(lines)), list(lines))
+    axes.tick_params(length=0, labelcolor=picture_style.INK)
+    axes.grid(False)
+    axes.spines[:].set_visible(False)
+    axes.set_title(title)
+    return shown
+
+
+def _scheme(axes, euler):
     """Error and energy gained against N."""
-    n = np.array(list(euler))
+    n = np.array([int(steps) for steps in euler])
     for key, label, mark in (
-        ("error_worst", "worst error / incoming speed", "o-"),
-        ("error_median", "median error", "o:"),
+        ("error_worst", "worst error / speed", "o-"),
+        ("error_median", "median error / speed", "o:"),
         ("gain e 1", "energy gained, e = 1", "s-"),
         ("gain e 0.89", "energy gained, e = 0.89", "^-"),
     ):
         y = np.array([row[key] for row in euler.values()])
-        axis.loglog(n[y > 0], y[y > 0], mark, label=label)
-    axis.axhline(1.0, color="grey", lw=0.8)
-    axis.set_xlabel("steps N of the paper's scheme (eq. 14)")
-    axis.set_title("Where does euler:N break? 200 impacts", fontsize=10)
-    axis.legend(fontsize=8)
+        axes.plot(n[y > 0], y[y > 0], mark, label=label)
+    picture_style.log_axis(axes.xaxis, decades=2)
+    picture_style.log_axis(axes.yaxis)
+    axes.set(xlabel="steps N", title="The paper's scheme, euler:N (200 impacts)")
+    axes.legend(loc="lower left")
 
 
-def chaos(axis, contacts, mirror, turned):
+def _rounding(axes, symmetry):
     """Deviation against contacts."""
-    axis.semilogy(contacts + np.linspace(-0.3, 0.3, len(contacts)), np.maximum(turned, 1e-17), ".", alpha=0.6, label="turned by 1 rad")
-    at = np.arange(0, contacts.max() + 1)
+    contacts, turned = np.array(symmetry["contacts"]), np.array(symmetry["turned"])
     good = turned > 0
-    axis.semilogy(
-        at,
-        np.exp(np.polyval(np.polyfit(contacts[good], np.log(turned[good]), 1), at)),
-        "k-",
-        lw=1,
-        label=f"x {growth(contacts, turned):.1f} a contact",
-    )
-    axis.set_xlabel("ball-ball contacts of the shot")
-    axis.set_ylabel("deviation of the places at rest [m]")
-    axis.set_title(f"How rounding grows (mirrored shots: {mirror.max():.1g} m)", fontsize=10)
-    axis.legend(fontsize=8)
+    axes.plot(contacts[good] + np.linspace(-0.3, 0.3, good.sum()), turned[good], ".", alpha=0.6, mew=0, label="a shot turned by 1 rad")
+    at = np.arange(0, contacts.max() + 1)
+    fit = np.exp(np.polyval(np.polyfit(contacts[good], np.log(turned[good]), 1), at))
+    axes.plot(at, fit, color=picture_style.INK, lw=1.2, label=f"times {symmetry['factor a contact']:.1f} a contact")
+    picture_style.log_axis(axes.yaxis, decades=2)
+    axes.set(xlabel="ball-ball contacts in the shot", ylabel="deviation at rest [m]", title="How rounding errors grow")
+    axes.set_ylim(turned[good].min() / 30, turned.max() * 3)
+    axes.legend(loc="lower right")
 
 
-def invariants_of_fuzz(axis, found):
+def _fuzz(axes, found):
     """Worst of each invariant by fidelity, over what is allowed."""
     if not found:
-        axis.set_axis_off()
+        axes.set_axis_off()
         return
     names = [n for n in invariants.NAMES if n not in ("finite", "clock", "account")]
-    for k, fidelity in enumerate(sorted(found.worst)):
-        pick = [invariants.NAMES.index(n) for n in names]
-        ratio = np.maximum((found.worst[fidelity] / np.maximum(fuzz.allowed(fidelity), 1e-300))[pick], LEAST_SHOWN)
-        axis.semilogy(np.arange(len(names)) + 0.1 * (k - 3), ratio, "o", label=fidelity)
-    axis.axhline(1.0, color="red", lw=1)
-    axis.set_xticks(range(len(names)), names, rotation=30, ha="right", fontsize=8)
-    axis.set_ylabel("worst figure over what is allowed")
-    axis.set_title(f"{found.shots:,} random shots: the worst of each invariant (at the bottom: never violated at all)", fontsize=10)
-    axis.legend(fontsize=7, ncols=6, loc="lower center", bbox_to_anchor=(0.5, 0.08))
+    fidelities = [f for f in ("fast", "standard", "reference", "euler:100", "euler:400", "euler:1000") if f in found["worst"]]
+    for k, fidelity in enumerate(fidelities):
+        limits: dict[str, float] = dict(zip(invariants.NAMES, fuzz.allowed(fidelity), strict=True))
+        ratio = [max(found["worst"][fidelity][name] / limits[name], LEAST_SHOWN) for name in names]
+        axes.plot(np.arange(len(names)) + 0.12 * (k - (len(fidelities) - 1) / 2), ratio, "o", ms=4.5, label=fidelity)
+    axes.axhline(1.0, color=picture_style.ORANGE, lw=1.4)
+    picture_style.log_axis(axes.yaxis, decades=2)
+    axes.set_ylim(LEAST_SHOWN / 3, 2e3)
+    axes.set_xticks(range(len(names)), [SAYS[name] for name in names])
+    axes.tick_params(axis="x", length=0)
+    axes.set(ylabel="share of what is allowed", title=f"{found['shots']:,} random shots: the worst of each")
+    axes.legend(ncols=3, loc="upper center", handletextpad=0.1, columnspacing=0.8)

@@ -25,16 +25,16 @@ FLAGS = (
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--disable-sync",
 )  # fmt: skip
-LOOKS = {"as it opens": {}, "all": {"paths": True, "spin": "all", "labels": True}}
+SETTINGS = {"as it opens": {}, "all": {"paths": True, "spin": "all", "labels": True}}
 BEGIN, END = 0.35, 6.0
 """The part of the stroke in which many balls move [s]."""
 LATE = 25.0
 """A picture that comes so long after the last one was missed by the clock [ms]."""
 
-RATE = """async ([look, begin, end, seconds]) => {
+RATE = """async ([setting, begin, end, seconds]) => {
   const player = window.player, stamps = [];
   player.pause();
-  Object.assign(player.show, look);
+  Object.assign(player.show, setting);
   player.seek(0, begin);
   player.play();
   const first = performance.now();
@@ -49,9 +49,9 @@ RATE = """async ([look, begin, end, seconds]) => {
   player.pause();
   return stamps;
 }"""
-COST = """async ([look, begin, end, count]) => {
+COST = """async ([setting, begin, end, count]) => {
   const player = window.player, pen = player.canvas.getContext("2d"), costs = [];
-  Object.assign(player.show, look);
+  Object.assign(player.show, setting);
   for (let k = 0; k < count; k++) {
     const before = performance.now();
     player.seek(0, begin + (end - begin) * k / count);
@@ -82,10 +82,10 @@ def browser_of(playwright):
     return playwright.chromium.launch(executable_path=found, args=list(FLAGS))
 
 
-def measured(page, look, seconds):
-    """Figures of one way to look at the break-off."""
-    stamps = np.diff(page.evaluate(RATE, [look, BEGIN, END, seconds]))
-    costs = page.evaluate(COST, [look, BEGIN, END, int(60 * seconds)])[5:]
+def measured(page, setting, seconds):
+    """Figures of the break-off with one setting of the player."""
+    stamps = np.diff(page.evaluate(RATE, [setting, BEGIN, END, seconds]))
+    costs = page.evaluate(COST, [setting, BEGIN, END, int(60 * seconds)])[5:]
     return {
         "frames_per_second": 1000.0 / float(stamps.mean()), "pictures": len(stamps), "late": int((stamps >= LATE).sum()),
         "draw_median_ms": float(np.median(costs)), "draw_95_ms": float(np.quantile(costs, 0.95)),
@@ -116,14 +116,14 @@ def main():
             "page_bytes": file.stat().st_size,
             "canvas": page.evaluate("[player.canvas.width, player.canvas.height]"),
         }
-        figures["looks"] = {name: measured(page, look, options.seconds) for name, look in LOOKS.items()}
+        figures["settings"] = {name: measured(page, setting, options.seconds) for name, setting in SETTINGS.items()}
         browser.close()
     print(figures["machine"])
     print(f"Chromium {figures['chromium']} without a graphics card")
     sizes = f"page {options.width} x {options.height}, table {' x '.join(map(str, figures['canvas']))} pixels"
     print(f"{sizes}; the file has {figures['page_bytes']} bytes\n")
     print(f"{'':12s}{'pictures/s':>11s}{'late':>12s}{'one picture [ms]: median':>27s}{'95 %':>8s}")
-    for name, one in figures["looks"].items():
+    for name, one in figures["settings"].items():
         late = f"{one['late']} of {one['pictures']}"
         print(f"{name:12s}{one['frames_per_second']:11.1f}{late:>12s}{one['draw_median_ms']:27.1f}{one['draw_95_ms']:8.1f}")
     save_json(options.json, figures)

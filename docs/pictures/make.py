@@ -3,6 +3,7 @@
 The page of ``snooker_env.play`` with advice, and a replay of a trained agent's break, each as a browser shows it.
 """
 
+import argparse
 import re
 import shutil
 import subprocess
@@ -18,13 +19,13 @@ ROOT = HERE.parents[1]
 QUIET = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update")
 
 
-def shoot(page, name):
-    """A screenshot in this folder."""
-    page.screenshot(path=HERE / name, type="jpeg", quality=82)
-    print(HERE / name)
+def shoot(page, file):
+    """A screenshot in this file."""
+    page.screenshot(path=file, type="jpeg", quality=82)
+    print(file)
 
 
-def page_with_advice(browser):
+def page_with_advice(browser, out):
     """The page to play, as it answers "What would you play?"."""
     command = [sys.executable, "-m", "snooker_env.play", "--no-browser", "--layout", "opened", "--seed", "3", "--agent", "ppo_foresight"]
     server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
@@ -36,12 +37,12 @@ def page_with_advice(browser):
         page.get_by_text("points expected").nth(4).wait_for(timeout=120_000)
         page.get_by_text("points expected").first.hover()
         time.sleep(1.5)
-        shoot(page, "page.jpg")
+        shoot(page, out / "page.jpg")
     finally:
         server.terminate()
 
 
-def replay(browser):
+def replay(browser, out):
     """The replay of a break, paths on, at a desk and on a phone."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "break.html"
@@ -54,11 +55,14 @@ def replay(browser):
             for _ in range(6):
                 page.keyboard.press("Shift+ArrowRight")
             time.sleep(3.5)
-            shoot(page, name)
+            shoot(page, out / name)
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Make the screenshots of the documentation anew.")
+    parser.add_argument("--out", type=Path, default=HERE, metavar="FOLDER", help="where to write them (default: here)")
+    folder = parser.parse_args().out
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(QUIET))
-        page_with_advice(chromium)
-        replay(chromium)
+        page_with_advice(chromium, folder)
+        replay(chromium, folder)

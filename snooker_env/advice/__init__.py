@@ -1,4 +1,4 @@
-"""Advice: what a player would do at a position, and what would come of it under errors of execution, as data and in words.
+"""Advice: the strokes that a player would play in a position, and their outcomes under execution errors, as data and in words.
 
 >>> import snooker_env as sn
 >>> position = sn.Position(cue=(0.25, 0.6), reds=[(-0.4, 1.3)], black=(0.0, 1.4605), on="red")
@@ -6,8 +6,8 @@
 >>> print(advice[0].words)  # doctest: +ELLIPSIS
 red, top left, ... m/s, ..., chance ... %, ... points expected
 
-A pocket is an index of ``snooker_env.POCKETS``. In words the pockets are the green pocket, the yellow pocket, right middle, top right, top
-left and left middle: left and right as seen from baulk, looking to the black end, so right is the yellow side (+x).
+Pockets are numbered as in ``snooker_env.POCKETS``. In words they are called green pocket, yellow pocket, right middle, top right, top left
+and left middle. Left and right are as seen from the baulk end, facing the black end: right is the yellow side (+x).
 """
 
 from .advisor import Advisor

@@ -12,17 +12,28 @@ from .players import names
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print advice. Exit code 0; 2 for wrong arguments and files, with one line that says what is wrong."""
-    parser = argparse.ArgumentParser("python -m snooker_env.advice", description="What would a player do here, and what would come of it?")
-    parser.add_argument("--position", required=True, metavar="FILE", help="JSON of a position: Position.save, or by hand")
+    """Print advice for a position.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        The command line; default: that of the process.
+
+    Returns
+    -------
+    int
+        Exit code: 0; 2 for wrong arguments or files, after one line that says what is wrong.
+    """
+    parser = argparse.ArgumentParser("python -m snooker_env.advice", description="Ranked strokes of a player, and their outcomes.")
+    parser.add_argument("--position", required=True, metavar="FILE", help="JSON of a position: from Position.save, or hand-written")
     parser.add_argument("--agent", default="lookahead", help=f"{', '.join(names())}, a model's .zip or MODULE:CLASS (default: lookahead)")
-    parser.add_argument("--noise", default="professional", help=f"{', '.join(LEVELS)} (default: professional)")
-    parser.add_argument("--n", type=int, default=5, help="strokes at most (default: 5)")
-    parser.add_argument("--samples", type=int, default=200, help="how often each is played (default: 200)")
-    parser.add_argument("--visits", type=int, default=40, help="visits of each that are played on (default: 40)")
-    parser.add_argument("--seed", type=int, default=0, help="of the noise samples (default: 0)")
-    parser.add_argument("--json", action="store_true", help="all figures as JSON")
-    parser.add_argument("--trust", action="store_true", help="whether code in a model's file may run")
+    parser.add_argument("--noise", default="professional", help=f"execution errors: {', '.join(LEVELS)} (default: professional)")
+    parser.add_argument("--n", type=int, default=5, help="largest number of strokes (default: 5)")
+    parser.add_argument("--samples", type=int, default=200, help="noise samples of each stroke (default: 200)")
+    parser.add_argument("--visits", type=int, default=40, help="visits of each that are continued (default: 40)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the noise samples (default: 0)")
+    parser.add_argument("--json", action="store_true", help="print all figures as JSON")
+    parser.add_argument("--trust", action="store_true", help="let code in a model's file run")
     given = parser.parse_args(argv)
     try:
         advice = advise(

@@ -1,4 +1,4 @@
-"""What must a player do that gives advice? Rank strokes at one position; from that ``Advisor`` plays on any number of tables as well."""
+"""What must a player do that gives advice? Rank strokes in one position. From that, ``Advisor`` also plays on any number of tables."""
 
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar, TypeAlias
@@ -12,13 +12,26 @@ from .practice import Practice, practice_of
 from .strokes import CueStroke
 
 Ranked: TypeAlias = list[tuple[CueStroke, float | None]]
-"""Strokes, best first, each with the player's own score of it if it has one."""
+"""Strokes, best first, each with the player's own score of it, or None."""
 
 
 class Advisor(ABC):
-    """A player that ranks strokes.
+    """Base class of players that rank strokes. Subclasses implement ``rank`` and set ``name``.
 
-    ``act`` makes it a player of tables, as all are: ``options`` says how its actions are read, and it gives one for each table.
+    An advisor can also play on tables, as all players of this project: ``options`` holds the keywords of ``Options`` that define its
+    action format, and ``act`` returns one action for each table.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import Advisor, CueStroke
+    >>> class StraightAhead(Advisor):
+    ...     name = "straight_ahead"
+    ...     def rank(self, practice, at, n, seed):
+    ...         return [(CueStroke(speed=2.0, aim=1.5707963), None)]
+    >>> advice = sn.advise(sn.Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), agent=StraightAhead(), samples=20, visits=0)
+    >>> advice[0].kind, advice[0].speed
+    ('safety', 2.0)
     """
 
     name: ClassVar[str]
@@ -29,16 +42,60 @@ class Advisor(ABC):
 
     @abstractmethod
     def rank(self, practice: Practice, at: Positions, n: int, seed: int) -> Ranked:
-        """At least one stroke at the one position ``at``, best first, about n or more if there are so many."""
+        """Rank strokes in one position.
+
+        Parameters
+        ----------
+        practice : Practice
+            Plays trial strokes: ``practice.play`` with and without the player's execution errors; ``practice.prospects`` for the values of
+            positions.
+        at : Positions
+            The one position, with one row.
+        n : int
+            About how many strokes the caller needs; more or fewer may be returned.
+        seed : int
+            Seed of the player's random numbers.
+
+        Returns
+        -------
+        list of (CueStroke, float or None)
+            At least one stroke, best first, each with the player's own score, or None.
+        """
+
+    def begin(self, seed: int) -> None:
+        """Restart the player's random numbers from a seed: the same decisions follow again.
+
+        Parameters
+        ----------
+        seed : int
+            The seed, in [0, 1024).
+        """
+        self._decisions = seed << 20
 
     def act(self, tables: Any, observations: Any, going: Bools) -> NDArray[np.float32]:
-        """An action for each table of a ``SnookerVectorEnv`` with these ``options``; of those not ``going`` any."""
+        """Choose an action for each table.
+
+        Parameters
+        ----------
+        tables : SnookerVectorEnv
+            The tables, made with this player's ``options``.
+        observations : numpy.ndarray
+            float32 (n, k). Their flat observations.
+        going : numpy.ndarray
+            bool (n,). The tables that need an action.
+
+        Returns
+        -------
+        numpy.ndarray
+            float32 (n, k). One action for each table; 0 for tables that need none.
+        """
         options, at = tables.options, Positions.of(tables)
         practice = practice_of(options.rules.noise, options)
         actions = np.zeros((len(going), options.rules.actions.size), np.float32)
         shape = {name: getattr(options, name) for name in ("elevation", "placement", "decision")}
         for k in np.flatnonzero(going).tolist():
-            (stroke, _), *_ = self.rank(practice, at[k : k + 1], 1, self._decisions)
+            seed = self._decisions + (k << 32)  # each table its own: what is drawn on one says nothing of another
+            (stroke, _), *_ = self.rank(practice, at[k : k + 1], 1, seed)
             actions[k] = stroke.action(**shape)
         self._decisions += 1
         return actions

@@ -1,4 +1,4 @@
-"""What would a player do here, and what would come of it? ``advise``: ranked strokes; ``stroke_of``: the one that it would play."""
+"""What would a player do here, and how would it turn out? ``advise`` returns ranked strokes; ``stroke_of`` the one that it would play."""
 
 from dataclasses import asdict
 from typing import Any
@@ -12,46 +12,50 @@ from .practice import one_position, practice_of
 from .strokes import CueStroke
 from .suggestions import Advice
 
-LOOKED_AT = 8
-"""Of a player's ranking so many times the strokes wanted are looked at, to find so many that differ."""
+CONSIDERED = 8
+"""Ranked strokes that are examined for each stroke requested, so that enough of them differ."""
 
 
 def advise(
     position: PositionsLike, *, agent: Any = "lookahead", noise: NoiseLike = "professional", n: int = 5, samples: int = 200,
     visits: int = 40, seed: int = 0, options: Any = None, distinct: bool = True, trust: bool = False,
 ) -> Advice:  # fmt: skip
-    """The strokes that a player would play at a position, best first, and what comes of each under errors of execution.
+    """Return the strokes that a player would play in a position, best first, and their outcomes under execution errors.
 
-    The order is the player's own. What comes of a stroke is found in the same way for every player: the stroke is played ``samples``
-    times, all strokes under the same errors, and judged as one of a visit. Then ``visits`` of the visits that go on are played to their
-    end by a quick player (``snooker_env.advice.visits``), who looks one stroke ahead, but less well than the built-in lookahead: the points
-    are what a good player makes of the position, and those of different agents' strokes can be compared.
+    The order is the player's own. The outcomes are found in the same way for every player, so that strokes of different agents can be
+    compared:
 
-    A state carries its noise stream: a state that is restored and played again meets the same errors again. Advice never uses it. The
-    errors are drawn from ``seed`` alone: the same seed gives the same advice, another one other samples.
+    1. Each stroke is played ``samples`` times, with the same execution errors for all strokes, and judged as a stroke of a visit.
+    2. Of the visits that go on, ``visits`` are played to their end by a fast player (``snooker_env.advice.visits``). It plans one stroke
+       ahead, less thoroughly than the built-in lookahead, so ``points`` is what a good player makes of the position.
+
+    The errors are drawn from ``seed`` alone: the same seed gives the same advice. They are independent of the random stream that a saved
+    state carries, so advice never reveals the errors of the next stroke.
 
     Parameters
     ----------
-    position : Position, dict, state, Positions or environment
-        One position, as ``Positions.of`` takes it, or ``Position.to_dict()``. With the cue ball in hand places in the D are tried, and
-        each stroke has its ``place``. Points of the visit so far do not count.
-    agent : str, path or player
-        Whom to ask, see ``player_of``.
-    noise : str, dict or Noise
-        Errors of execution, to choose and to judge strokes by.
-    n : int
-        How many strokes at most.
-    samples : int
-        How often each is played. Without noise once is enough.
-    visits : int
-        How many visits of each are played on, at most one a sample that goes on; 0: the points are those of the stroke itself.
-    seed : int
-    options : mapping or Options, optional
-        "physics", "table" and "fidelity" of the world. None: those of ``position`` if it is an environment, else the defaults.
-    distinct : bool
-        Whether of strokes that read the same, but for the speed of a pot, only the first is given.
-    trust : bool
-        See ``player_of``.
+    position : Position, dict, Positions or environment
+        One position, as ``Positions.of`` takes it, or the result of ``Position.to_dict()``. With the cue ball in hand, places in the D
+        are tried, and each stroke has its ``place``. Points of the visit so far do not count.
+    agent : str, Path or player, optional
+        The player, see ``player_of``; default "lookahead".
+    noise : str, dict or Noise, optional
+        Execution errors with which strokes are chosen and judged; default "professional".
+    n : int, optional
+        Largest number of strokes, in [1, 100]; default 5.
+    samples : int, optional
+        How often each stroke is played, in [1, 100000]; default 200. Without noise each is played once.
+    visits : int, optional
+        How many visits of each stroke are continued, in [0, 100000]; default 40. With 0, ``points`` is that of the stroke itself.
+    seed : int, optional
+        Seed of the noise samples, in [0, 2**63]; default 0.
+    options : dict or Options, optional
+        Physics, table and fidelity: an ``Options``, or a dict with "physics", "table" and "fidelity". Default None: those of
+        ``position`` if it is an environment, else the defaults.
+    distinct : bool, optional
+        Whether only the first of several strokes with equal descriptions is kept, apart from the speed of a pot; default True.
+    trust : bool, optional
+        Whether code in a model's file may run, see ``player_of``; default False.
 
     Returns
     -------
@@ -61,7 +65,7 @@ def advise(
     Raises
     ------
     ValueError
-        If an argument is none of these, or there is no stroke to play.
+        If an argument is invalid, or there is no stroke to play.
 
     Examples
     --------
@@ -76,7 +80,7 @@ def advise(
     integer("visits", visits, 0, 100_000)
     integer("seed", seed, 0, 2**63)
     at, practice, player = one_position(position), practice_of(noise, options, position), player_of(agent, trust=trust)
-    ranked = player.rank(practice, at, n, seed)[: LOOKED_AT * n]
+    ranked = player.rank(practice, at, n, seed)[: CONSIDERED * n]
     if distinct:
         ranked = judging.distinct(practice, at, ranked)
     chosen = judging.judged(practice, at, ranked[:n], samples=samples, visits=visits, seed=seed)
@@ -87,24 +91,30 @@ def advise(
 
 
 def stroke_of(player: Any, position: PositionsLike, *, noise: NoiseLike = "professional", options: Any = None, seed: int = 0) -> CueStroke:
-    """The one stroke that a player would play at a position.
+    """Return the one stroke that a player would play in a position.
 
     Parameters
     ----------
-    player : str, path or player
-        As ``player_of`` takes it; what it gives saves time when it is asked again.
-    position, noise, options, seed
-        As of ``advise``.
+    player : str, Path or player
+        The player, see ``player_of``. For several calls, pass the result of ``player_of``: a model is then loaded once.
+    position : Position, dict, Positions or environment
+        One position, see ``advise``.
+    noise : str, dict or Noise, optional
+        Execution errors for which the stroke is chosen; default "professional".
+    options : dict or Options, optional
+        Physics, table and fidelity, see ``advise``.
+    seed : int, optional
+        Seed of the player's random numbers, in [0, 2**63]; default 0.
 
     Returns
     -------
     CueStroke
-        With a place in the D if the cue ball is in hand.
+        The stroke, with a place in the D if the cue ball is in hand.
 
     Raises
     ------
     ValueError
-        As ``advise``.
+        If an argument is invalid, or there is no stroke to play.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""How is any other player asked for advice? ``Borrowed`` deals it the position on a table of its own and reads its action as a stroke.
+"""How does any other player give advice? ``Borrowed`` puts the position on a table, takes the player's action and reads it as a stroke.
 
-A player says with ``options`` how its actions are read, and ``act(tables, observations, going)`` gives one for each table of a
-``SnookerVectorEnv`` with flat observations. If it has a method ``rank(tables, observations, going)`` too, that gives for each table going
-the actions that it considered, best first, and its own score of each: a list of (actions, scores).
+A player has ``options``, the keywords of ``Options`` that define its action format, and ``act(tables, observations, going)``, which returns
+an action for each table of a ``SnookerVectorEnv`` with flat observations. It may also have ``rank(tables, observations, going)``, which
+returns a pair (actions, scores) for each table: the actions that it considered, best first, and its own scores of them.
 """
 
 from math import atan2
@@ -17,16 +17,14 @@ from ..physics.cue import strike
 from ..planning import Positions, as_actions
 from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS, Choices
 from .advisor import Advisor, Ranked
-from .practice import Practice, starts
+from .practice import PHYSICAL_OPTIONS, Practice, starts
 from .strokes import CueStroke
-
-WORLD = ("physics", "table", "fidelity")
 
 
 class Borrowed(Advisor):
-    """A player of tables that is asked at one position, as ``rank`` of an ``Advisor``.
+    """Gives a player of tables the interface of an ``Advisor``.
 
-    A player whose actions hold no place in the D plays a cue ball in hand from the place that promises most by the rule of thumb.
+    A player whose actions have no place in the D plays a cue ball in hand from the place with the best value by the rule of thumb.
     """
 
     def __init__(self, player: Any, name: str):
@@ -53,12 +51,12 @@ class Borrowed(Advisor):
         return [(self._stroke(tables, start, bool(at.in_hand[0]), action), score) for action, score in given]
 
     def _dealt(self, practice: Practice, at: Positions, seed: int) -> tuple[Any, Positions]:
-        """The player's own table with the position on it."""
+        """The player's own table, with the position on it."""
         if self._practice is not practice:
-            from ..envs.vector import SnookerVectorEnv  # here: most advice needs no environment
+            from ..envs.vector import SnookerVectorEnv  # here, because most advice needs no environment
 
-            world = {name: getattr(practice.options, name) for name in WORLD}
-            self._tables = SnookerVectorEnv(1, threads=1, **{**self.player.options, **world, "noise": practice.noise})
+            physical = {name: getattr(practice.options, name) for name in PHYSICAL_OPTIONS}
+            self._tables = SnookerVectorEnv(1, threads=1, **{**self.player.options, **physical, "noise": practice.noise})
             self._practice = practice
         if at.in_hand[0] and not self._tables.options.rules.actions.placement:
             at = starts(practice, at, 1)
@@ -73,7 +71,7 @@ class Borrowed(Advisor):
         return self._tables, at
 
     def _stroke(self, tables: Any, start: Positions, in_hand: bool, action: Any) -> CueStroke:
-        """An action of the player at the position ``start`` as a stroke."""
+        """The stroke that an action of the player means in the position ``start``."""
         rules = tables.options.rules
         place = tuple(start.positions[0, 0].tolist()) if in_hand else None
         if isinstance(rules.actions, Choices):
@@ -89,7 +87,7 @@ class Borrowed(Advisor):
             start, place = self._put(actions, a, start)
         on = balls_on(int(start.ball_on[0]), mask_of_present(start.on_table[0]))
         speed, side, top, cue, elevation = actions.shot(a, start.positions[0], start.on_table[0], on)
-        (vx, vy, _), _ = strike(speed, cue, side, top, elevation, rules.physics)  # with squirt: where the ball leaves
+        (vx, vy, _), _ = strike(speed, cue, side, top, elevation, rules.physics)  # with squirt: the direction in which the ball leaves
         return CueStroke(speed=speed, side=side, top=top, aim=atan2(vy, vx), elevation=elevation, place=place)
 
     @staticmethod

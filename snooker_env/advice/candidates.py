@@ -1,4 +1,4 @@
-"""Which strokes are worth a look? Those at the direct pots; where there is none, contacts with the balls on and a fan of all directions."""
+"""Which strokes are candidates? Those at the direct pots; where there is none, contacts with the balls on and a fan of all directions."""
 
 from math import pi
 
@@ -11,17 +11,17 @@ from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
 from .practice import Practice
 
 SAFE_SPEEDS = (0.7, 1.0, 1.4, 1.9, 2.6, 3.6)
-"""Cue speeds [m/s] at which balls on are struck where no pot is there."""
+"""Cue speeds [m/s] of strokes at balls on where there is no pot."""
 CONTACTS = (-0.97, -0.85, -0.6, -0.3, 0.0, 0.3, 0.6, 0.85, 0.97)
-"""Where a ball on is struck: how far its middle lies beside the line of the cue ball, over 2 R; 0 is full, near 1 is thin."""
+"""Where a ball on is struck: distance of its centre from the line of the cue ball, over 2 R; 0 is full, near 1 is thin."""
 NEAREST = 6
-"""So many balls on, the nearest ones, are struck so."""
+"""Number of balls on, the nearest ones, that are struck in this way."""
 FAN_SPEEDS = (1.6, 2.8, 4.5)
-"""Cue speeds [m/s] of the fan, which finds the ways off cushions."""
+"""Cue speeds [m/s] of the fan, which finds escapes off cushions."""
 FAN, FINE_FAN = 180, 1440
-"""Directions of the fan, and of the finer one that is tried where the first finds no fair contact."""
+"""Directions of the fan, and of the finer fan that is tried if the first finds no fair contact."""
 FEW = np.isin(np.arange(STROKES) // (len(SIDES) * len(TOPS)), (1, 2, 3, 4, 5, 6)) & (np.arange(STROKES) // len(TOPS) % len(SIDES) == 1)
-"""Which strokes are tried from each of several places: usual speeds, without side."""
+"""The strokes that are tried from each of several places: usual speeds, no side."""
 
 
 def rows_of_choices(practice: Practice, at: Positions, rows: NDArray[np.int64], choices: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -36,9 +36,9 @@ def rows_of_choices(practice: Practice, at: Positions, rows: NDArray[np.int64], 
 
 
 def at_pots(practice: Practice, at: Positions) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """All usual strokes at the direct pots of positions: rows (n,), strokes (n, 5), and the chance of each one's pot by the rule of thumb.
+    """All usual strokes at the direct pots of positions: rows (n,), strokes (n, 5), and the chance of each pot by the rule of thumb.
 
-    From one place these are all choices of ``action="discrete"``, from several those without side at usual speeds.
+    From one place these are all choices of ``action="discrete"``; from several places, those without side at usual speeds.
     """
     masks = action_masks(at) & (pots(at, most=1).ball >= 0)
     if len(at) > 1:
@@ -49,7 +49,7 @@ def at_pots(practice: Practice, at: Positions) -> tuple[NDArray[np.int64], NDArr
 
 
 def at_balls(at: Positions, row: int) -> NDArray[np.float64]:
-    """Plain strokes (n, 5) that send the cue ball straight at parts of the nearest balls on of one position."""
+    """Strokes (n, 5) without spin that send the cue ball straight at parts of the nearest balls on in one position."""
     here = at.positions[row, 0]
     balls = np.flatnonzero(at.balls_on[row])
     to = at.positions[row, balls] - here
@@ -61,7 +61,7 @@ def at_balls(at: Positions, row: int) -> NDArray[np.float64]:
 
 
 def fan(directions: int) -> NDArray[np.float64]:
-    """Plain strokes (n, 5) in so many directions, at the speeds of the fan."""
+    """Strokes (n, 5) without spin in that many directions, at the speeds of the fan."""
     return plain(2.0 * pi * np.arange(directions) / directions - pi, FAN_SPEEDS)
 
 

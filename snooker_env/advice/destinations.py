@@ -1,4 +1,4 @@
-"""Where do the balls of a stroke stop? ``destinations``: cue ball and object ball under many errors, as a cloud and as a map."""
+"""Where do the balls of a stroke stop? ``destinations``: cue ball and object ball under many execution errors, as points and as a map."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -18,28 +18,37 @@ from .strokes import CueStroke, StrokeLike
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Destinations:
-    """Where the balls of one stroke stop under errors of execution.
+    """Where the balls of one stroke stop under execution errors, as returned by ``destinations``.
 
     Attributes
     ----------
     samples : int
-        How often it was played.
+        How often the stroke was played.
     object_ball : int
-        The ball that it strikes first without errors, -1 if none.
-    cue : float64 (m, 2)
-        Where the cue ball stopped, of the samples in which it stayed on the table [m].
-    ball : float64 (m, 2)
-        Where the object ball stopped, of the samples in which it was not potted [m]; before it was respotted. (0, 2) if there is none.
+        Id of the ball that it strikes first without errors; -1 if none.
+    cue : numpy.ndarray
+        float64 (m, 2). Where the cue ball stopped [m], for the samples in which it stayed on the table.
+    ball : numpy.ndarray
+        float64 (m, 2). Where the object ball stopped [m], before respotting, for the samples in which it was not potted; (0, 2) if there
+        is no object ball.
     potted : float
-        Share of the samples in which the object ball was potted.
+        Share of the samples in which the object ball was potted, in [0, 1].
     in_off : float
-        Share of the samples in which the cue ball was potted.
+        Share of the samples in which the cue ball was potted, in [0, 1].
     foul : float
-        Share of the samples with a foul.
+        Share of the samples with a foul, in [0, 1].
     scored : float
-        Share of the samples that scored.
+        Share of the samples that scored, in [0, 1].
     points : float
         Mean points of the stroke.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.advice import destinations
+    >>> stops = destinations(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), {"speed": 1.8, "aim": 0.8}, noise="none")
+    >>> stops.samples, stops.cue.shape, stops.foul
+    (1, (1, 2), 0.0)
     """
 
     samples: int
@@ -53,25 +62,34 @@ class Destinations:
     points: float
 
     def density(self, cell: float = 0.05, ball: str = "cue") -> dict[str, Any]:
-        """In which cells of the table a ball stops, as a map.
+        """Return a density map of where a ball stops, as shares of all samples in square cells.
 
         Parameters
         ----------
-        cell : float
-            Side of a cell [m], 0.005 to 1.
-        ball : {"cue", "ball"}
-            Which.
+        cell : float, optional
+            Side of a cell [m], in [0.005, 1]; default 0.05.
+        ball : {"cue", "ball"}, optional
+            The cue ball (default) or the object ball.
 
         Returns
         -------
         dict
-            "x0", "y0": the corner of the first cell [m]; "cell"; "nx", "ny"; "values": shares of all samples, row after row of x,
-            ny rows of nx numbers in one list. They add up to the share in which the ball stayed on the table.
+            "x0", "y0": the corner of the first cell [m]; "cell" [m]; "nx", "ny": numbers of cells; "values": a list of ny rows of nx
+            numbers. The values add up to the share of the samples in which the ball stayed on the table.
 
         Raises
         ------
         ValueError
-            If an argument is none of these.
+            If an argument is out of range.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> from snooker_env.advice import destinations
+        >>> stops = destinations(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), {"speed": 1.8, "aim": 0.8}, noise="none")
+        >>> density = stops.density(0.1)
+        >>> density["nx"], density["ny"], sum(density["values"])
+        (18, 36, 1.0)
         """
         number("cell", cell, 0.005, 1.0)
         places = getattr(self, choice("ball", ball, ("cue", "ball")))
@@ -82,12 +100,20 @@ class Destinations:
         return {"x0": x0, "y0": y0, "cell": float(cell), "nx": nx, "ny": ny, "values": values.tolist()}
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as JSON types.
+        """Return the result as JSON types.
 
         Returns
         -------
         dict
-            All attributes by name, places as lists rounded to a tenth of a millimetre.
+            All attributes by name; points as lists, rounded to a tenth of a millimetre.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> from snooker_env.advice import destinations
+        >>> stops = destinations(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), {"speed": 1.8, "aim": 0.8}, noise="none")
+        >>> list(stops.to_dict())
+        ['samples', 'object_ball', 'potted', 'in_off', 'foul', 'scored', 'points', 'cue', 'ball']
         """
         clouds = {name: getattr(self, name).round(4).tolist() for name in ("cue", "ball")}
         names = ("samples", "object_ball", "potted", "in_off", "foul", "scored", "points")
@@ -103,30 +129,33 @@ def destinations(
     seed: int = 0,
     options: Any = None,
 ) -> Destinations:
-    """Where cue ball and object ball of a stroke stop under errors of execution, and how often it pots and fouls.
+    """Find where the cue ball and the object ball of a stroke stop under execution errors, and how often it pots and fouls.
 
     Parameters
     ----------
-    position : Position, dict, state, Positions or environment
-        One position, as ``advise`` takes it.
+    position : Position, dict, Positions or environment
+        One position, see ``advise``.
     stroke : CueStroke, Suggestion or dict
-        A dict holds fields of ``CueStroke``.
-    noise : str, dict or Noise
-        Without noise one sample is played.
-    samples : int
-        How often it is played: the same seed meets the same errors at every stroke, so that a map moves smoothly with the stroke.
-    seed : int
-    options : mapping or Options, optional
-        "physics", "table" and "fidelity", see ``advise``.
+        The stroke as intended; a dict holds fields of ``CueStroke``.
+    noise : str, dict or Noise, optional
+        Execution errors; default "professional". Without noise one sample is played.
+    samples : int, optional
+        How often the stroke is played, in [1, 1000000]; default 500.
+    seed : int, optional
+        Seed of the noise samples, in [0, 2**63]; default 0. Every stroke meets the same errors with the same seed, so a map changes
+        smoothly with the stroke.
+    options : dict or Options, optional
+        Physics, table and fidelity, see ``advise``.
 
     Returns
     -------
     Destinations
+        The stopping points, and the shares of pots, in-offs and fouls.
 
     Raises
     ------
     ValueError
-        If an argument is none of these, or there is no stroke to play.
+        If an argument is invalid, or there is no stroke to play.
 
     Examples
     --------
@@ -142,8 +171,8 @@ def destinations(
     practice, struck = practice_of(noise, options, position), CueStroke.of(stroke)
     start = played_from(one_position(position), struck)
     row = struck.numbers()[None]
-    look = practice.play(start, np.zeros(1, np.int64), row)
-    ball, tries = int(look.first[0]), 1 if practice.sure else samples
+    trial = practice.play(start, np.zeros(1, np.int64), row)
+    ball, tries = int(trial.first[0]), 1 if practice.sure else samples
     keys = seeds.keys(seed, seeds.JUDGING, tries)
     stops = practice.play(start, np.zeros(tries, np.int64), np.repeat(row, tries, 0), keys)
     stayed = stops.potted[:, CUE] < 0

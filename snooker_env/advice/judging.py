@@ -1,4 +1,4 @@
-"""What comes of a stroke under errors? Chances, points expected and stops of strokes that all meet the same noise samples."""
+"""How does a stroke turn out under execution errors? Chances, expected points and stopping points, on common noise samples."""
 
 from math import hypot, sqrt
 from typing import NamedTuple
@@ -18,11 +18,11 @@ from .visits import played_on
 from .words import RAISED, contact_words, cushion_words, figures_words, stroke_words, what_words
 
 Z = 1.959964
-"""Of a 95 % interval."""
+"""Standard deviations of a 95 % interval."""
 
 
 def wilson(made: int, tries: int) -> tuple[float, float]:
-    """The 95 % interval of a chance of which ``made`` of ``tries`` samples are known (Wilson 1927).
+    """The 95 % interval of a probability of which ``made`` of ``tries`` samples were successes (Wilson 1927).
 
     Examples
     --------
@@ -39,10 +39,11 @@ def wilson(made: int, tries: int) -> tuple[float, float]:
 def points_expected(
     points: NDArray[np.float64], goes_on: NDArray[np.bool_], rest: NDArray[np.float64]
 ) -> tuple[float, tuple[float, float]]:
-    """Mean points of a visit, and its 95 % interval: of ``points`` and ``goes_on`` (samples,) of its first stroke, ``rest`` (visits,).
+    """Mean points of a visit and its 95 % interval, from ``points`` and ``goes_on`` (samples,) of the first stroke and ``rest`` (visits,).
 
-    The mean is that of the stroke's points and, as often as the visit goes on, the mean of the rest. Its variance is that of the first
-    mean over the samples and, by the share that goes on squared, that of the second over the visits (delta method).
+    The mean is that of the stroke's points plus, as often as the visit goes on, the mean of the rest. The variance is the sum of two parts
+    (delta method): the variance of the first mean over the samples, and that of the mean of the rest over the visits times the squared
+    share of samples that go on.
     """
     n, follows = len(points), float(rest.mean()) if len(rest) else 0.0
     share, each = float(goes_on.mean()), points + goes_on * follows
@@ -53,7 +54,7 @@ def points_expected(
     return mean, (max(0.0, mean - half), mean + half)
 
 
-class Looked(NamedTuple):
+class Trial(NamedTuple):
     """What a stroke does without errors."""
 
     kind: str
@@ -64,42 +65,42 @@ class Looked(NamedTuple):
     """What it does and how it is struck, in words."""
 
 
-def looked_at(practice: Practice, at: Positions, strokes: list[CueStroke]) -> tuple[Positions, list[Looked]]:
-    """What strokes at the one position ``at`` do without errors, and the positions that they are played from, a row each."""
+def trials_of(practice: Practice, at: Positions, strokes: list[CueStroke]) -> tuple[Positions, list[Trial]]:
+    """What strokes in the one position ``at`` do without errors, and the positions that they are played from, one row each."""
     there = [played_from(at, stroke) for stroke in strokes]
     places, on_table, game = (np.concatenate([getattr(one, name) for one in there]) for name in ("positions", "on_table", "game"))
     starts = Positions(places, on_table, game)
-    look = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
+    trial = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
     hidden = ~clear_paths(starts).any_part
-    return starts, [_looked(practice, starts, look, k, stroke, bool(hidden[k])) for k, stroke in enumerate(strokes)]
+    return starts, [_trial(practice, starts, trial, k, stroke, bool(hidden[k])) for k, stroke in enumerate(strokes)]
 
 
-def _looked(practice: Practice, starts: Positions, look: Stops, k: int, stroke: CueStroke, hidden: bool) -> Looked:
-    """What stroke k of a look without errors does; ``hidden``: no straight path leads to a ball on."""
-    first, pocket, how = int(look.first[k]), -1, ""
+def _trial(practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool) -> Trial:
+    """What stroke k of the trial without errors does; ``hidden``: no straight path leads to a ball on."""
+    first, pocket, how = int(trial.first[k]), -1, ""
     ball, (x, y) = first, starts.positions[k, CUE].tolist()
     dx, dy = (starts.positions[k, max(0, first)] - (x, y)).tolist()
-    down = [ball for ball in np.flatnonzero(look.potted[k] >= 0).tolist() if ball != CUE]
-    if look.points[k] > 0 and down:
+    down = [ball for ball in np.flatnonzero(trial.potted[k] >= 0).tolist() if ball != CUE]
+    if trial.points[k] > 0 and down:
         kind, ball = "pot", first if first in down else down[0]
-        pocket = int(look.potted[k, ball])
-    elif look.penalty[k]:
-        kind = "in-off" if look.potted[k, CUE] >= 0 else "foul"
+        pocket = int(trial.potted[k, ball])
+    elif trial.penalty[k]:
+        kind = "in-off" if trial.potted[k, CUE] >= 0 else "foul"
     elif hidden:
         kind, how = "escape", cushion_words(x, y, stroke.aim) if stroke.elevation < RAISED else ""
     else:
         kind, how = "safety", contact_words(dx, dy, stroke.aim)
     distance = None if first < 0 else max(0.0, hypot(dx, dy) - 2.0 * BALL_RADIUS)
     words = f"{what_words(kind, ball, pocket, first, how)}, {stroke_words(stroke, distance, practice.options.rules.physics)}"
-    return Looked(kind, ball, pocket, first, words)
+    return Trial(kind, ball, pocket, first, words)
 
 
 def distinct(practice: Practice, at: Positions, ranked: Ranked) -> Ranked:
-    """Of strokes that read the same but for the speed of a pot, only the first."""
-    _, looks = looked_at(practice, at, [stroke for stroke, _ in ranked])
+    """Keep only the first of several strokes with equal descriptions, apart from the speed of a pot."""
+    _, trials = trials_of(practice, at, [stroke for stroke, _ in ranked])
     seen, kept = set(), []
-    for one, look in zip(ranked, looks, strict=True):
-        what = look.words.replace(f"{one[0].speed:.1f} m/s", "") if look.kind == "pot" else look.words
+    for one, trial in zip(ranked, trials, strict=True):
+        what = trial.words.replace(f"{one[0].speed:.1f} m/s", "") if trial.kind == "pot" else trial.words
         if what not in seen:
             seen.add(what)
             kept.append(one)
@@ -107,35 +108,35 @@ def distinct(practice: Practice, at: Positions, ranked: Ranked) -> Ranked:
 
 
 def judged(practice: Practice, at: Positions, ranked: Ranked, *, samples: int, visits: int, seed: int) -> list[Suggestion]:
-    """Strokes at the one position ``at`` with what comes of each, in their order."""
+    """Strokes in the one position ``at`` with their outcomes under execution errors, in their order."""
     n = len(ranked)
-    starts, looks = looked_at(practice, at, [stroke for stroke, _ in ranked])
+    starts, trials = trials_of(practice, at, [stroke for stroke, _ in ranked])
     strokes = np.stack([stroke.numbers() for stroke, _ in ranked])
     tries, again = (1, min(1, visits)) if practice.sure else (samples, visits)
     keys = seeds.keys(seed, seeds.JUDGING, tries)
     stops = practice.play(starts, np.repeat(np.arange(n), tries), np.repeat(strokes, tries, 0), np.tile(keys, n))
     rest = _rest(practice, stops, n, tries, again, seed)
     out = []
-    for k, ((stroke, score), look) in enumerate(zip(ranked, looks, strict=True)):
+    for k, ((stroke, score), trial) in enumerate(zip(ranked, trials, strict=True)):
         own = slice(k * tries, (k + 1) * tries)
         fair = stops.penalty[own] == 0
-        made = fair & (stops.potted[own, look.ball] == look.pocket) if look.kind == "pot" else fair
+        made = fair & (stops.potted[own, trial.ball] == trial.pocket) if trial.kind == "pot" else fair
         chance = float(made.mean())
         points, interval = points_expected(stops.points[own], stops.goes_on[own], rest[k])
         stayed = stops.potted[own, CUE] < 0
         middle, spread = _cloud(stops.places[own, CUE][stayed])
         out.append(Suggestion(
             **{name: getattr(stroke, name) for name in ("speed", "aim", "side", "top", "elevation", "place")},
-            kind=look.kind, ball=look.ball, pocket=look.pocket, first=look.first,
+            kind=trial.kind, ball=trial.ball, pocket=trial.pocket, first=trial.first,
             chance=chance, chance_interval=(chance, chance) if practice.sure else wilson(int(made.sum()), tries),
             points=points, points_interval=interval, foul=float((~fair).mean()), in_off=float((~stayed).mean()),
-            stops=middle, spread=spread, score=score, words=f"{look.words}, {figures_words(look.kind, chance, points)}",
+            stops=middle, spread=spread, score=score, words=f"{trial.words}, {figures_words(trial.kind, chance, points)}",
         ))  # fmt: skip
     return out
 
 
 def _cloud(places: NDArray[np.float64]) -> tuple[tuple[float, float] | None, float | None]:
-    """The mean of places (m, 2), and the root of their mean square distance from it; None of none."""
+    """The mean of points (m, 2) and the root of their mean square distance from it; None, None if there are no points."""
     if not len(places):
         return None, None
     x, y = places.mean(axis=0).tolist()
@@ -143,7 +144,7 @@ def _cloud(places: NDArray[np.float64]) -> tuple[tuple[float, float] | None, flo
 
 
 def _rest(practice: Practice, stops: Stops, n: int, tries: int, visits: int, seed: int) -> list[NDArray[np.float64]]:
-    """Of each of n strokes: what followed in the first ``visits`` of its samples in which the visit went on."""
+    """For each of n strokes: the points that followed in the first ``visits`` of its samples in which the visit went on."""
     rows = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries])[:visits] for k in range(n)]
     numbers = np.concatenate([np.arange(len(own)) for own in rows]).astype(np.int64)
     rest = played_on(practice, stops.afterstates[np.concatenate(rows).astype(np.int64)], numbers, seed)

@@ -1,4 +1,4 @@
-"""Who may be asked for advice? The players built into the package, those of the repository, and classes and models of one's own."""
+"""Which players can give advice? Those built into the package, those of the repository, and classes and models of your own."""
 
 import importlib
 import re
@@ -13,15 +13,16 @@ from .lookahead import LookaheadAdvisor
 from .simple import GhostBallAdvisor, RandomAdvisor
 
 BUILT_IN: dict[str, type[Advisor]] = {maker.name: maker for maker in (LookaheadAdvisor, GhostBallAdvisor, RandomAdvisor)}
-"""The players that the package itself holds, by name."""
+"""The players in the package, by name."""
 
 
 def names() -> list[str]:
-    """The names that ``player_of`` knows here: the built-in players and, in a clone, those of the repository.
+    """Return the names that ``player_of`` accepts: the built-in players and, in a clone, those of the repository.
 
     Returns
     -------
     list of str
+        The built-in players come first.
 
     Examples
     --------
@@ -33,21 +34,25 @@ def names() -> list[str]:
 
 
 def player_of(agent: Any, *, trust: bool = False) -> Advisor:
-    """The player that a name means, ready to be asked.
+    """Return the player with a name, ready to give advice.
 
     Parameters
     ----------
-    agent : str, path or player
-        "lookahead", "ghost_ball" or "random", which are built in; in a clone of the repository also the names of its players and
-        pre-trained agents (``names``), and a model's ``.zip`` or the folder of a run; "MODULE:CLASS" of a player of one's own, whose
-        module is imported; or a player: an object with ``options`` and ``act(tables, observations, going)``.
-    trust : bool
-        Whether the code in a model's ``.zip`` may run that the repository's ``train.py`` did not write.
+    agent : str, Path or player
+        One of:
+
+        * "lookahead", "ghost_ball" or "random", which are built in;
+        * in a clone of the repository: a name of its players and pre-trained agents (see ``names``), a model's ``.zip``, or the folder of
+          a training run;
+        * "MODULE:CLASS" of a player of your own; its module is imported;
+        * a player: an object with ``options`` and ``act(tables, observations, going)``.
+    trust : bool, optional
+        Whether code in a model's ``.zip`` may run that was not written by the repository's ``train.py``; default False.
 
     Returns
     -------
     Advisor
-        A player: ``options``, ``act(tables, observations, going)``, and ``rank``, which is what advice asks.
+        A player with ``options``, ``act(tables, observations, going)`` and ``rank``.
 
     Raises
     ------
@@ -80,18 +85,18 @@ def player_of(agent: Any, *, trust: bool = False) -> Advisor:
 
 
 def _own(name: str) -> Any:
-    """The player MODULE:CLASS."""
+    """An instance of MODULE:CLASS."""
     module, _, maker = name.partition(":")
     try:
         return getattr(importlib.import_module(module), maker)()
-    except Exception as error:  # it is the user's code
+    except Exception as error:  # the user's code may raise anything
         raise refuse("agent", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
 
 
 def _repository(module: str) -> ModuleType | None:
-    """A module of the repository's ``agents``, which no wheel holds: found where Python runs in a clone, else None.
+    """A module of the repository's ``agents``, which no wheel holds; None where Python does not run in a clone.
 
-    By ``importlib``, since the package must not need it: it is an optional plug-in.
+    It is imported by ``importlib``, as an optional plug-in: the package itself must not depend on it.
     """
     try:
         return importlib.import_module(module)
@@ -108,6 +113,6 @@ def _others() -> list[str]:
         return []
     try:
         models = importlib.import_module("agents.learning.models").pretrained()
-    except ModuleNotFoundError:  # without the libraries that learn, no model is played either
+    except ModuleNotFoundError:  # models need the training libraries
         models = []
     return [*by_name.NAMES, *models]

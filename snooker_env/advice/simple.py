@@ -1,4 +1,4 @@
-"""How do the two simple built-in players rank strokes? The widest pots first, at one speed; or choices at random."""
+"""How do the two simple built-in players rank strokes? By the tolerance of the pot, at one speed; or at random."""
 
 import numpy as np
 
@@ -14,15 +14,15 @@ USUAL = 2.3
 
 
 class GhostBallAdvisor(Advisor):
-    """The built-in "ghost_ball": the widest direct pots, aims solved, without spin, at one soft speed; else full at the nearest ball on.
+    """The built-in "ghost_ball": the widest direct pots with solved aims, no spin and one soft speed; else full at the nearest ball on.
 
-    Scores are tolerances of the aim [mrad].
+    Its scores are tolerances of the aim [mrad].
     """
 
     name = "ghost_ball"
 
     def rank(self, practice: Practice, at: Positions, n: int, seed: int) -> Ranked:
-        """The widest pots of the one position, from the most promising place if the cue ball is in hand."""
+        """The widest pots in the one position, from the best place if the cue ball is in hand."""
         there = starts(practice, at, 1)
         found = pots(there)
         many = max(1, int((found.ball[0] >= 0).sum()))
@@ -33,12 +33,12 @@ class GhostBallAdvisor(Advisor):
 
 
 class RandomAdvisor(Advisor):
-    """The built-in "random": choices of ``action="discrete"``, each as likely, from a place in the D that is as likely as the others."""
+    """The built-in "random": uniformly random choices of ``action="discrete"``, from a random place in the D if the cue ball is in hand."""
 
     name = "random"
 
     def rank(self, practice: Practice, at: Positions, n: int, seed: int) -> Ranked:
-        """n of the choices that there are, without a score."""
+        """n random choices of those available, without scores."""
         rng = np.random.default_rng((seed, seeds.CHOOSING))
         there = starts(practice, at, 100)
         rows, choices = np.nonzero(action_masks(there))

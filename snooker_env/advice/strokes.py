@@ -1,4 +1,4 @@
-"""What is one stroke? ``CueStroke``: speed, tip, aim, elevation and, with the cue ball in hand, its place; checked, and as an action."""
+"""What is one stroke? ``CueStroke``: speed, tip, aim, elevation and, with the cue ball in hand, its place; validated, and as an action."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
@@ -15,28 +15,30 @@ from ..geometry import BAULK_Y, D_RADIUS
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 
 FARTHEST = 0.5
-"""How far off the middle the tip may meet the ball, over R: the miscue limit, the end of the scale of an action."""
+"""Largest tip offset over R: the miscue limit, and the end of the scale of an action."""
 (SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
 """Columns of strokes as rows of numbers."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CueStroke:
-    """One stroke as a player intends it. It is checked when it is made, and never changes.
+    """One stroke as a player intends it. It is validated when it is made, and it is immutable.
 
     Parameters
     ----------
     speed : float
-        Of the cue [m/s], 0.2 to 7.
-    side, top : float
-        Tip offset over R, right and up as the player sees it, within the disc of radius 0.5.
+        Cue speed [m/s], in [0.2, 7].
     aim : float
-        Direction in which the cue ball leaves [rad], anticlockwise from +x. Squirt is made up for, as a player does: this is what
-        ``aim="absolute"`` means in an action, and with side not quite the direction of the cue.
-    elevation : float
-        Of the butt [rad], 0 to 30 degrees.
+        Direction in which the cue ball leaves [rad], anticlockwise from +x. Squirt is compensated, as a player does: with side, the cue
+        points in a slightly different direction. ``aim="absolute"`` of an action means the same.
+    side : float, optional
+        Tip offset to the right over R, as the player sees it; default 0. The point (side, top) must lie within a disc of radius 0.5.
+    top : float, optional
+        Tip offset upwards over R; default 0.
+    elevation : float, optional
+        Elevation of the butt [rad], from 0 (default) to 30 degrees.
     place : (float, float), optional
-        Where in the D the cue ball is put first, if it is in hand [m]. None: it is played from where it lies.
+        Where in the D a cue ball in hand is placed first [m]. Default None: it is played from where it lies.
 
     Raises
     ------
@@ -73,21 +75,28 @@ class CueStroke:
 
     @classmethod
     def of(cls, stroke: "StrokeLike") -> "CueStroke":
-        """What users may pass as a stroke.
+        """Convert an argument to a ``CueStroke``.
 
         Parameters
         ----------
-        stroke : CueStroke, dict, or anything with ``speed``, ``side``, ``top``, ``aim``, ``elevation`` and ``place``
-            A dict holds fields of ``CueStroke``.
+        stroke : CueStroke, dict or object
+            A dict with fields of ``CueStroke``, or an object with such attributes.
 
         Returns
         -------
         CueStroke
+            The argument itself if it is one already.
 
         Raises
         ------
         ValueError
-            For anything else.
+            If a field is unknown, missing or out of range.
+
+        Examples
+        --------
+        >>> from snooker_env.advice import CueStroke
+        >>> CueStroke.of({"speed": 1.8, "aim": 0.5}).side
+        0.0
         """
         if isinstance(stroke, cls):
             return stroke
@@ -104,36 +113,54 @@ class CueStroke:
         return cls(**given)
 
     def to_dict(self) -> dict[str, Any]:
-        """The stroke as JSON types; ``CueStroke(**...)`` makes it again.
+        """Return the stroke as JSON types.
 
         Returns
         -------
         dict
+            Fields and their values; ``CueStroke(**fields)`` makes the stroke again.
+
+        Examples
+        --------
+        >>> from snooker_env.advice import CueStroke
+        >>> CueStroke(speed=1.8, aim=0.5).to_dict()
+        {'speed': 1.8, 'aim': 0.5, 'side': 0.0, 'top': 0.0, 'elevation': 0.0, 'place': None}
         """
         return asdict(self) | {"place": self.place and list(self.place)}
 
     def numbers(self) -> NDArray[np.float64]:
-        """The stroke without its place, as a row of numbers.
+        """Return the stroke as a row of numbers, without its place.
 
         Returns
         -------
-        float64 (5,)
-            Speed, side, top, aim, elevation.
+        numpy.ndarray
+            float64 (5,). Speed [m/s], side, top, aim [rad], elevation [rad].
+
+        Examples
+        --------
+        >>> from snooker_env.advice import CueStroke
+        >>> CueStroke(speed=1.8, aim=0.5, top=-0.2).numbers().tolist()
+        [1.8, 0.0, -0.2, 0.5, 0.0]
         """
         return np.array([self.speed, self.side, self.top, self.aim, self.elevation])
 
     def action(self, *, elevation: bool = False, placement: bool = False, decision: bool = False) -> NDArray[np.float32]:
-        """The stroke as an action of an environment with ``aim="absolute"`` and these options.
+        """Return the stroke as an action of an environment with ``aim="absolute"`` and the given options.
 
         Parameters
         ----------
-        elevation, placement, decision : bool
-            As the environment has them. A stroke without a place puts the cue ball in the middle of the baulk line; the decision after
-            a foul is to play.
+        elevation : bool, optional
+            Whether the action holds the elevation; default False.
+        placement : bool, optional
+            Whether the action holds the place in the D; default False. A stroke without a place puts the cue ball in the middle of the
+            baulk line.
+        decision : bool, optional
+            Whether the action holds the decision after a foul; default False. The decision is to play.
 
         Returns
         -------
-        float32 (4 to 8,)
+        numpy.ndarray
+            float32 (k,), with k from 4 to 8. The action, in [-1, 1].
 
         Examples
         --------
@@ -155,7 +182,7 @@ class CueStroke:
 
 
 StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any
-"""What users may pass as a stroke, see ``CueStroke.of``."""
+"""The types that arguments called ``stroke`` accept, see ``CueStroke.of``."""
 
 
 def actions_of_strokes(strokes: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -166,4 +193,4 @@ def actions_of_strokes(strokes: NDArray[np.float64]) -> NDArray[np.float64]:
     actions[:, 1], actions[:, 2] = 2.0 * strokes[:, SIDE], 2.0 * strokes[:, TOP]
     actions[:, 3] = turns - 2.0 * np.round(0.5 * turns)
     actions[:, 4] = 2.0 * strokes[:, ELEVATION] / MAX_ELEVATION - 1.0
-    return np.clip(actions, -1.0, 1.0)  # what lies beyond by rounding
+    return np.clip(actions, -1.0, 1.0)  # removes rounding errors

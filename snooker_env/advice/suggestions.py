@@ -1,4 +1,4 @@
-"""What does advice hold? ``Suggestion``, one stroke with what it leads to, and ``Advice``, a sequence of them, as data and in words."""
+"""What does advice hold? ``Suggestion``, one stroke with its outcomes, and ``Advice``, a sequence of them, as data and in words."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -11,41 +11,57 @@ from .strokes import CueStroke
 
 @dataclass(frozen=True, kw_only=True)
 class Suggestion(CueStroke):
-    """A stroke, what it does when it comes out as intended, and what comes of it under errors of execution.
+    """A stroke, what it does when played as intended, and its outcomes under execution errors.
 
     Attributes
     ----------
-    speed, aim, side, top, elevation, place
-        The stroke, see ``CueStroke``.
+    speed : float
+        Cue speed [m/s], see ``CueStroke``.
+    aim : float
+        Direction in which the cue ball leaves [rad].
+    side, top : float
+        Tip offsets over R, to the right and up.
+    elevation : float
+        Elevation of the butt [rad].
+    place : (float, float) or None
+        Where in the D the cue ball is placed first [m]; None if it is not in hand.
     kind : {"pot", "safety", "escape", "in-off", "foul"}
-        What the stroke does without errors: it scores; it hits a ball on fairly and scores nothing, an "escape" where no straight path
-        leads to a ball on; it loses the cue ball; or it is another foul.
+        What the stroke does without errors. "pot": it scores. "safety": it hits a ball on fairly and scores nothing. "escape": the same
+        where no straight path leads to a ball on. "in-off": it loses the cue ball. "foul": any other foul.
     ball : int
-        The ball that it pots without errors or, if none, the ball that it strikes first; -1 if it strikes nothing.
+        Id of the ball that it pots without errors or, if none, of the ball that it strikes first; -1 if it strikes nothing.
     pocket : int
-        Where that ball goes, an index of ``snooker_env.POCKETS``; -1 if it is not potted.
+        Pocket of that ball, an index into ``snooker_env.POCKETS``; -1 if it is not potted.
     first : int
-        The ball that it strikes first without errors, -1 if none.
+        Id of the ball that it strikes first without errors; -1 if none.
     chance : float
-        Of a pot: the share of the samples in which that ball went into that pocket without a foul. Else: without a foul.
+        For a pot: the share of the samples in which that ball went into that pocket without a foul. Otherwise: the share without a foul.
     chance_interval : (float, float)
-        The 95 % interval of the chance, after Wilson; without noise the chance itself.
+        Wilson's 95 % interval of the chance; without noise, the chance itself twice.
     points : float
-        Points expected of the visit from this stroke on, played on by the quick player of ``advice.visits``.
+        Expected points of the visit from this stroke on, when it is continued by the fast player of ``snooker_env.advice.visits``.
     points_interval : (float, float)
-        The 95 % interval of that mean: the errors of the samples and of the visits; not what a better player would make of it.
+        95 % interval of that mean. It covers the sampling error of the strokes and of the visits; a stronger player may score more.
     foul : float
-        Share of the samples in which the stroke was a foul.
+        Share of the samples in which the stroke was a foul, in [0, 1].
     in_off : float
-        Share of the samples in which the cue ball was potted.
+        Share of the samples in which the cue ball was potted, in [0, 1].
     stops : (float, float) or None
-        Where the cue ball stops: the mean over the samples in which it stayed on the table [m]; None if there are none.
+        Mean stopping point of the cue ball [m] over the samples in which it stayed on the table; None if there are none.
     spread : float or None
-        Root of the mean square of its distance from there [m].
+        Root of the mean square distance from that point [m].
     score : float or None
-        What the agent itself says of the stroke, in its own measure: the built-in lookahead points, a policy a probability.
+        The agent's own score of the stroke, in its own unit: points for the built-in lookahead, a probability for a policy.
     words : str
-        All this in a line.
+        All this in one line of text.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
+    >>> suggestion = sn.advise(position, agent="ghost_ball", noise="none", n=1)[0]
+    >>> suggestion.kind, suggestion.chance, suggestion.words
+    ('pot', 1.0, 'black, top left, 2.3 m/s, plain, chance 100 %, 7 points expected')
     """
 
     kind: str
@@ -65,16 +81,23 @@ class Suggestion(CueStroke):
 
     @property
     def stroke(self) -> CueStroke:
-        """The stroke alone."""
+        """The stroke alone, a ``CueStroke``."""
         return CueStroke.of({name: getattr(self, name) for name in ("speed", "aim", "side", "top", "elevation", "place")})
 
     def to_dict(self) -> dict[str, Any]:
-        """The suggestion as JSON types.
+        """Return the suggestion as JSON types.
 
         Returns
         -------
         dict
             All attributes by name; pairs as lists.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
+        >>> sn.advise(position, agent="ghost_ball", noise="none", n=1)[0].to_dict()["chance_interval"]
+        [1.0, 1.0]
         """
         return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
 
@@ -84,19 +107,33 @@ class Suggestion(CueStroke):
 
 @dataclass(frozen=True, kw_only=True)
 class Advice(Sequence[Suggestion]):
-    """What an agent would play at a position: its strokes in its own order, best first; a sequence of ``Suggestion``.
+    """The strokes that an agent would play in a position, in its own order, best first: a sequence of ``Suggestion``.
 
     Attributes
     ----------
     suggestions : tuple of Suggestion
+        The strokes.
     position : Position
-        What was asked about.
+        The position.
     agent : str
-        Who was asked.
+        Name of the agent.
     noise : str or dict
-        Under which errors of execution.
-    samples, visits, seed : int
-        How the figures were found, see ``advise``.
+        Execution errors: a level's name, or the fields of ``Noise``.
+    samples : int
+        How often each stroke was played.
+    visits : int
+        How many visits of each stroke were continued.
+    seed : int
+        Seed of the noise samples.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> advice = sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="ghost_ball", noise="none", n=1)
+    >>> len(advice), advice.agent
+    (1, 'ghost_ball')
+    >>> print(advice)
+    1. black, top left, 2.3 m/s, plain, chance 100 %, 7 points expected
     """
 
     suggestions: tuple[Suggestion, ...]
@@ -123,11 +160,19 @@ class Advice(Sequence[Suggestion]):
         return iter(self.suggestions)
 
     def to_dict(self) -> dict[str, Any]:
-        """The advice as JSON types.
+        """Return the advice as JSON types.
 
         Returns
         -------
         dict
+            All attributes by name; the position and the suggestions as dicts.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> advice = sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="ghost_ball", noise="none", n=1)
+        >>> list(advice.to_dict())
+        ['position', 'agent', 'noise', 'samples', 'visits', 'seed', 'suggestions']
         """
         kept = {"agent": self.agent, "noise": self.noise, "samples": self.samples, "visits": self.visits, "seed": self.seed}
         return {"position": self.position.to_dict(), **kept, "suggestions": [one.to_dict() for one in self]}

@@ -1,12 +1,13 @@
-"""How does a visit go on? From many positions at once a quick player plays on under noise, stroke after stroke, to the end of the visit.
+"""How does a visit go on? A fast player continues many visits at once under execution errors, stroke after stroke, to their end.
 
-The player looks at twelve plain strokes at the two widest pots once each, without errors: each is worth the chance of its pot, by the rule
-of thumb, times what it leads to, its points and what the position left promises. The best three meet five noise samples, and the best of
-them is played. Where there is no direct pot the nearest ball on is struck full.
+1. It tries twelve strokes at the two widest pots, once each and without errors. The value of a stroke is the chance of its pot, by the rule
+   of thumb, times its points plus the value of the position left.
+2. The best three meet five noise samples, and the best of them is played.
+3. Where there is no direct pot, the nearest ball on is struck full.
 
-It is a lookahead with little looking, made to play hundreds of visits in a second: from open tables under professional noise it scores
-about 58 points a visit, ``ppo_foresight`` of this repository 65, while the built-in "lookahead", which takes a hundred times as
-long over a stroke, scores about 117. So its points are those of a good player, not of the best.
+This is a shallow lookahead, made to play hundreds of visits in a second. From open tables under professional noise it scores about 58
+points a visit. ``ppo_foresight`` of this repository scores 65. The built-in "lookahead", which takes a hundred times as long over a
+stroke, scores about 117. So the points found here are those of a good player, not of the best.
 """
 
 import numpy as np
@@ -19,17 +20,18 @@ from .candidates import rows_of_choices
 from .practice import Practice
 
 PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(2) for s in (1, 3, 5) for t in (1, 3)])
-"""The choices that are looked at: 1.3, 2.3 and 3.6 m/s, tip 0.2 R above and below the middle. Without errors wilder ones look too good."""
+"""The choices that are tried: 1.3, 2.3 and 3.6 m/s, tip 0.2 R above and below the middle. Without errors, more extreme strokes are
+overestimated."""
 BEST = 3
-"""So many of them meet noise samples."""
+"""Number of strokes that meet noise samples."""
 EVEN_SAMPLES = np.array((354, 1840, 979, 2326, 3875), np.uint64)
-"""Keys of five noise samples whose errors of each kind are spread evenly (found by the repository's ``agents.noise_samples``)."""
+"""Keys of five noise samples whose errors of each kind are evenly spread (found by the repository's ``agents.noise_samples``)."""
 
 
 def played_on(practice: Practice, left: Positions, visits: NDArray[np.int64], seed: int) -> NDArray[np.float64]:
-    """Points of the rest of n visits, played on from the positions ``left``: (n,).
+    """Points of the rest of n visits, continued from the positions ``left``: float64 (n,).
 
-    ``visits`` (n,): the number of each; visits with the same number meet the same errors in their second stroke, their third, and so on.
+    ``visits`` (n,): the number of each. Visits with equal numbers meet equal errors in their second stroke, their third, and so on.
     """
     total, going, number = np.zeros(len(left)), np.arange(len(left)), 0
     most = int(visits.max()) + 1 if len(visits) else 0
@@ -43,7 +45,7 @@ def played_on(practice: Practice, left: Positions, visits: NDArray[np.int64], se
 
 
 def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
-    """The stroke of the quick player at each of n positions: (n, 5)."""
+    """The strokes that the fast player plays in n positions: (n, 5)."""
     n = len(at)
     rows, places = np.nonzero(action_masks(at)[:, PICKS])
     choices = PICKS[places]
@@ -51,7 +53,7 @@ def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
     strokes[rows, places] = rows_of_choices(practice, at, rows, choices)
     _, chances = practice.prospects(at)
     worth[rows, places] = chances[rows, choices // STROKES] * _led_to(practice, at, rows, strokes[rows, places], None)
-    best = np.argsort(-worth, axis=1, kind="stable")[:, : 1 if practice.sure else BEST]  # of each there are six at least
+    best = np.argsort(-worth, axis=1, kind="stable")[:, : 1 if practice.sure else BEST]  # each position has at least six
     finalists = np.take_along_axis(strokes, best[:, :, None], 1)
     if practice.sure:
         return finalists[:, 0]
@@ -64,6 +66,6 @@ def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
 def _led_to(
     practice: Practice, at: Positions, rows: NDArray[np.int64], strokes: NDArray[np.float64], keys: NDArray[np.uint64] | None
 ) -> NDArray[np.float64]:
-    """Points of strokes and what the positions promise that they lead to: (n,)."""
+    """Points of strokes plus the values of the positions left: (n,)."""
     stops = practice.play(at, rows, strokes, keys)
     return stops.points + stops.goes_on * practice.prospects(stops.afterstates)[0]

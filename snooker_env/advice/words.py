@@ -1,6 +1,6 @@
-"""How is a stroke said? Balls, pockets, spin and chances in the words of the game: "blue, right middle, 1.8 m/s, screw, chance 87 %".
+"""How is a stroke described in words? Balls, pockets, spin and chances in the game's terms, as "blue, right middle, 1.8 m/s, screw".
 
-Left and right are as seen from baulk, looking to the black end: right is the yellow side (+x), left the green side.
+Left and right are as seen from the baulk end, facing the black end: right is the yellow side (+x), left the green side.
 """
 
 from math import copysign, cos, degrees, inf, sin, sqrt
@@ -11,16 +11,19 @@ from ..physics.parameters import Physics
 from .strokes import CueStroke
 
 POCKET_WORDS = ("green pocket", "yellow pocket", "right middle", "top right", "top left", "left middle")
-"""What each of ``snooker_env.POCKETS`` is called: the corners at the baulk end by the colours beside them, those at the black end "top"."""
+"""Names of the pockets in words, in the order of ``snooker_env.POCKETS``: the corners at the baulk end by the colour beside them, those at
+the black end "top".
+"""
 _STILL = 0.1
-"""A tip offset over R up to this is the middle of the ball."""
+"""Tip offsets over R up to this count as the middle of the ball."""
 _FAR_OFF = 0.3
-"""From this offset on: "deep" screw, and "top" in place of follow."""
+"""From this offset on: "deep" screw, and "top" instead of follow."""
 _STUN = 0.25
-"""A ball whose roll is within so much of its speed, over it, arrives as if without spin."""
+"""A ball whose rotation is within this share of its speed arrives without spin."""
 _SIDE = 0.05
+"""Tip offsets over R from which side is mentioned."""
 RAISED = 0.05
-"""From this elevation on [rad] a cue is said to be raised."""
+"""Elevation [rad] from which a raised cue is mentioned."""
 
 
 def ball_words(ball: int) -> str:
@@ -36,13 +39,14 @@ def ball_words(ball: int) -> str:
 
 
 def rolling(speed: float, top: float, distance: float, physics: Physics) -> float:
-    """How much a struck ball rolls when it has run that far [m]: surface speed of its roll over its speed; 1 rolls, 0 is stun, < 0 screw.
+    """Surface speed of a struck ball's rotation over its speed after a distance [m]: 1 for rolling, 0 for stun, < 0 for backspin.
 
-    It slides until it rolls: the speed v falls by mu_s g t, the roll R w, 5/2 v times the tip's height at first, grows by 5/2 mu_s g t.
+    The ball slides until it rolls. Its speed v falls by mu_s g t; its rotation R w, which begins at 5/2 v times the tip's height, grows by
+    5/2 mu_s g t.
     """
     brake = physics.mu_s * physics.g
     v, roll = speed, 2.5 * top * speed
-    way = 1.0 if roll < v else -1.0  # too much top: the roll falls, the ball gains speed
+    way = 1.0 if roll < v else -1.0  # too much top: the rotation falls, the ball gains speed
     slip = abs(v - roll)
     until = slip / (3.5 * brake)
     t = until
@@ -57,8 +61,8 @@ def rolling(speed: float, top: float, distance: float, physics: Physics) -> floa
 def spin_words(stroke: CueStroke, distance: float | None, physics: Physics) -> str:
     """The spin of a stroke: "deep screw", "screw", "drag", "stun", "plain", "follow" or "top", with "left side" or "right side".
 
-    Below the middle it depends on what is left of the backspin when the ball on is reached, ``distance`` [m] away: screw, none (stun), or
-    the ball rolls already (drag). A blow on the middle is plain, or stun where the ball still slides. None: nothing is struck.
+    For a blow below the middle it depends on the backspin left when the ball on, ``distance`` [m] away, is reached: screw, none (stun), or
+    rolling already (drag). A blow on the middle is plain, or stun if the ball still slides. ``distance`` None: nothing is struck.
     """
     top = stroke.top
     arrives = None if distance is None else rolling(stroke.speed, top, distance, physics)
@@ -76,7 +80,7 @@ def spin_words(stroke: CueStroke, distance: float | None, physics: Physics) -> s
 
 
 def place_words(x: float, y: float) -> str:
-    """Where in the D a cue ball lies, from the middle of the baulk line.
+    """The place of a cue ball in the D, relative to the brown spot.
 
     Examples
     --------
@@ -91,7 +95,7 @@ def place_words(x: float, y: float) -> str:
 
 
 def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics) -> str:
-    """Speed, spin, raised cue and place."""
+    """Speed, spin, elevation and place in words."""
     words = f"{stroke.speed:.1f} m/s, {spin_words(stroke, distance, physics)}"
     if stroke.elevation >= RAISED:
         words += f", cue raised {degrees(stroke.elevation):.0f} degrees"
@@ -99,7 +103,7 @@ def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics) ->
 
 
 def cushion_words(x: float, y: float, aim: float) -> str:
-    """The cushion that a ball at (x, y), sent in the direction ``aim`` [rad], runs at: left, right, top (the black end) or baulk.
+    """The cushion that a ball at (x, y), sent in the direction ``aim`` [rad], meets: left, right, top (the black end) or baulk.
 
     Examples
     --------
@@ -116,7 +120,7 @@ def cushion_words(x: float, y: float, aim: float) -> str:
 
 
 def contact_words(x: float, y: float, aim: float) -> str:
-    """How full a ball that lies (x, y) away is struck by a cue ball that runs straight in the direction ``aim`` [rad].
+    """How full a ball at the offset (x, y) is struck by a cue ball that runs straight in the direction ``aim`` [rad].
 
     Examples
     --------
@@ -132,7 +136,7 @@ def contact_words(x: float, y: float, aim: float) -> str:
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
-    """What a stroke does when it comes out as intended; ``how``: of an escape the cushion that it goes off first, of a safety the contact.
+    """What a stroke does when played as intended. ``how``: the first cushion of an escape, or the contact of a safety.
 
     Examples
     --------

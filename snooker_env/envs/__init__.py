@@ -1,1 +1,1 @@
-"""How does an agent meet the table? The Gymnasium environments and their parts."""
+"""How does an agent interact with the table? The Gymnasium environments and their parts."""

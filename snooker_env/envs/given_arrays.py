@@ -1,4 +1,4 @@
-"""Which arrays may a step write its results into? ``out`` of the vector environment, checked: each fits what is written, as it lies."""
+"""Which arrays may a step write its results into? Checks the argument ``out`` of the vector environment."""
 
 from collections.abc import Collection
 from typing import Any
@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 from .._check import choice, refuse, refuse_what
 
 OUTPUTS = {"observations": "observations", "rewards": "rewards", "terminations": "terminated", "truncations": "truncated"}
-"""What a step can write into arrays that it is given, and what ``StepOutput`` calls it."""
+"""Results that a step can write into given arrays, and their names in ``StepOutput``."""
 DTYPES: dict[str, type[np.generic]] = {"observations": np.float32, "rewards": np.float64, "terminations": np.bool_, "truncations": np.bool_}
 
 
 def arrays_given(out: Any, names: Collection[str], n: int, size: int, boxes: dict[str, tuple[int, ...]] | None) -> dict[str, NDArray[Any]]:
-    """The arrays of n tables to write into, by the names of ``StepOutput``; ``size``: numbers in a flat observation.
+    """The given arrays of n tables, by their names in ``StepOutput``; ``size``: numbers in a flat observation.
 
-    ``boxes``: the shapes of the parts of observations that are dicts, which are written later; None: observations are flat.
-    Raises ValueError unless the arrays are what is written.
+    ``boxes``: the shapes of the parts of dict observations, which are written later; None for flat observations. Raises ValueError for an
+    array that results cannot be written into.
     """
     if out is None:
         return {}
@@ -40,7 +40,7 @@ def arrays_given(out: Any, names: Collection[str], n: int, size: int, boxes: dic
 
 
 def _check_out(name: str, a: Any, shape: tuple[int, ...], dtype: type[np.generic]) -> NDArray[Any]:
-    """The array ``out[name]``; ValueError unless results can be written right into it."""
+    """The array ``out[name]``; ValueError unless results can be written directly into it."""
     fits = isinstance(a, np.ndarray) and a.shape == shape and a.dtype == dtype
     if not fits or not (a.flags.c_contiguous and a.flags.writeable and a.flags.aligned):
         found = f"array of {a.dtype} and shape {a.shape}" if isinstance(a, np.ndarray) else type(a).__name__

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pettingzoo import AECEnv
 
 from .._check import choice, refuse
-from .._types import Action, Bools, Floats, Observation, RenderMode
+from .._types import Action, Observation, RenderMode
 from ..game.frame import Frame
 from ..game.frame_columns import POINTS, STROKES
 from ..simulation import Shot
@@ -21,6 +21,7 @@ from ..tasks.frame import Frames
 from ..tasks.options import Options, options_of
 from ..tasks.rewards import frame_reward
 from ..tasks.tables import I_FOULS, I_PENALTY, I_POINTS, Crew
+from .one_table import ShowsBalls
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import HasHistory, Record
 from .reset_options import Start, start_of
@@ -28,50 +29,83 @@ from .reset_options import Start, start_of
 PLAYERS = ("player_0", "player_1")
 
 
-class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
+class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
     """A frame of snooker between two players, one stroke a step.
 
     ## Turns
-    ``agent_selection`` is who plays next: the same player for as long as he scores, the other after a miss or a foul. After a foul the
-    player who comes to the table is selected, and his action says first what he wants.
+    ``agent_selection`` is the player whose turn it is: the same player as long as he scores, the other one after a miss or a foul.
+    After a foul the player who comes to the table is selected, and the last component of his action is his decision.
 
     ## Action space
-    ``Box(-1, 1, (7,), float32)`` for both: cue speed, side, top, aim, the place in the D (2), the decision; with ``elevation=True`` the
-    elevation stands before the place. See ``tasks.box_actions.Actions``. The *place* counts only when the cue ball is in hand (a
-    place that is taken becomes the nearest free one). The *decision* counts only when the other has just fouled: below -1/3 the offender
-    must play again from where the balls lie, above 1/3 the balls are first replaced as they were (if a miss was called), between or without
-    that option the player plays himself, with the rest of this same action. The first two play no stroke: the step only turns the table
-    over to the offender. ``placement=False``, ``decision=False`` leave them out: the cue ball is then played from where it was put, and
-    everybody plays after a foul. The colour after a red, and the free ball, is the one first struck. Nobody concedes or claims.
+    ``Box(-1, 1, (7,), float32)`` for both players: cue speed, side, top, aim, the place in the D (two numbers), the decision. With
+    ``elevation=True`` the elevation comes before the place. The components have the meaning that they have in ``SnookerEnv``.
 
-    ``action="discrete"``: ``Discrete(n)`` as in ``Snooker-v0``, without place and decision; the choices that there are for the player whose
-    turn it is are ``action_mask(agent)`` and, as PettingZoo's own games have it, ``infos[agent]["action_mask"]``.
+    * The *place* counts only when the cue ball is in hand. A place that is taken becomes the nearest free one.
+    * The *decision* counts only when the other player has just fouled. Below -1/3, the offender must play again from where the balls lie.
+      Above 1/3, if a miss was called, the balls are first replaced as they were. These two play no stroke: the step only passes the turn to
+      the offender. In between, or without a miss, the player plays himself, with the rest of this same action.
+    * ``placement=False`` and ``decision=False`` leave these components out: the cue ball is then played from where it was put, and the
+      player always plays after a foul.
+
+    The colour after a red, and the free ball, is the one first struck. Nobody concedes or claims the frame.
+
+    ``action="discrete"``: ``Discrete(540)`` as in ``Snooker-v0``, without place and decision. The available choices of the player whose
+    turn it is are ``action_mask(agent)`` and, as in PettingZoo's own games, ``infos[agent]["action_mask"]``.
 
     ## Observation space
-    That of ``Snooker-v0`` with ``task="frame"`` as each player sees it: his own score first, and whether it is his turn.
+    That of ``Snooker-v0`` with ``task="frame"``, from each player's point of view: his own score first, and whether it is his turn.
 
     ## Rewards
-    ``"points"`` (default): what the step added to the player's score less what it added to the other's; the sum of both is zero.
-    ``"win"``: +1 and -1 when the frame ends.
+    ``"points"`` (default): the points that the step added to the player's score minus those added to the other's; both rewards sum to zero.
+    ``"win"``: +1 and -1 when the frame ends, else 0.
 
     ## Start and end
-    Who breaks off is drawn from the seed. Both players terminate when the frame ends by the rules. Both are truncated when they have played
-    ``max_strokes`` strokes together (1000 unless told otherwise, None for never): the referee stops a frame that goes nowhere, with no
-    winner. No ball leaves the table, the physics is planar.
+    The seed determines who breaks off. Both players terminate when the frame ends by the rules. Both are truncated when
+    they have played ``max_strokes`` strokes together (default 1000, None for never): the referee stops the frame, without a winner. No ball
+    leaves the table, because the physics is planar.
 
     ## Infos
-    For both players, always the same keys: ``points``, ``penalty`` (of the last stroke), ``fouls`` (bits of
+    The same keys for both players: ``points``, ``penalty`` and ``fouls`` of the last stroke (``fouls``: bits of
     ``snooker_env.game.ruling.Foul``), ``score``, ``opponent_score``, ``strokes`` (of both so far), ``break``, ``choice`` (a decision is
     open), ``free_ball``, ``winner`` (-1, 0 or 1).
 
     ## States
-    ``get_state`` and ``set_state`` save and restore everything as JSON types; ``reset(options={"state": ...})`` starts from a state. It
-    holds the random numbers too, so that playing on from it again repeats the errors of ``noise``. With a seed, ``reset(seed=...,
-    options={"state": ...})``, table and frame are those of the state and the random numbers those of the seed. From a state of a frame that
-    has ended both players are terminated, or truncated, at once.
+    ``get_state`` and ``set_state`` save and restore everything as JSON types, the random stream included: playing on from a state
+    again repeats the execution errors. ``reset(options={"state": ...})`` starts from a state. With a seed as well, table and frame are
+    those of the state and the random numbers those of the seed. From a state of a finished frame, both players are terminated or truncated
+    at once.
 
-    ``reset(options={"position": position})`` begins a frame with a ``snooker_env.Position``, checked on this environment's table: player_0
-    is to play it, a break of its points so far, both scores 0. The random numbers are those of the seed, or go on.
+    ``reset(options={"position": position})`` begins a frame with a ``snooker_env.Position``, validated on this environment's table. It is
+    the turn of player_0, with a break of the position's points so far; both scores are 0.
+
+    Parameters
+    ----------
+    options : Options, optional
+        The options, with ``task="frame"`` and no opponent. Default None: they are made from the keywords.
+    render_mode : {"human", "rgb_array", "ansi"}, optional
+        How ``render`` shows the table; default None: not at all.
+    render_size : (int, int), optional
+        Width and height of pictures [pixels], each in [100, 8192]; default (1920, 1080).
+    **given
+        The keywords of ``Options``, in place of ``options``. Box actions hold placement and decision by default.
+
+    Raises
+    ------
+    ValueError
+        If an argument is invalid.
+    TypeError
+        For an unknown keyword.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> env = sn.match_env(noise="club", action="discrete")
+    >>> env.reset(seed=1)
+    >>> for agent in env.agent_iter(max_iter=3):
+    ...     observation, reward, terminated, truncated, info = env.last()
+    ...     env.step(None if terminated or truncated else int(info["action_mask"].argmax()))
+    >>> env.strokes
+    3
     """
 
     metadata: dict[str, Any] = {"name": "snooker_match_v0", "render_modes": list(MODES), "is_parallelizable": False, "render_fps": FPS}  # noqa: RUF012
@@ -114,32 +148,22 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, ("Player 1", "Player 2"))
 
     @property
-    def positions(self) -> Floats:
-        """Where the balls lie: (22, 2) [m]."""
-        return self.tables.positions[0].copy()
-
-    @property
-    def on_table(self) -> Bools:
-        """Which balls are on the table: (22,) bool."""
-        return self.tables.on_table[0].copy()
-
-    @property
     def frame(self) -> Frame:
-        """The ``snooker_env.game.frame.Frame`` that is played."""
+        """The current ``snooker_env.game.frame.Frame``."""
         return self.tables.frame(0)
 
     @property
     def last_shot(self) -> Shot | None:
-        """The ``Shot`` of the last turn, with its path where a history is kept; None where none was played."""
+        """The ``Shot`` of the last turn, with its path if a history is kept; None if no stroke was played in it."""
         return self._record.last_shot if self._last is not None else None
 
     @property
     def strokes(self) -> int:
-        """How many strokes both players have played."""
+        """Number of strokes that both players have played in this frame, an int."""
         return int(self.tables.game[0, STROKES])
 
     def observation_space(self, agent: str) -> gymnasium.Space[Any]:
-        """What a player observes is in it; the same object each time.
+        """Return the observation space of a player; the same object each time.
 
         Parameters
         ----------
@@ -149,11 +173,12 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
         Returns
         -------
         gymnasium.Space
+            The space.
         """
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> gymnasium.Space[Any]:
-        """What a player may do is in it; the same object each time.
+        """Return the action space of a player; the same object each time.
 
         Parameters
         ----------
@@ -163,11 +188,12 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
         Returns
         -------
         gymnasium.Space
+            The space.
         """
         return self.action_spaces[agent]
 
     def observe(self, agent: str) -> Observation:
-        """What a player sees now.
+        """Return the current observation of a player.
 
         Parameters
         ----------
@@ -176,22 +202,24 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
 
         Returns
         -------
-        float32 (k,) or dict of arrays
-            Fresh.
+        numpy.ndarray or dict
+            float32 (130,), or "balls" (22, 5) and "state" (20,); new arrays.
         """
         rows = self.tables.observe(np.zeros(1, np.int64), PLAYERS.index(agent))
         return observations.shaped(self.options.observation, rows[0])
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
-        """With ``action="discrete"``: which choices a player has; none unless it is his turn.
+        """Return the available choices of a player, with ``action="discrete"``.
 
         Parameters
         ----------
         agent : str
+            "player_0" or "player_1".
 
         Returns
         -------
-        int8 (n,)
+        numpy.ndarray
+            int8 (540,). 1 for each available choice; all 0 unless it is the player's turn.
 
         Raises
         ------
@@ -204,15 +232,15 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
         return (self.tables.action_masks()[0] & there).astype(np.int8)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
-        """A new frame.
+        """Begin a new frame.
 
         Parameters
         ----------
         seed : int, optional
-            Of all random numbers to come; None: they go on.
+            Seed of all random numbers from now on; default None: the stream goes on.
         options : dict, optional
-            {"state": a state of ``get_state``} or {"position": a ``snooker_env.Position``, or its ``to_dict()``} starts from there. Other
-            keys are not read: PettingZoo's own test gives some.
+            {"state": a state from ``get_state``} or {"position": a ``snooker_env.Position`` or its ``to_dict()``} starts from there. Other
+            keys are ignored, because PettingZoo's own tests pass some.
 
         Returns
         -------
@@ -221,7 +249,7 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
         Raises
         ------
         ValueError
-            For a state or position that is not sound.
+            If the options, the state or the position are invalid.
         """
         if options is not None and not isinstance(options, dict):
             raise refuse("options", options, 'must be None or a dict, of which "state" or "position" is read')
@@ -240,7 +268,7 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
             self._show()
 
     def _begin(self):
-        """PettingZoo's book-keeping for a table as it is."""
+        """Initialise PettingZoo's attributes for the current table."""
         self._last = None
         self._record.begin_episode()
         self.agents = list(PLAYERS)
@@ -257,12 +285,12 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
         self.infos = {name: self._info(frame, k) for k, name in enumerate(PLAYERS)}
 
     def step(self, action: Action) -> None:
-        """Play the selected player's action.
+        """Play the action of the selected player.
 
         Parameters
         ----------
-        action : array_like, float (k,), int or None
-            Within [-1, 1], or a choice; None once the player has terminated or is truncated.
+        action : array_like, int or None
+            float (k,) within [-1, 1], or a choice; None once the player has terminated or is truncated.
 
         Returns
         -------
@@ -274,6 +302,8 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
             If the action is not in the action space; then nothing is played.
         gymnasium.error.ResetNeeded
             If no player is left.
+        SimulationError
+            If the shot cannot be computed.
         """
         if not self.agents:
             raise gymnasium.error.ResetNeeded("the frame is over: call reset() before step()")
@@ -314,22 +344,22 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
         return info
 
     def get_state(self) -> dict[str, Any]:
-        """The whole state: table, frame, strokes and random numbers.
+        """Return the whole state: table, frame, number of strokes and random stream.
 
         Returns
         -------
         dict
-            Of JSON types.
+            JSON types.
         """
         return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state: dict[str, Any]) -> None:
-        """Take over a state; the next stroke plays on identically. Rewards not yet collected are zero.
+        """Restore a state; the next stroke continues identically. Rewards not yet collected become zero.
 
         Parameters
         ----------
         state : dict
-            As ``get_state`` gives it.
+            A result of ``get_state``.
 
         Returns
         -------
@@ -338,7 +368,7 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
         Raises
         ------
         ValueError
-            If it is not sound; then nothing has changed.
+            If the state is invalid; then nothing has changed.
         """
         self._take(Start(state=self.tables.checked(state, self.np_random, either=True)), seeded=False)
         self._begin()
@@ -350,12 +380,12 @@ class MatchEnv(HasHistory, AECEnv[str, Any, Any]):
             self._seeded = True
 
     def render(self) -> Picture:
-        """The table with the cue ball's last path.
+        """Return the table with the paths of the last shot.
 
         Returns
         -------
-        uint8 (H, W, 3), str or None
-            By the render mode: "rgb_array", "ansi", another.
+        numpy.ndarray, str or None
+            uint8 (H, W, 3) with "rgb_array", str with "ansi", None otherwise.
         """
         return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent())
 

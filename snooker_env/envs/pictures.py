@@ -1,4 +1,4 @@
-"""How does an environment show itself? One picture for "rgb_array", text for "ansi", a window with the moving shot for "human"."""
+"""How does an environment show itself? A picture for "rgb_array", text for "ansi", a window with the moving shot for "human"."""
 
 from collections.abc import Iterator, Sequence
 from itertools import chain, zip_longest
@@ -17,9 +17,9 @@ from .films import PictureSource
 MODES = ("human", "rgb_array", "ansi")
 FPS = 30
 HOLD = 15
-"""Pictures of the table after each stroke of a film, with what the referee said."""
+"""Pictures of the table after each stroke of a film, with the referee's words."""
 SIZE = (1920, 1080)
-"""Width and height of pictures [pixels] unless told: those of render.view."""
+"""Default width and height of pictures [pixels], as in render.view."""
 
 
 Picture: TypeAlias = NDArray[np.uint8] | str | None
@@ -27,7 +27,7 @@ Picture: TypeAlias = NDArray[np.uint8] | str | None
 
 
 class Pictures:
-    """The pictures of one environment on a ``Table``; a window belongs to one process and is left behind in a copy.
+    """The pictures of one environment on a ``Table``. A window belongs to one process; a copy of the environment has none.
 
     ``size``: width and height [pixels]; ``players``: their names on the score bar.
     """
@@ -39,7 +39,7 @@ class Pictures:
         self.table, self.mode, self.players = table, mode, players
         self.size = checked_size(size)
         self._window, self._source = None, PictureSource()
-        if mode == "human":  # refused now, not at the first stroke
+        if mode == "human":  # raise now, not at the first stroke
             from ..render.window import require_display
 
             require_display()
@@ -50,7 +50,7 @@ class Pictures:
     def render(self, tables: Tables, k: int, history: list[Played], recent: list[tuple[list[Played], int]]) -> Picture:
         """Table k with the paths of the last stroke of its ``history``: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise.
 
-        A recorder gets the motion of the ``recent`` strokes first, see ``films``: of each episode so many of its last.
+        A recorder first gets the motion of the ``recent`` strokes, see ``films``: for each episode, its last strokes and their number.
         """
         if self.mode is None:
             gymnasium.logger.warn('render() without render_mode; make the environment with render_mode="rgb_array", "ansi" or "human"')
@@ -64,7 +64,7 @@ class Pictures:
         return None
 
     def render_all(self, tables: Tables, recent: list[list[Played]]) -> tuple[Picture, ...]:
-        """``render`` of many tables at once; they move at the same time, and wait for the one that moves longest."""
+        """``render`` for many tables at once. They move at the same time, and all wait for the longest motion."""
         if self.mode != "rgb_array":
             return tuple(self.render(tables, k, strokes, []) for k, strokes in enumerate(recent))
 
@@ -80,7 +80,7 @@ class Pictures:
         return self._source.picture(motion, still)
 
     def show(self, tables: Tables, history: list[Played], *, played: bool = False) -> None:
-        """Show the table in the window; first, with ``played``, the last stroke as it moves."""
+        """Show the table in the window; with ``played``, first show the last stroke in motion."""
         from ..render.window import Window
 
         if self._window is None:
@@ -101,9 +101,9 @@ class Pictures:
         from ..replays.bars import bars
         from ..replays.film import filmed
 
-        told = bars(history, self.players)
+        shown = bars(history, self.players)
         for k in range(len(history) - recent, len(history)):
-            yield filmed(self.table, history[k], *told[k])
+            yield filmed(self.table, history[k], *shown[k])
 
     def _motion(self, history: list[Played], recent: int) -> Iterator[NDArray[np.uint8]]:
         from ..render.pygame_view import rgb_array
@@ -127,7 +127,7 @@ class Pictures:
 
         paths = ghosts = last = None
         turns = {0: np.array([1.0, 0.0, 0.0, 0.0])}  # spots as in films
-        if history and np.array_equal(history[-1].positions, tables.positions[k]):  # else it did not lead to this table
+        if history and np.array_equal(history[-1].positions, tables.positions[k]):  # otherwise it did not lead to this table
             shot = history[-1].shot
             paths, ghosts = ball_paths(shot, trail_of(shot)), {0: contacts(shot)}
             last = bars(history, self.players)[-1][1]
@@ -140,12 +140,12 @@ class Pictures:
 
 
 def trail_of(shot: Any) -> tuple[int, ...]:
-    """The balls whose paths are drawn: the cue ball and what was potted."""
+    """The balls whose paths are drawn: the cue ball and potted balls."""
     return (0, *(np.flatnonzero(shot.potted[1:] >= 0) + 1).tolist())
 
 
 def checked_size(size: Any) -> tuple[int, int]:
-    """(width, height) of pictures; ValueError unless they are two integers that a picture can have."""
+    """(width, height) of pictures; ValueError unless they are two valid integers."""
     if isinstance(size, str) or not hasattr(size, "__len__") or len(size) != 2:
         raise refuse("render_size", size, "must be (width, height)")
     width, height = (integer(f"render_size[{i}]", size[i], 100, 8192) for i in range(2))

@@ -1,4 +1,4 @@
-"""Which tables does a reset begin anew, from where, and with which seeds? The arguments of every environment's ``reset``, checked."""
+"""Which tables does a reset begin anew, from where, and with which seeds? Checks the arguments of every environment's ``reset``."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,11 +14,11 @@ from ..game.frame_columns import BALL_ON, POINTS
 from ..tasks.tables import Tables
 
 ONE, MANY = ("state", "position"), ("reset_mask", "state", "states", "position", "positions")
-"""What the options of one table's reset and of many tables' may say."""
+"""Allowed keys of the reset options for one table and for many."""
 
 
 def seeds_of(seed: Any, n: int) -> list[int | None]:
-    """A seed for each of n tables, or None, of what ``SyncVectorEnv.reset`` takes."""
+    """A seed or None for each of n tables, from the argument ``seed`` as in ``SyncVectorEnv.reset``."""
     if seed is None:
         return [None] * n
     if isinstance(seed, (int, np.integer)):
@@ -29,7 +29,7 @@ def seeds_of(seed: Any, n: int) -> list[int | None]:
 
 
 def mask_of(options: dict[str, Any], n: int) -> Bools:
-    """Which of n tables are meant: (n,), all without "reset_mask"."""
+    """The tables to reset: (n,) bool, all without "reset_mask"."""
     if "reset_mask" not in options:
         return np.ones(n, np.bool_)
     mask = options["reset_mask"]
@@ -40,7 +40,7 @@ def mask_of(options: dict[str, Any], n: int) -> Bools:
 
 @dataclass(frozen=True)
 class Start:
-    """From where an episode begins that is not dealt: a sound state of a table, or else the arrays of a sound position."""
+    """The start of an episode that is not dealt: a valid state of a table, or the arrays of a valid position."""
 
     state: Any = None
     """``states.State`` or ``states.FrameState``."""
@@ -48,7 +48,7 @@ class Start:
     """``planning.Position.arrays``."""
 
     def take(self, tables: Tables, k: int) -> dict[str, Any] | None:
-        """Take over on table k; returns the state of a numpy generator if one came with it, as with every state and no position."""
+        """Put it on table k; returns the state of its NumPy generator, which every state has and no position."""
         if self.arrays is not None:
             tables.set_position(k, *self.arrays)
             return None
@@ -57,11 +57,11 @@ class Start:
 
 
 Check = Callable[[Any], Any]
-"""What makes a sound state of a dict, or raises ValueError: ``tasks.tables.Tables.checked``."""
+"""Makes a valid state from a dict, or raises ValueError: ``tasks.tables.Tables.checked``."""
 
 
 def given_of(options: Any, known: tuple[str, ...]) -> dict[str, Any]:
-    """The options of a reset as a dict; ValueError unless each is ``known`` and at most one of them says where to start."""
+    """The options of a reset as a dict; ValueError unless each is ``known`` and at most one of them defines the start."""
     if options is None:
         return {}
     if not isinstance(options, dict):
@@ -79,7 +79,7 @@ def _one_start(options):
 
 
 def start_of(options: dict[str, Any], tables: Tables, check: Check) -> Start | None:
-    """Where one table starts, checked; None to deal it."""
+    """The validated start of one table; None to deal it."""
     _one_start(options)
     if "state" in options:
         return Start(state=check(options["state"]))
@@ -89,7 +89,7 @@ def start_of(options: dict[str, Any], tables: Tables, check: Check) -> Start | N
 
 
 def starts_of(options: dict[str, Any], n: int, tables: Tables, check: Check) -> list[Start] | None:
-    """Where each of n tables starts, checked; None to deal them."""
+    """The validated starts of n tables; None to deal them."""
     one = start_of(options, tables, check)
     if one is not None:
         return [one] * n
@@ -110,7 +110,7 @@ def _list_of(key, options, n):
 
 
 def _position(field, given, tables):
-    """The arrays of a ``Position``, or of what its ``to_dict`` gives, checked on the table that is played on; ``field``: its name."""
+    """The arrays of a ``Position`` or of its ``to_dict()``, validated on the table that is played on; ``field``: its name in messages."""
     from ..planning import Position
 
     if isinstance(given, Position):

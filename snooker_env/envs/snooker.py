@@ -7,133 +7,224 @@ import gymnasium
 import numpy as np
 
 from .._check import choice, refuse
-from .._types import Action, Bools, Floats, Observation, RenderMode
-from ..game.balls import BallOn
-from ..game.frame import Frame
-from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
-from ..physics.parameters import Physics
-from ..physics.table import Table
+from .._types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
-from ..tasks.frame import Frames
 from ..tasks.kinds import TABLES
-from ..tasks.noise import Noise
 from ..tasks.options import Options, options_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, Tables
+from .one_table import OneTable
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import HasHistory, Record
-from .reset_options import ONE, Start, given_of, start_of
+from .reset_options import ONE, given_of, start_of
 
 
-class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
-    """Snooker shot selection: one step is one whole shot.
+class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
+    """Shot selection in snooker: one step is one whole shot.
 
     ## Description
-    A visit to the table: the agent plays the cue ball, the shot is simulated to rest (frictional impacts of Mathavan, Jackson & Parkin
-    2014 in an exact event-driven engine, cushions of their 2010 model), the referee judges it, colours are respotted, and the agent
-    sees the new layout. The aim is a high break: pot a red, then a colour, then a red ..., finally the colours in order.
+    The agent plays a visit to the table. In each step it strikes the cue ball once. The shot is simulated until all balls
+    rest, the referee judges it, colours are respotted, and the agent observes the new table. The goal is a high break: a red, then a
+    colour, then a red and so on, finally the colours in order. The physics is an exact event-driven engine with frictional impacts between
+    balls (Mathavan, Jackson and Parkin 2014) and at cushions (their model of 2010).
 
-    ``task="frame"``: a whole frame against ``opponent``, scores, fouls, free balls and all. One step is one stroke of the agent and all
-    that the opponent plays after it. Who breaks is drawn from the seed. ``opponent="none"``: the agent plays alone; what it misses or
-    fouls it plays on from itself, penalties go to the other score. ``"random"``: uniform actions. ``"ghost_ball"``: the plain geometric
-    player. ``opponent(observation, rng) -> action``: any callable, asked in this environment's spaces from its own side of the table.
-    A path to a ``.zip``: a model of Stable-Baselines3 or sb3-contrib, trained on either task with these options. Such a file holds pickled
-    Python code, which runs when it is loaded, and so needs ``trust=True``; a model that does not fit is refused before any of it runs.
+    With ``task="frame"`` the agent plays a whole frame against ``opponent``, with scores, fouls and free balls. One step is one stroke of
+    the agent and all strokes of the opponent after it. The seed determines who breaks off.
+
+    | opponent | plays |
+    |---|---|
+    | "none" | nobody: the agent plays on from its own misses and fouls; penalties go to the other score |
+    | "random" | uniformly random actions |
+    | "ghost_ball" | the geometric player: the widest direct pot, as softly as possible |
+    | a callable | ``opponent(observation, rng) -> action``, in this environment's spaces, from its own side of the table |
+    | a path to a ``.zip`` | a model of Stable-Baselines3 or sb3-contrib, trained on either task with these options |
+
+    A model's file holds pickled Python code, which runs when it is loaded, so it needs ``trust=True``. A model that does not fit is refused
+    before any of its code runs.
 
     ## Action space
-    ``Box(-1, 1, (4,), float32)``: cue speed, side spin, top/back spin, aim; see ``tasks.box_actions.Actions`` for every component
-    and formula. ``aim="absolute"`` reads the aim as an angle of the full circle, ``aim="target"`` as up to 3 degrees left or right of the
-    best potting line. ``elevation=True`` appends the cue's elevation, ``placement=True`` two numbers for the place in the D. After a red,
-    the colour first struck is the one nominated; so is the free ball. In a frame ``decision=True`` appends what to do when the opponent has
-    fouled: play, have him play again, or (after a miss, ``miss="clear_path"``) have the balls replaced; without it the agent always plays.
-    In hand the cue ball stands at its usual place for the break, or near it, until ``placement`` moves it.
+    ``action="box"`` (default): ``Box(-1, 1, (4,), float32)``, or longer with the options in the last column. All components are linear.
+
+    | component | -1 | +1 | present with |
+    |---|---|---|---|
+    | cue speed | 0.2 m/s | 7.0 m/s | always |
+    | side: tip offset over R | 0.5 to the left | 0.5 to the right | always |
+    | top: tip offset over R | 0.5 below the middle | 0.5 above the middle | always |
+    | aim, ``aim="absolute"`` | -180 deg from +x | +180 deg, anticlockwise | always |
+    | aim, ``aim="target"`` | 3 deg right of the best potting line | 3 deg left of it | always |
+    | elevation of the cue | 0 deg | 30 deg | ``elevation=True`` |
+    | place: across the D | 0.292 m to the left (-x) | 0.292 m to the right (+x) | ``placement=True`` |
+    | place: back in the D | on the baulk line | on the edge of the D | ``placement=True`` |
+    | decision after a foul | the offender plays again | the balls are replaced, he plays again | ``decision=True`` |
+
+    A tip offset outside the disc of radius 0.5 R (the miscue limit) is moved back to its edge. The aim is the direction in which the cue
+    ball leaves without noise: squirt is compensated. The best potting line is that of the widest direct pot or, without one, the line to
+    the nearest ball on. The place counts only when the cue ball is in hand; without it, the cue ball stands at its usual place for the
+    break-off, or near it. The decision counts only in a frame when the opponent has just fouled. Between -1/3 and 1/3 the agent plays, with
+    this same action; above 1/3 it does so, too, unless a miss was called (``miss="clear_path"``).
+
+    ``action="discrete"``: ``Discrete(540)``. A choice is one of 4 pots, 9 speeds, 3 sides and 5 tops, and the aim is solved for it
+    (``snooker_env.tasks.choice_of``). ``action_masks()`` returns the available choices.
+
+    After a red, the colour first struck is the one nominated; so is the free ball.
 
     ## Observation space
-    ``observation="flat"``: ``Box(-1, 1, (121,), float32)``, the 22 rows of five of the table of balls, then eleven state entries.
-    ``observation="balls"``: ``Dict(balls=(22, 5), state=(11,))``, the same numbers (SB3: "MultiInputPolicy").
+    ``observation="flat"`` (default): ``Box(-1, 1, (121,), float32)``, the 22 rows of 5 numbers of the table of balls,
+    then the 11 numbers of the state. ``observation="balls"``: ``Dict(balls=(22, 5), state=(11,))``, the same numbers (for SB3's
+    "MultiInputPolicy").
 
-    | balls, one row a ball (0 cue, 1-15 reds, 16-21 yellow to black) | | state | |
+    | column of balls | value | entry of state | value |
     |---|---|---|---|
-    | x, y | / 0.889, / 1.7845 m, 0 when off the table | reds | left / 15 |
-    | on_table | 0 or 1 | any_colour, red, yellow .. black | one-hot: what is on |
-    | value | points / 7 | in_hand | 1 if the cue ball is played from the D |
-    | ball_on | 1 if it may be struck first | break | points of the visit / 155 |
+    | x | x / 0.889 m, 0 when off the table | reds | reds left / 15 |
+    | y | y / 1.7845 m, 0 when off the table | any_colour, red, yellow .. black | one-hot: the ball on |
+    | on_table | 0 or 1 | in_hand | 1 if the cue ball is in hand |
+    | value | points of the ball / 7 | break | points of the visit / 155 |
+    | ball_on | 1 if it may be struck first | | |
 
-    World frame: origin at the table's centre, +x to the yellow side, +y to the black end. ``task="frame"`` appends nine entries to the
-    state (so ``(130,)``, ``(20,)``): ``observations.FRAME_ENTRIES``.
+    Rows: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow, green, brown, blue, pink, black. Table frame: the origin is the table's centre,
+    +x points to the yellow side and +y to the black end.
+
+    ``task="frame"`` appends nine numbers to the state, so that the shapes are ``(130,)`` and ``(20,)``.
+
+    | entry | value |
+    |---|---|
+    | score, opponent_score, lead | / 155, clipped to [-1, 1] |
+    | available | points on the table / 147 |
+    | to_play | 1 if it is the observer's turn |
+    | free_ball | 1 if the striker has a free ball; "ball_on" is then 1 for every colour too |
+    | choice | 1 if the other player has just fouled: a decision is open |
+    | miss_called | 1 if that foul was called a miss |
+    | respotted_black | 1 if the black was re-spotted |
 
     ## Rewards
-    ``reward="points"`` (default): the points of the stroke, 0 for a miss or a foul, in [0, 15]. ``"points_and_fouls"``: less the
-    penalty of a foul (4 to 7). ``"pots"``: 1 for a scoring stroke. In a frame: ``"points"`` (default), the agent's points less the
-    opponent's in this step, penalties included; ``"win"``, +1 or -1 when the frame ends.
+    | task | reward | value of a step |
+    |---|---|---|
+    | "visit" | "points" (default) | the points of the stroke, in [0, 15]; 0 for a miss or a foul |
+    | "visit" | "points_and_fouls" | the same minus the penalty of a foul (4 to 7), in [-7, 15] |
+    | "visit" | "pots" | 1 for a scoring stroke, else 0 |
+    | "visit" | "legal" | 1 for a stroke without a foul, else 0 |
+    | "frame" | "points" (default) | the agent's points minus the opponent's, penalties of both included |
+    | "frame" | "win" | +1 or -1 when the frame ends, else 0 |
 
     ## Starting state
-    ``layout="opened"`` (default): a table opened by real simulated play, all 22 balls on it, reds on; ``"held_out"``: such tables that
-    ``"opened"`` never gives; ``"break_off"`` (default of a frame), ``"line_up"``, ``"colours"`` (the six on their spots), ``"random:N"`` (N
-    reds sprinkled), ``"snookered"`` (on every red), ``"pots:easy"``, ``"pots:medium"``, ``"pots:hard"`` (one red alone).
+    | layout | table |
+    |---|---|
+    | "opened" (default of a visit) | after simulated play: all 22 balls on the table, reds spread, red on |
+    | "held_out" | such tables that "opened" never deals |
+    | "break_off" (default of a frame) | the rack, cue ball in hand |
+    | "line_up" | the line-up exercise |
+    | "colours" | the six colours on their spots |
+    | "random:N" | N reds at random places |
+    | "snookered" | no straight path to any red |
+    | "pots:easy", "pots:medium", "pots:hard" | one red alone, by difficulty |
 
-    ## Episode end
-    Terminated by the first stroke that pots nothing, by a foul, or by a clearance; in a frame by its end under the rules, nobody concedes.
-    A frame that goes nowhere (fouls in turn, "play again") is stopped by the referee: truncated, with no winner, at once after the last of
-    ``max_strokes`` strokes of both players together, in the middle of a visit too. A visit is never truncated by itself
-    (``gymnasium.make(..., max_episode_steps=N)`` does). No ball leaves the table: the physics is planar.
+    ## Episode end A visit is terminated by the first stroke that pots nothing, by a foul, or by a clearance; with ``one_stroke=True``, by
+    any stroke. It is never truncated by itself (``gymnasium.make(..., max_episode_steps=N)`` does that).
+
+    A frame is terminated by its end under the rules; nobody concedes. It is truncated, without a winner, after the last of ``max_strokes``
+    strokes of both players together, even in the middle of a break. No ball leaves the table, because the physics is planar.
 
     ## Arguments
-    All are JSON types (but a callable opponent), so that ``EnvSpec.to_json`` round-trips.
+    All but a callable opponent are JSON types, so that ``EnvSpec.to_json`` round-trips. ``Options`` describes each option.
 
-    | name | default | what |
+    | name | default | values |
     |---|---|---|
-    | task | "visit" | build a break until the first miss or foul; "frame": see Description |
+    | task | "visit" | "visit", "frame" |
     | layout | "default" | see Starting state |
-    | opponent | "none" | of a frame only: see Description |
-    | miss | "off" | of a frame only; or "clear_path": the rule for a foul and a miss (``snooker_env.game.frame``) |
-    | decision | False | of a frame only: see Action space |
-    | max_strokes | 1000 | of a frame only: see Episode end; None: it is never stopped |
-    | trust | False | of a frame only; may the code in an opponent's ``.zip`` run? |
-    | action | "box" | or "discrete": one number means a pot, speed, side and top, the aim solved; ``snooker_env.tasks.discrete_actions`` |
-    | aim | "absolute" | or "target" |
-    | observation | "flat" | or "balls" |
-    | noise | "none" | "professional", "amateur", "club", "robot", "olympiad", or a dict of ``snooker_env.tasks.noise.Noise`` |
+    | action | "box" | "box", "discrete" |
+    | aim | "absolute" | "absolute", "target" |
+    | observation | "flat" | "flat", "balls" |
+    | noise | "none" | "professional", "amateur", "club", "robot", "olympiad", or a dict of ``snooker_env.tasks.Noise`` |
     | reward | "points" | see Rewards |
-    | elevation, placement | False | longer actions |
+    | elevation, placement | False | longer box actions |
     | physics | "paper" | "match", or a dict of overrides of ``snooker_env.Physics`` (not R) |
-    | table | "match" | or "tight", or a ``Table`` of your own whose noses are where theirs are |
+    | table | "match" | "tight", or a ``Table`` whose noses are where snooker's are |
     | fidelity | "standard" | "fast", "reference", "euler:N" |
-    | options | None | an ``Options`` that holds all of the above, in place of them |
+    | opponent | "none" | frame only; see Description |
+    | trust | False | frame only; whether the code in an opponent's ``.zip`` may run |
+    | miss | "off" | frame only; "clear_path": the rule for a foul and a miss (``snooker_env.game.frame``) |
+    | decision | False | frame only; a longer box action |
+    | max_strokes | 1000 | frame only; None for no limit |
+    | one_stroke | False | visit only; True: the visit ends after its first stroke |
+    | options | None | an ``Options`` in place of all of the above |
     | render_mode | None | "human", "rgb_array", "ansi": see Pictures and films |
     | render_size | (1920, 1080) | width and height of pictures [pixels] |
 
     ## Info
-    Always the same keys: ``points``, ``break``, ``seconds`` (float; the shot's duration), ``foul`` (bool), ``penalty``, ``pots``,
-    ``fouls`` (bits of ``snooker_env.game.ruling.Foul``), ``first_ball`` (-1: none), ``ball_on`` (what was on, a ``BallOn``),
-    ``events`` (int). In a frame they tell of the agent's own stroke, and there are ``score``, ``opponent_score`` (float),
-    ``strokes`` (of both players so far), ``opponent_strokes`` (of this step), ``winner`` (-1, 0 the agent, 1), ``choice``, ``free_ball``,
-    ``needs_snookers``.
+    The same keys after every reset and step.
+
+    | key | type | value |
+    |---|---|---|
+    | points | float | points of the stroke |
+    | break | float | points of the visit so far |
+    | seconds | float | duration of the shot |
+    | foul | bool | whether it was a foul |
+    | penalty | int | penalty points of a foul |
+    | pots | int | number of balls potted |
+    | fouls | int | bits of ``snooker_env.game.ruling.Foul`` |
+    | first_ball | int | id of the ball struck first, -1 for none |
+    | ball_on | int | what was on, a ``BallOn`` |
+    | events | int | number of events in the shot |
+
+    In a frame these are about the agent's own stroke, and there are more keys: ``score``, ``opponent_score`` (float), ``strokes`` (of both
+    players so far), ``opponent_strokes`` (in this step), ``winner`` (-1 for none, 0 the agent, 1 the opponent), ``choice``, ``free_ball``,
+    ``needs_snookers`` (bool).
 
     ## States
-    ``state = env.unwrapped.get_state()`` is everything between two shots as JSON types, ``reset(options={"state": state})`` starts from it.
-    It holds the random numbers too: played on again, the same actions meet the same errors of ``noise`` (and of an opponent). With a seed,
-    ``reset(seed=..., options={"state": state})``, table and game are those of the state and the random numbers those of the seed: other
-    seeds, other errors. A state that is not sound is refused, with nothing changed.
+    ``env.unwrapped.get_state()`` returns everything between two shots as JSON types, and ``reset(options={"state": state})``
+    starts from it. A state holds the random stream: the same actions then meet the same execution errors (and the same opponent). With a
+    seed as well, ``reset(seed=..., options={"state": state})``, table and game are those of the state and the random numbers those of the
+    seed. An invalid state is refused, and then nothing has changed.
 
-    ``reset(options={"position": position})`` starts from a ``snooker_env.Position``, checked on this environment's table: balls, what is
-    on, in hand and points are the position's; the random numbers are the seed's, or go on. In a frame the agent is to play it: a break of
-    its points so far, both scores 0.
+    ``reset(options={"position": position})`` starts from a ``snooker_env.Position``, validated on this environment's table. Balls, ball on,
+    in hand and points are the position's; the random stream goes on, or is that of the seed. In a frame it is the agent's turn, with a
+    break of the position's points so far; both scores are 0.
 
     ## Pictures and films
-    ``render()`` gives the table with the paths of the last stroke and a score bar. ``RecordVideo`` and ``vector.RecordVideo`` of Gymnasium
-    and ``VecVideoRecorder`` of Stable-Baselines3, in the same process, get the motion of every stroke of a step at ``render_fps`` (30 a
-    second, in real time): ``render()`` knows when a recorder asks. They keep all pictures in memory, 6 MB each at the usual size:
+    ``render()`` returns the table with the paths of the last stroke and a score bar. ``RecordVideo`` and
+    ``vector.RecordVideo`` of Gymnasium and ``VecVideoRecorder`` of Stable-Baselines3, in the same process, get the motion of every stroke
+    of a step, at ``render_fps`` (30 a second, in real time). They keep all pictures in memory, 6 MB each at the default size:
     ``render_size=(960, 540)`` takes a quarter, ``sn.RecordReplay`` none. "human" raises RuntimeError where there is no display.
 
     ## Version history
-    v0: first version. Results of package versions 0.1 and 0.2 do not compare: the pockets, the cushions of "match" and the levels of noise
-    moved (CHANGELOG.md).
+    v0: first version. Results of package versions 0.1 and 0.2 are not comparable: the pockets, the cushions of "match"
+    and the levels of noise changed (CHANGELOG.md).
+
     ## References
-    S. Mathavan, M. R. Jackson, R. M. Parkin: Numerical simulations of the frictional collisions of solid balls on a rough surface, Sports
-    Engineering 17 (2014); A theoretical analysis of billiard ball dynamics under cushion impacts, Proc. IMechE C 224 (2010). Rules: WPBSA,
-    May 2022.
+    * S. Mathavan, M. R. Jackson, R. M. Parkin: Numerical simulations of the frictional collisions of solid balls on a rough surface, Sports
+      Engineering 17 (2014).
+    * S. Mathavan, M. R. Jackson, R. M. Parkin: A theoretical analysis of billiard ball dynamics under cushion impacts, Proc. IMechE C 224
+      (2010).
+    * WPBSA: Official Rules of the Games of Snooker and English Billiards, May 2022.
+
+    Parameters
+    ----------
+    options : Options, optional
+        All options as one object. Default None: they are made from the keywords.
+    render_mode : {"human", "rgb_array", "ansi"}, optional
+        How ``render`` shows the table; default None: not at all.
+    render_size : (int, int), optional
+        Width and height of pictures [pixels], each in [100, 8192]; default (1920, 1080).
+    **given
+        The options as keywords, in place of ``options``, see Arguments.
+
+    Raises
+    ------
+    ValueError
+        If an argument is invalid.
+    TypeError
+        For an unknown keyword.
+
+    Examples
+    --------
+    >>> import gymnasium
+    >>> import snooker_env
+    >>> env = gymnasium.make("Snooker-v0", aim="target", noise="club")
+    >>> observation, info = env.reset(seed=1)
+    >>> observation, reward, terminated, truncated, info = env.step([0.2, 0.0, 0.0, 0.0])
+    >>> observation.shape, sorted(info)[:3]
+    ((121,), ['ball_on', 'break', 'events'])
     """
 
     metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012 - Gymnasium's own convention
@@ -153,136 +244,30 @@ class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
         self._record, self._seeded = Record(full=render_mode is not None), False
 
-    # the state of the table ------------------------------------------------------------------------------------------------
-
-    @property
-    def positions(self) -> Floats:
-        """Where the balls lie: (22, 2) [m]."""
-        return self.tables.positions[0].copy()
-
-    @property
-    def on_table(self) -> Bools:
-        """Which balls are on the table: (22,) bool."""
-        return self.tables.on_table[0].copy()
-
-    @property
-    def ball_on(self) -> BallOn:
-        """What is on, a ``BallOn``."""
-        return BallOn(self.tables.game[0, BALL_ON])
-
-    @property
-    def in_hand(self) -> bool:
-        """Whether the cue ball is in hand."""
-        return bool(self.tables.game[0, IN_HAND])
-
-    @property
-    def points(self) -> int:
-        """Points of the visit so far; in a frame of the striker's."""
-        return int(self.tables.game[0, POINTS])
-
-    @property
-    def over(self) -> bool:
-        """Whether the visit or frame has ended, stopped by the referee too, or not yet begun."""
-        return bool(self.tables.ended()[0])
-
-    @property
-    def on(self) -> int:
-        """Mask of the balls that may be struck first, bit i for ball i."""
-        return self.tables.on(0)
-
-    @property
-    def frame(self) -> Frame | None:
-        """The ``snooker_env.game.frame.Frame`` that is played; None in a visit."""
-        return self.tables.frame(0) if isinstance(self.tables, Frames) else None
-
-    @property
-    def physics(self) -> Physics:
-        """The ``Physics`` it is played by."""
-        return self.options.rules.physics
-
-    @property
-    def table(self) -> Table:
-        """The ``Table`` it is played on."""
-        return self.options.rules.table
-
-    @property
-    def noise(self) -> Noise:
-        """The ``Noise`` of its strokes."""
-        return self.options.rules.noise
-
-    def get_state(self) -> dict[str, Any]:
-        """The whole state between two shots: table, game and random numbers. ``set_state`` brings it back exactly.
-
-        Returns
-        -------
-        dict
-            Of JSON types. In a visit: "positions" (22, 2) [m], "on_table" (22,), "ball_on", "in_hand", "points", "over", "stream", "rng";
-            in a frame: "positions", "on_table", "frame" (``Frame.to_dict``), "strokes", "stream", "rng".
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> env = sn.SnookerEnv()
-        >>> _ = env.reset(seed=1)
-        >>> state = env.get_state()
-        >>> first = env.step([0.0, 0.0, 0.0, 0.5])[0]
-        >>> env.set_state(state)
-        >>> bool((env.step([0.0, 0.0, 0.0, 0.5])[0] == first).all())
-        True
-        """
-        return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
-
-    def set_state(self, state: dict[str, Any]) -> None:
-        """Take over a state; the next shot plays on identically.
-
-        Parameters
-        ----------
-        state : dict
-            As ``get_state`` gives it.
-
-        Returns
-        -------
-        None
-
-        Raises
-        ------
-        ValueError
-            If it is not sound; then nothing has changed.
-        """
-        self._take(Start(state=self.tables.checked(state, self.np_random)), seed=None)
-        self._record.begin_episode()
-
-    def _take(self, start: Start, *, seed: int | None) -> None:
-        """Begin from there; the random numbers that come with a state are taken over unless there is a seed."""
-        rng = start.take(self.tables, 0)
-        if rng is not None and seed is None:
-            self.np_random.bit_generator.state, self._np_random_seed = rng, -1  # Gymnasium's number for "not from a seed"
-            self._seeded = True
-
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
-        """A new visit or frame.
+        """Begin a new visit or frame.
 
         Parameters
         ----------
         seed : int, optional
-            Of all random numbers to come; None: they go on.
+            Seed of all random numbers from now on; default None: the stream goes on.
         options : dict, optional
-            {"state": a state of ``get_state``} or {"position": a ``snooker_env.Position``, or its ``to_dict()``} starts from there; see
+            {"state": a state from ``get_state``} or {"position": a ``snooker_env.Position`` or its ``to_dict()``} starts from there, see
             States.
 
         Returns
         -------
-        observation : float32 (k,) or dict
-            See Observation space.
+        observation : numpy.ndarray or dict
+            float32 (k,), or a dict of such arrays, see Observation space.
         info : dict
             See Info.
 
         Raises
         ------
         ValueError
-            For other options, or a state or position that is not sound here or has no shot left.
+            If an option is unknown, or a state or position is invalid or has no shot left.
 
         Examples
         --------
@@ -307,17 +292,17 @@ class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
         return observations.shaped(self.options.observation, out.observations[0]), self.tables.info(out, 0)
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Play one shot; in a frame also all that the opponent plays after it.
+        """Play one shot; in a frame, also all strokes of the opponent after it.
 
         Parameters
         ----------
-        action : array_like, float (k,), or int
-            Within [-1, 1]; with ``action="discrete"`` a choice.
+        action : array_like or int
+            float (k,) within [-1, 1]; with ``action="discrete"`` a choice.
 
         Returns
         -------
-        observation : float32 (k,) or dict
-            See Observation space.
+        observation : numpy.ndarray or dict
+            float32 (k,), or a dict of such arrays, see Observation space.
         reward : float
             See Rewards.
         terminated, truncated : bool
@@ -332,7 +317,7 @@ class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
         gymnasium.error.ResetNeeded
             If the episode is over or has not begun.
         SimulationError
-            If a shot cannot be computed; the balls are left as they lay, but for a cue ball that was placed.
+            If a shot cannot be computed. The balls are then left as they lay, except for a cue ball that was placed.
 
         Examples
         --------
@@ -358,16 +343,25 @@ class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
         return observation, float(out.rewards[0]), bool(out.terminated[0]), bool(out.truncated[0]), tables.info(out, 0)
 
     def action_masks(self) -> Bools:
-        """With ``action="discrete"``: which choices there are, as sb3-contrib's maskable algorithms ask for them.
+        """Return the available choices, with ``action="discrete"``; sb3-contrib's maskable algorithms call this method.
 
         Returns
         -------
-        bool (n,)
+        numpy.ndarray
+            bool (540,).
 
         Raises
         ------
         ValueError
             With ``action="box"``.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> env = sn.SnookerEnv(action="discrete")
+        >>> _ = env.reset(seed=1)
+        >>> env.action_masks().shape
+        (540,)
         """
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
@@ -383,12 +377,12 @@ class SnookerEnv(HasHistory, gymnasium.Env[Any, Any]):
             self._show(played=True)
 
     def render(self) -> Picture:
-        """The table with the paths of the last shot; to a recorder the motion of the strokes, see Pictures and films.
+        """Return the table with the paths of the last shot. A recorder gets the motion of the strokes, see Pictures and films.
 
         Returns
         -------
-        uint8 (H, W, 3), str or None
-            By the render mode: "rgb_array", "ansi", another.
+        numpy.ndarray, str or None
+            uint8 (H, W, 3) with "rgb_array", str with "ansi", None otherwise.
         """
         return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent())
 

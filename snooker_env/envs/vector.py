@@ -1,9 +1,8 @@
-"""How do thousands of tables play side by side? The native vector environment of ``Snooker-v0``: steps as kernels, spread over threads.
+"""How do thousands of tables play side by side? The native vector environment of ``Snooker-v0``: steps as kernels, on several threads.
 
 gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
 """
 
-import copy
 from collections.abc import Collection, Sequence
 from typing import Any, Literal
 
@@ -26,49 +25,64 @@ from .pictures import SIZE, Picture, Pictures
 from .record import Recent
 from .reset_options import MANY, Start, given_of, mask_of, seeds_of, starts_of
 from .snooker import SnookerEnv
-from .table_calls import check_name
+from .table_calls import TableCalls
 
 PICTURES = ("rgb_array", "ansi")
 
 
-class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
+class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
-    Pictures show the paths of the last shots; a window ("human") shows one environment only.
-    In a frame the opponents "random" and "ghost_ball" play as kernels. A callable is asked in Python, table by table; one that has a method
-    ``many(observations, generators, masks) -> actions`` is called once for all tables that wait for it, and so is a saved model (whose
-    arithmetic on many rows may differ in the last bits from that on one).
+    The steps run as compiled kernels on several threads. ``SnookerEnv`` specifies actions, observations, rewards and infos.
 
-    ``reset(seed=...)`` takes an int, a list or None as ``SyncVectorEnv`` does; options: "reset_mask" (bool array: only those tables),
-    "state" (of ``SnookerEnv.get_state``, for all of them) or "states" (of ``get_state``: a list of one each). A state holds its random
-    numbers, so that all tables given one state meet the same errors of ``noise``; with a seed too, table k draws them from seed + k.
-    In place of states "position" or "positions" (``snooker_env.Position``), which hold none: each table draws its own.
+    **Opponents.** In a frame, the opponents "random" and "ghost_ball" run as kernels. A callable is called in Python, table by table. If it
+    has a method ``many(observations, generators, masks) -> actions``, that is called once for all tables that wait for it. A saved model is
+    always called in this way; its arithmetic on many rows may differ in the last bits from that on one.
 
-    ``reset`` and ``step`` write into arrays that they are given: ``out={"observations": ..., "rewards": ..., "terminations": ...,
-    "truncations": ...}``, any of them, of the right shape and dtype, C-contiguous (shared memory, for instance); these are returned.
+    **Reset.** ``reset(seed=...)`` takes an int, a list or None, as ``SyncVectorEnv`` does. ``reset(options=...)`` takes these keys:
+
+    | key | value |
+    |---|---|
+    | "reset_mask" | bool array (num_envs,): the tables to reset; without it, all |
+    | "state" | a state of ``SnookerEnv.get_state`` for all of them |
+    | "states" | a list with one state for each, as ``get_state`` returns it |
+    | "position" | a ``snooker_env.Position`` for all of them |
+    | "positions" | a list with one position for each |
+
+    A state holds its random stream, so all tables that start from one state meet the same execution errors. With a seed as well, table k
+    draws from seed + k. Positions hold no random stream: each table draws its own errors.
+
+    **Results in given arrays.** ``reset`` and ``step`` can write into arrays of the caller, for instance in shared memory:
+    ``out={"observations": ..., "rewards": ..., "terminations": ..., "truncations": ...}``. Any of them may be given, C-contiguous and with
+    the right shape and dtype; the same arrays are then returned.
+
+    **Pictures** show the paths of the last shots. A window ("human") is available for ``SnookerEnv`` only.
 
     Parameters
     ----------
-    num_envs : int
-        How many tables.
+    num_envs : int, optional
+        Number of tables, in [1, 2**24]; default 1.
     options : Options, optional
-        How the game is played, as for ``SnookerEnv``; None: it is made of the keywords.
+        The options, see ``SnookerEnv``. Default None: they are made from the keywords.
     max_episode_steps : int, optional
-        Steps after which an episode is truncated; None: never.
+        Number of steps after which an episode is truncated; default None: never.
     render_mode : {"rgb_array", "ansi"}, optional
-    autoreset_mode : gymnasium.vector.AutoresetMode or its value
-        NEXT_STEP, SAME_STEP or DISABLED.
+        How ``render`` shows the tables; default None: not at all.
+    autoreset_mode : gymnasium.vector.AutoresetMode or str, optional
+        NEXT_STEP (default), SAME_STEP or DISABLED, or its value.
     threads : int, optional
-        How many to use; None: one for each core. Results do not depend on it.
-    render_size : (int, int)
-        Width and height of a table's picture [pixels].
+        Number of threads, in [1, 1024]; default one for each available processor. Results do not depend on it.
+    render_size : (int, int), optional
+        Width and height of a table's picture [pixels], each in [100, 8192]; default (1920, 1080).
     **given
         The keywords of ``Options``, in place of ``options``.
 
     Raises
     ------
-    ValueError, TypeError
-        For a bad argument, for an unknown one.
+    ValueError
+        If an argument is invalid.
+    TypeError
+        For an unknown keyword.
 
     Examples
     --------
@@ -122,28 +136,31 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None, out: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """New visits or frames on all tables, or on some.
+        """Begin new visits or frames on all tables, or on some.
 
         Parameters
         ----------
-        seed : int, list or None
-            Table k draws from seed + k, or from the k-th of the list; None: the random numbers go on.
+        seed : int, list or None, optional
+            Seeds of the random numbers from now on: table k draws from seed + k, or from element k of the list. Default None: the streams
+            go on.
         options : dict, optional
-            "reset_mask"; "state", "states", "position" or "positions": see above.
-        out : dict of arrays, optional
-            {"observations": where to write them}.
+            Keys "reset_mask", "state", "states", "position", "positions", see the class.
+        out : dict, optional
+            {"observations": arrays to write them into}, see the class.
 
         Returns
         -------
-        observations : float32 (num_envs, k) or dict
+        observations : numpy.ndarray or dict
+            float32 (num_envs, k), or a dict of such arrays.
         infos : dict
+            An array for each key of ``SnookerEnv``'s info; the array under "_key" marks the tables that it holds for.
 
         Raises
         ------
         ValueError
-            For other options, and states and positions that are not sound.
+            If the options are invalid, or a state or position is.
         gymnasium.error.ResetNeeded
-            If a table that is not reset has never been.
+            If a table outside the mask has never been reset.
         """
         options = given_of(options, MANY)
         seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
@@ -168,36 +185,40 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         try:
             self.tables.reset(fresh, written, self._crew)
         except BaseException:
-            self._begun[:] = False  # an opponent who breaks has played on some tables and not on others
+            self._begun[:] = False  # the opponent may have broken off on some tables only
             raise
         self._begun |= wanted
         self._done[wanted] = False
         return self._shaped(written, out), self.tables.infos(written.reals, written.counts, wanted)
 
     def step(self, actions: Any, *, out: dict[str, Any] | None = None) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
-        """One step of each table.
+        """Play one step on each table.
 
         Parameters
         ----------
-        actions : array_like, float (num_envs, k) or int (num_envs,)
-            Within [-1, 1], or choices.
-        out : dict of arrays, optional
-            Where to write results, see above.
+        actions : array_like
+            float (num_envs, k) within [-1, 1], or int (num_envs,): choices.
+        out : dict, optional
+            Arrays to write the results into, see the class.
 
         Returns
         -------
-        observations : float32 (num_envs, k) or dict
-        rewards : float64 (num_envs,)
-        terminations, truncations : bool (num_envs,)
+        observations : numpy.ndarray or dict
+            float32 (num_envs, k), or a dict of such arrays.
+        rewards : numpy.ndarray
+            float64 (num_envs,).
+        terminations, truncations : numpy.ndarray
+            bool (num_envs,).
         infos : dict
-            An array for each key, and "_key" which tables it is about; with SAME_STEP also "final_obs" and "final_info".
+            An array for each key of ``SnookerEnv``'s info; the array under "_key" marks the tables that it holds for. With SAME_STEP also
+            "final_obs" and "final_info".
 
         Raises
         ------
         ValueError
             If an action is not in the action space, or an array of ``out`` does not fit; then nothing is played.
         gymnasium.error.ResetNeeded
-            Before the first reset, and with DISABLED where an episode is over.
+            Before the first reset, and with DISABLED if an episode is over.
         SimulationError
             If a shot cannot be computed; all tables then need a reset.
         """
@@ -217,7 +238,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         try:
             self.tables.step(a, waiting, written, self._crew, same_step=same_step)
         except BaseException:
-            self._begun[:] = False  # some tables have played and some not
+            self._begun[:] = False  # only some tables have played
             raise
         done = written.terminated | written.truncated
         infos = self.tables.infos(written.reals, written.counts, np.ones(self.num_envs, np.bool_))
@@ -230,90 +251,37 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return self._shaped(written, out), written.rewards, written.terminated, written.truncated, infos
 
     def action_masks(self) -> Bools:
-        """With ``action="discrete"``: which choices there are on each table.
+        """Return the available choices on each table, with ``action="discrete"``.
 
         Returns
         -------
-        bool (num_envs, n)
+        numpy.ndarray
+            bool (num_envs, 540).
 
         Raises
         ------
         ValueError
             With ``action="box"``.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> envs = sn.SnookerVectorEnv(2, action="discrete", threads=1)
+        >>> _ = envs.reset(seed=1)
+        >>> envs.action_masks().shape
+        (2, 540)
         """
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.tables.action_masks()
 
-    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """For each table what ``SnookerEnv`` calls ``name``, as ``SyncVectorEnv.call`` gives it.
-
-        Parameters
-        ----------
-        name : str
-            An attribute, or a method.
-        *args, **kwargs
-            What the method gets.
-
-        Returns
-        -------
-        tuple
-            One for each table.
-
-        Raises
-        ------
-        ValueError
-            For what does not belong to one table.
-        AttributeError
-            For what is not there.
-        """
-        check_name(name)
-        found = [getattr(self._table(k, generator), name) for k, generator in enumerate(self.np_random)]
-        return tuple(each(*args, **kwargs) if callable(each) else each for each in found)
-
-    def get_attr(self, name: str) -> tuple[Any, ...]:
-        """``call`` without arguments.
-
-        Parameters
-        ----------
-        name : str
-            An attribute of ``SnookerEnv``.
-
-        Returns
-        -------
-        tuple
-            One for each table.
-        """
-        return self.call(name)
-
-    def set_attr(self, name: str, values: Any) -> None:
-        """Not to be had: the tables share everything.
-
-        Parameters
-        ----------
-        name, values
-            Anything.
-
-        Raises
-        ------
-        AttributeError
-            Always.
-        """
-        raise AttributeError(f"{name} cannot be set: the tables share everything; make another environment")
-
-    def _table(self, k: int, generator: np.random.Generator) -> SnookerEnv:
-        """Table k as a ``SnookerEnv``; they share the table's state."""
-        env = copy.copy(self._one)
-        env.tables, env._np_random, env._np_random_seed = self.tables.view(k), generator, self._generator_seeds[k]
-        return env
-
     def render(self) -> tuple[Picture, ...]:
-        """A picture of each table; to a recorder the motion of all of them at once, see Pictures and films of ``SnookerEnv``.
+        """Return a picture of each table. A recorder gets the motion of all of them at once, see ``SnookerEnv``.
 
         Returns
         -------
-        tuple of uint8 (H, W, 3) or str
-            With "rgb_array", with "ansi".
+        tuple
+            uint8 (H, W, 3) arrays with "rgb_array", str with "ansi".
         """
         return self._pictures.render_all(self.tables, self._recent.strokes)
 
@@ -323,17 +291,23 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             self._recent.begin()
 
     def close_extras(self, **kwargs: Any) -> None:
-        """End the threads."""
+        """End the threads; called by ``close``.
+
+        Parameters
+        ----------
+        **kwargs
+            Ignored.
+        """
         self._crew.shutdown()
 
     @property
     def threads(self) -> int:
-        """How many threads play the tables, fixed when the environment is made."""
+        """Number of threads that play the tables, an int; fixed when the environment is made."""
         return self._crew.threads
 
     @property
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
-        """The numpy generator of each table; each is asked once, for the key of its table's stream."""
+        """The NumPy generator of each table, a tuple. Each is used once, for the key of its table's random stream."""
         for k in range(self.num_envs):
             if self._generators[k] is None:
                 self._seed_generator(k, None)
@@ -341,7 +315,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     @property
     def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override]
-        """The seed of each table's generator; -1 where it came with a state."""
+        """The seed of each table's generator, a tuple of int; -1 if it came with a state."""
         return tuple(self._generator_seeds) if self.np_random else ()
 
     def _seed_generator(self, k: int, seed: int | None) -> None:
@@ -350,11 +324,24 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     # states ----------------------------------------------------------------------------------------------------------------
 
     def get_state(self) -> list[dict[str, Any]]:
-        """The state of each table, as ``SnookerEnv.get_state`` gives it; steps towards ``max_episode_steps`` are not part of it.
+        """Return the state of each table, as ``SnookerEnv.get_state`` does. Steps towards ``max_episode_steps`` are not part of it.
 
         Returns
         -------
         list of dict
+            One dict of JSON types for each table; ``reset(options={"states": states})`` restores them.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import snooker_env as sn
+        >>> envs = sn.SnookerVectorEnv(2, noise="club", threads=1)
+        >>> _ = envs.reset(seed=1)
+        >>> states = envs.get_state()
+        >>> first = envs.step(np.zeros((2, 4)))[0]
+        >>> _ = envs.reset(options={"states": states})
+        >>> bool((envs.step(np.zeros((2, 4)))[0] == first).all())
+        True
         """
         return [self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)]
 
@@ -368,13 +355,13 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     # parts of reset and step -----------------------------------------------------------------------------------------------
 
     def _given(self, out: Any, names: Collection[str]) -> dict[str, Any]:
-        """The arrays to write into, checked."""
+        """The validated arrays to write into."""
         flat = self.options.observation == "flat"
         boxes = None if flat else {part: box.shape for part, box in self.observation_space.spaces.items()}
         return arrays_given(out, names, self.num_envs, self.tables.SIZE, boxes)
 
     def _shaped(self, written, out):
-        """The observations as the environment's kind; in the arrays of ``out`` if these are given."""
+        """The observations in the environment's kind, in the arrays of ``out`` if these are given."""
         made = observations.shaped(self.options.observation, written.observations)
         if out is not None and "observations" in out and self.options.observation != "flat":
             for name, array in out["observations"].items():
@@ -383,7 +370,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return made
 
     def _final(self, out, done):
-        """What SAME_STEP adds: how the episodes ended that ended in this step."""
+        """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
         rows = observations.shaped(self.options.observation, out.last_observations)
         each = rows if self.options.observation == "flat" else ({name: rows[name][k] for name in rows} for k in range(self.num_envs))
         final = np.fromiter(each, object, self.num_envs)

@@ -1,4 +1,4 @@
-"""Snooker itself: balls, rules, frames and layouts, without physics and without Gymnasium. ``__all__`` is public, its modules are not."""
+"""The game of snooker: balls, rules, frames and layouts, without physics and Gymnasium. ``__all__`` is public; the modules are not."""
 
 from .balls import COLOUR_NAMES, CUE, N_BALLS, NAMES, SPOTS, TOUCH, VALUES, BallOn, balls_on, ids_of, mask_of
 from .layouts import LAYOUTS, POT_WINDOWS, Plan, layout, plan_of

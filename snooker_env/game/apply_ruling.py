@@ -1,7 +1,7 @@
-"""What does the table look like after the referee has done everything? Judge, spot, look for snookers, judge again: one kernel.
+"""How is the table after the referee has finished? Judge, spot, test for a snooker, judge again: one kernel.
 
 The verdict on a stroke can depend on the table after it (a free ball, a snooker laid behind the free ball), and that table on the verdict
-(which colours return, what is on next). ``settle`` goes round once and is all that a simulator calls after its shot.
+(which colours return, what is on next). ``settle`` does both steps; a simulator calls nothing else after its shot.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ from .spotting import spot
 
 @kernel
 def _put_in_order(positions, on_table, result, gone, radius):
-    """Balls in the mask ``gone`` leave, colours come back, the cue ball to hand, as the ``Ruling`` says; arrays in place."""
+    """Apply a ``Ruling`` in place: balls in the mask ``gone`` leave, colours return, the cue ball comes in hand."""
     for i in range(N_BALLS):
         if (gone >> i) & 1:
             on_table[i] = False
@@ -30,9 +30,9 @@ def _put_in_order(positions, on_table, result, gone, radius):
 
 @kernel
 def settle_visit(positions, on_table, ball_on, lead, first, touching, moved, potted, radius):
-    """``settle`` for a visit by itself: nobody plays on after a foul, so nobody looks for a snooker and there is no free ball.
+    """``settle`` for a single visit: nobody plays on after a foul, so there is no test for a snooker and no free ball.
 
-    Arrays in place and numbers as in ``settle``; the simulation sees no ball off the table and no flag. Returns a ``Ruling``.
+    Arguments as in ``settle``, arrays changed in place; the simulation produces no ball off the table and no flag. Returns a ``Ruling``.
     """
     result = ruling(bits(on_table), ball_on, 0, lead, first, touching, moved, potted, 0, AUTO, 0)
     _put_in_order(positions, on_table, result, potted, radius)
@@ -41,18 +41,18 @@ def settle_visit(positions, on_table, ball_on, lead, first, touching, moved, pot
 
 @kernel
 def settle(positions, on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags, jaws, radius):
-    """Judge a stroke and put the table in order. Returns a ``Ruling``, complete with free ball and snooker behind it.
+    """Judge a stroke and set up the table for the next one. Returns a ``Ruling``, complete with free ball and snooker behind it.
 
-    ``positions`` (22, 2) where the balls came to rest and ``on_table`` (22,) bool as it was *before* the stroke; both are changed in
-    place: balls potted or off leave, colours are spotted, and on_table[0] is False if the cue ball is in hand. When the frame is over
-    the object balls are left as they are, potted ones gone. The integers are those of ``ruling``; ``flags`` without the two that this
-    function finds itself. ``jaws`` (m, 3): see ``snookered.NO_JAWS``.
+    ``positions`` (22, 2) [m]: where the balls came to rest. ``on_table`` (22,) bool: *before* the stroke. Both are changed in place: balls
+    potted or off leave, colours are spotted, and on_table[0] is False if the cue ball is in hand. When the frame is over, the potted balls
+    leave and the others stay. The integers are those of ``ruling``; of ``flags``, this function sets SNOOKERED and BEHIND_FREE_BALL itself.
+    ``jaws`` (m, 3): see ``snookered.NO_JAWS``.
     """
     flags = flags & ~(FLAG.SNOOKERED | FLAG.BEHIND_FREE_BALL)
     before = bits(on_table)
     result = ruling(before, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags)
     _put_in_order(positions, on_table, result, potted | off, radius)
-    # A snooker matters after a foul (a free ball) and when a free ball was played without a pot (it must not be behind that ball).
+    # A snooker matters after a foul (free ball), and after a free ball that was not potted (no snooker may be behind that ball).
     if result.outcome == OUTCOME.PLAYING and (result.fouls or (free_ball and result.nominated and not result.points)):
         hidden, effective = snookered(positions, on_table, balls_on_kernel(result.ball_on, result.on_table), jaws, radius)
         if hidden:
@@ -72,10 +72,10 @@ def settle_one(positions, on_table, ball_on, free_ball, lead, first, touching, m
 def settle_table(
     positions: Vectors, on_table: Flags, situation: Situation, stroke: Stroke, *, jaws: Vectors = NO_JAWS, radius: float = BALL_RADIUS
 ) -> tuple[Verdict, Floats, Bools]:
-    """Judge a ``Stroke`` and put the table in order: the ``Verdict`` and new ``positions`` (22, 2) and ``on_table`` (22,) bool.
+    """Judge a ``Stroke`` and set up the table: the ``Verdict`` and new ``positions`` (22, 2) [m] and ``on_table`` (22,) bool.
 
-    ``positions`` are those after the stroke, ``on_table`` that before it, and it must agree with ``situation.on_table``. The fields
-    ``snookered`` and ``behind_free_ball`` of the stroke are found here, whatever they say. Raises ``ValueError`` on wrong input.
+    ``positions`` are those after the stroke. ``on_table`` is that before it, and must agree with ``situation.on_table``. The fields
+    ``snookered`` and ``behind_free_ball`` of the stroke are ignored and computed here. Raises ``ValueError`` for wrong input.
     """
     placed, present = check_table(positions, on_table)
     if (mask_of(np.flatnonzero(present)) ^ situation.on_table) & ~1:

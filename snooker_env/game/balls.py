@@ -1,8 +1,7 @@
-"""Which balls are there, what is each worth and where does it belong? Ids, values and places; the table's own are in ``geometry``.
+"""Which balls are there, what is each worth and where does it belong? Ids, values and places; those of the table are in ``geometry``.
 
-World frame as in ``geometry``. The 22 balls have fixed ids: 0 the cue
-ball, 1 to 15 the reds, 16 to 21 the colours in the order of their values. A set of balls is an integer whose bit i stands for ball i,
-or a bool array (22,); positions are float64 (22, 2).
+Table frame as in ``geometry``. The 22 balls have fixed ids: 0 is the cue ball, 1 to 15 are the reds, 16 to 21 the colours in the order of
+their values. A set of balls is an integer whose bit i stands for ball i, or a bool array (22,). Positions are float64 (22, 2) [m].
 """
 
 from collections.abc import Iterable
@@ -17,15 +16,19 @@ from .._types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS
 
 N_BALLS = 22
+"""Number of balls, the cue ball included."""
 CUE, YELLOW, GREEN, BROWN, BLUE, PINK, BLACK = 0, 16, 17, 18, 19, 20, 21
+"""Ids of the cue ball and of the colours; the reds have the ids 1 to 15."""
 N_REDS = 15
+"""Number of reds."""
 
 COLOUR_NAMES = ("yellow", "green", "brown", "blue", "pink", "black")
+"""Names of the colours in the order of their ids, 16 to 21, and of their values, 2 to 7."""
 NAMES = ("cue", *(f"red {i}" for i in range(1, 16)), *COLOUR_NAMES)
-"""Names by id."""
+"""Names of the balls by id."""
 
 VALUES = np.array([0] + [1] * 15 + [2, 3, 4, 5, 6, 7], dtype=np.int64)
-"""Points by id; the cue ball has none."""
+"""Points by id: int64 (22,), read-only; 0 for the cue ball."""
 
 _BITS = 1 << np.arange(N_BALLS)
 CUE_BIT = 1
@@ -35,11 +38,11 @@ ALL_MASK = 0x3FFFFF
 
 
 class BallOn(IntEnum):
-    """What the striker must hit first. From RED on, the number is the points that the ball on is worth.
+    """The ball on: what the striker must hit first. From RED on, the number is its value in points.
 
     ============= === ==========================================================================
-    NOTHING       -1  The frame is over.
-    ANY_COLOUR    0   A red was just potted: any one colour, which the striker nominates.
+    NOTHING       -1  Nothing: the frame is over.
+    ANY_COLOUR    0   Any one colour, which the striker nominates: a red was just potted.
     RED           1   A red.
     YELLOW        2   The yellow.
     GREEN         3   The green.
@@ -48,6 +51,12 @@ class BallOn(IntEnum):
     PINK          6   The pink.
     BLACK         7   The black.
     ============= === ==========================================================================
+
+    Examples
+    --------
+    >>> from snooker_env.game import BallOn
+    >>> BallOn(5).name, int(BallOn.BLACK)
+    ('BLUE', 7)
     """
 
     NOTHING = -1
@@ -62,19 +71,19 @@ class BallOn(IntEnum):
 
 
 PINK_GAP = 0.0005
-"""Gap [m] between the pink on its spot and the red at the apex: as near as possible without touching."""
+"""Gap between the pink on its spot and the red at the apex [m]: small, without contact."""
 
 TOUCH = 1e-6
-"""Two balls touch when the gap between them is below this [m]: far under what an eye sees, far over rounding."""
+"""Two balls touch when the gap between them is below this [m]: far below what can be seen, far above rounding."""
 
 
 def _spots():
-    """A place for each ball: the cue ball's usual place for the break, the racked triangle, the six spots."""
+    """A place for each ball: the cue ball's usual place for the break-off, the racked triangle, the six spots."""
     spots = np.empty((N_BALLS, 2))
     spots[CUE] = D_RADIUS / 2, BAULK_Y
     spots[YELLOW:] = COLOUR_SPOTS
     pink_y = spots[PINK, 1]
-    # Rows sqrt(3) R apart with a pitch of 2 R: each red touches its neighbours to rounding. Figures rounded to mm would overlap.
+    # Rows sqrt(3) R apart with a pitch of 2 R: each red touches its neighbours to rounding. Places rounded to mm would overlap.
     ball = 1
     for row in range(5):
         for k in range(row + 1):
@@ -84,7 +93,8 @@ def _spots():
 
 
 SPOTS = _spots()
-"""(22, 2): each colour's spot; for a red its place in the triangle, for the cue ball its usual place for the break."""
+"""A place for each ball: float64 (22, 2) [m], read-only. The spot of each colour, the place of each red in the triangle, and the
+usual place of the cue ball for the break-off."""
 
 for _constant in (VALUES, SPOTS):
     _constant.setflags(write=False)
@@ -92,7 +102,18 @@ for _constant in (VALUES, SPOTS):
 
 @kernel
 def bits(present):
-    """The mask of a bool array (22,)."""
+    """The mask of the balls that are present. An inner kernel.
+
+    Parameters
+    ----------
+    present : bool (22,)
+        Which balls are present, by id.
+
+    Returns
+    -------
+    int
+        Mask with bit i for ball i.
+    """
     mask = 0
     for i in range(N_BALLS):
         if present[i]:
@@ -102,7 +123,7 @@ def bits(present):
 
 @kernel
 def count(mask):
-    """How many balls are in a mask."""
+    """The number of balls in a mask."""
     n = 0
     for i in range(N_BALLS):
         n += (mask >> i) & 1
@@ -110,7 +131,7 @@ def count(mask):
 
 
 def next_on(mask: int) -> int:
-    """The ball on (a ``BallOn``) for a player who comes to the table: red while there is one, then the lowest colour, or NOTHING (-1)."""
+    """The ball on (a ``BallOn``) for a player who comes to the table: red while there is one, then the lowest colour, else NOTHING (-1)."""
     if mask & REDS_MASK:
         return 1
     for i in range(YELLOW, N_BALLS):
@@ -120,7 +141,9 @@ def next_on(mask: int) -> int:
 
 
 def balls_on(ball_on: int, on_table: int) -> int:
-    """The balls that may be struck first.
+    """The mask of the balls that may be struck first.
+
+    ``snooker_env.kernels.balls_on`` is the same function as an inner kernel.
 
     Parameters
     ----------
@@ -132,7 +155,7 @@ def balls_on(ball_on: int, on_table: int) -> int:
     Returns
     -------
     int
-        Their mask.
+        Mask of the balls that may be struck first; 0 for ``BallOn.NOTHING``.
 
     Examples
     --------
@@ -160,17 +183,23 @@ def mask_of(balls: Iterable[int]) -> int:
     Parameters
     ----------
     balls : iterable of int
-        Ids, 0 to 21.
+        Ids of the balls, 0 to 21.
 
     Returns
     -------
     int
-        Bit i for ball i.
+        Mask with bit i for ball i.
 
     Raises
     ------
     ValueError
-        For an id that is none.
+        If an id is not an integer from 0 to 21.
+
+    Examples
+    --------
+    >>> from snooker_env.game import mask_of
+    >>> mask_of([0, 1, 3])
+    11
     """
     mask = 0
     for ball in balls:
@@ -184,28 +213,35 @@ def mask_of_present(on_table: Bools) -> int:
 
 
 def ids_of(mask: int) -> tuple[int, ...]:
-    """The ids in a mask, in order.
+    """The ids of the balls in a mask.
 
     Parameters
     ----------
     mask : int
-        Bit i for ball i.
+        Mask with bit i for ball i.
 
     Returns
     -------
     tuple of int
+        The ids in rising order.
 
     Raises
     ------
     ValueError
-        For a mask with other bits.
+        If the mask is not an integer, or has a bit above 21.
+
+    Examples
+    --------
+    >>> from snooker_env.game import ids_of
+    >>> ids_of(11)
+    (0, 1, 3)
     """
     integer("mask", mask, 0, ALL_MASK)
     return tuple(i for i in range(N_BALLS) if mask >> i & 1)
 
 
 def check_table(positions: Vectors, on_table: Flags) -> tuple[Floats, Bools]:
-    """Fresh copies of ``positions`` (22, 2) and ``on_table`` (22,) bool; raises ``ValueError`` for anything else."""
+    """New copies of ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; raises ``ValueError`` for anything else."""
     present = np.array(on_table)
     if present.shape != (N_BALLS,) or present.dtype != np.bool_:
         raise refuse("on_table", f"{present.dtype} array of shape {present.shape}", f"must be bool of shape ({N_BALLS},)")

@@ -1,21 +1,21 @@
 """How does a frame between two players go on? A pure, serialisable state machine around the referee, without physics.
 
     frame = Frame.start(breaker=0)
-    frame, verdict = frame.play(stroke)         # a Stroke seen in a simulation, or any other
+    frame, verdict = frame.play(stroke)         # a Stroke from a simulation, or any other
     frame = frame.choose("play")                # after a foul the opponent decides
     Frame.from_dict(json.loads(json.dumps(frame.to_dict()))) == frame
 
-A ``Frame`` never changes: each act returns the next one. Players are 0 and 1. An act that is not open raises ``ValueError``.
+A ``Frame`` never changes: each act returns the next one. Players are 0 and 1. An act that is not allowed raises ``ValueError``.
 
 A foul and a miss: ``miss="off"`` never calls it (an agent could be sent back to the same position for ever). ``miss="clear_path"`` calls
-what geometry alone decides: the striker failed to strike a ball on first although a straight path to a part of one was clear; not
-when either player needed penalty points before or after the stroke, or the points left equalled the difference. After a miss with a
-clear full-ball path, a second failure from the same position is a miss whatever the scores, and once warned the third loses the frame.
+it where geometry alone decides: the striker failed to strike a ball on first although a straight path to a part of one was clear. It is
+not called when either player needed penalty points before or after the stroke, or when the points left equalled the difference. After a
+miss with a clear full-ball path, a second failure from the same position is a miss whatever the scores; then the striker is warned, and
+the third loses the frame.
 
-Left out, because a simulator cannot judge it: whether an attempt was the best that could be made (so no miss is called on a snookered
-striker) and whether a failure was deliberate; when a stalemate has come (``restart`` only carries one out); time wasting and conduct;
-balls that fall in unprovoked or are moved by others; fouls before the stroke on a replaced position. The lot for a re-spotted black
-is not drawn here but passed in.
+Left out, because a simulator cannot judge it: whether an attempt was the best possible (so no miss is called on a snookered striker) and
+whether a failure was deliberate; when there is a stalemate (``restart`` only carries one out); time wasting and conduct; balls that fall
+in unprovoked or are moved by others; fouls before the stroke on a replaced position. The lot for a re-spotted black is passed in.
 """
 
 from contextlib import contextmanager
@@ -34,11 +34,11 @@ Choice: TypeAlias = Literal["play", "play_again", "replace"]
 PHASES = ("stroke", "choice", "lot", "over")
 MISS_RULES = ("off", "clear_path")
 MOST_BREAK = 155
-"""The highest break: a free ball and the colour after it, then 147. What a break has and what the table still offers are never more."""
+"""The highest break: a free ball and the colour after it, then 147. A break and the points still on the table are never more together."""
 
 
 def points_available(on_table: int, ball_on: int) -> int:
-    """The most points that the balls on the table still offer: 8 a red, 7 if a colour is on after a red, and the colours' values."""
+    """The most points that can still be scored: 8 for each red, 7 if a colour is on after a red, and the values of the colours."""
     reds = bin(on_table & REDS_MASK).count("1")
     return 8 * reds + 7 * (ball_on == BallOn.ANY_COLOUR) + int(sum(VALUES[i] for i in ids_of(on_table & COLOURS_MASK)))
 
@@ -58,7 +58,7 @@ class Saved:
     free_ball : bool
         The striker had a free ball.
     layout : tuple or None
-        The caller's own record of where the balls lay, anything that JSON can hold; it is kept and handed back, not read.
+        The caller's own record of the positions, anything that JSON can hold. It is stored and returned, never read.
     """
 
     on_table: int
@@ -83,9 +83,9 @@ class Frame:
     scores : (int, int)
         Points of the two players.
     striker : int
-        Who plays next. In phase "choice" the one who chooses; in phase "lot" the last striker.
+        The player who is next. In phase "choice" the one who chooses; in phase "lot" the last striker.
     breaker : int
-        Who broke off; kept through a restart.
+        The player who broke off; unchanged by a restart.
     break_points : int
         Points of the striker's visit so far.
     on_table : int
@@ -95,13 +95,13 @@ class Frame:
     in_hand : bool
         The stroke is played from the D.
     free_ball : bool
-        The striker may nominate a free ball (in phase "choice": if he chooses to play).
+        The striker may nominate a free ball (in phase "choice": after the choice to play).
     respotted_black : bool
         The black has been re-spotted: scores were level.
     phase : {"stroke", "choice", "lot", "over"}
         "stroke": ``play`` is next. "choice": after a foul, ``choose``. "lot": before a re-spotted black, ``draw``. "over".
     winner : int, or None
-        Who has won; None before the end.
+        The player who has won; None before the end.
     miss : {"off", "clear_path"}
         The rule for a foul and a miss: one of ``MISS_RULES``.
     miss_called : bool
@@ -109,7 +109,7 @@ class Frame:
     failures : int
         Misses in succession from one position with a clear full-ball path.
     warned : bool
-        The striker has been told that one more failure loses the frame.
+        The striker has been warned that one more failure loses the frame.
     saved : Saved, or None
         The position before the last stroke, if it was a foul.
     """
@@ -156,35 +156,37 @@ class Frame:
             _set(self, "ball_on", self.situation.ball_on)  # the situation checks it against the table
 
     def _faults(self):
-        """What the fields have against each other, as the rules have it: (is it so?, the field, what is allowed)."""
+        """Pairs of fields that the rules forbid: (whether this is so, the field, what is allowed)."""
         stroke, after_foul, missing = self.phase == "stroke", self.phase == "choice", self.miss != "off"
         if self.phase == "over":
             for name, value in _SETTLED.items():
                 yield getattr(self, name) != value, name, f'must be {value!r} in phase "over"'
             return
         lowest, left = next_on(self.on_table), MOST_BREAK - self.available
-        yield not stroke and self.ball_on != lowest, "ball_on", f'must be {lowest}, the lowest on_table, but in phase "stroke"'
+        yield not stroke and self.ball_on != lowest, "ball_on", f'must be {lowest}, the lowest on_table, except in phase "stroke"'
         yield self.ball_on not in (BallOn.ANY_COLOUR, lowest), "ball_on", f"must be 0 (any colour) or {lowest}, the lowest on_table"
         yield self.break_points > left, "break_points", f"must be at most {left}: on_table and ball_on offer {self.available} more"
         new = self.free_ball or not stroke
-        yield new and self.break_points != 0, "break_points", 'must be 0 but in phase "stroke", and with free_ball'
+        yield new and self.break_points != 0, "break_points", 'must be 0 except in phase "stroke" without free_ball'
         level = self.on_table == 1 << BLACK and self.scores[0] == self.scores[1]
-        yield self.respotted_black and not level, "respotted_black", "must be False but with scores level and only the black on_table"
+        yield self.respotted_black and not level, "respotted_black", "must be False except with level scores and only the black on_table"
         yield self.phase == "lot" and not self.respotted_black, "phase", 'must not be "lot" without respotted_black'
         called = after_foul and missing and self.saved is not None
-        yield self.miss_called and not called, "miss_called", 'must be False but in phase "choice" with a miss rule and saved'
+        yield self.miss_called and not called, "miss_called", 'must be False except in phase "choice" with a miss rule and saved'
         counting = missing and self.saved is not None and (stroke or self.miss_called)
-        yield self.failures > 0 and not counting, "failures", 'must be 0 but with a miss rule, saved, and miss_called or phase "stroke"'
-        told = stroke and self.failures == 2
-        yield self.warned != told, "warned", f'must be {told}: True in phase "stroke" with two failures, else False'
+        allowed = 'must be 0 except with a miss rule, saved, and either miss_called or phase "stroke"'
+        yield self.failures > 0 and not counting, "failures", allowed
+        warned = stroke and self.failures == 2
+        yield self.warned != warned, "warned", f'must be {warned}: True in phase "stroke" with two failures, else False'
         if self.saved is not None:
-            yield not (after_foul or (stroke and missing)), "saved", 'must be None but in phase "choice", and in "stroke" with a miss rule'
+            allowed = 'must be None except in phase "choice", or in phase "stroke" with a miss rule'
+            yield not (after_foul or (stroke and missing)), "saved", allowed
             gone = self.saved.on_table ^ self.on_table
             lost = gone & ~REDS_MASK or gone & self.on_table
-            yield after_foul and lost, "saved", "must have the on_table of after the foul, and besides at most reds"
+            yield after_foul and lost, "saved", "must have the balls on_table after the foul, and no others except reds"
             for name in _REPLACED:
                 other = getattr(self.saved, name) != getattr(self, name)
-                yield stroke and other, "saved", f'must have the {name} of now: in phase "stroke" it has just been restored'
+                yield stroke and other, "saved", f'must have the present {name}: in phase "stroke" it has just been restored'
 
     def _check_fit(self):
         for wrong, name, allowed in self._faults():
@@ -193,23 +195,23 @@ class Frame:
 
     @classmethod
     def start(cls, *, breaker: int = 0, miss: MissRule = "off", on_table: int = FULL_TABLE) -> "Frame":
-        """A new frame; ``on_table`` if it starts from a table with fewer balls."""
+        """A new frame. ``on_table``: mask of the balls, for a start with fewer of them."""
         ball_on = next_on(integer("on_table", on_table, 0, ALL_MASK))
         return cls(striker=breaker, breaker=breaker, miss=miss, on_table=on_table & ~CUE_BIT, ball_on=BallOn(ball_on))
 
     @property
     def situation(self) -> Situation:
-        """What the referee needs to judge the next stroke."""
+        """The ``Situation`` in which the referee judges the next stroke."""
         lead = self.scores[self.striker] - self.scores[1 - self.striker]
         return Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball, lead=lead)
 
     @property
     def available(self) -> int:
-        """Points that the table still offers (a free ball not counted)."""
+        """The most points that can still be scored (without a free ball)."""
         return points_available(self.on_table, self.ball_on)
 
     def needs_snookers(self, player: int) -> bool:
-        """Whether ``player`` trails by more than the table offers, and so needs penalty points."""
+        """Whether ``player`` trails by more points than can still be scored, and so needs penalty points."""
         integer("player", player, 0, 1)
         return self.scores[1 - player] - self.scores[player] > self.available
 
@@ -225,8 +227,8 @@ class Frame:
     ) -> tuple["Frame", Verdict]:
         """One stroke: the next frame and the referee's ``Verdict``.
 
-        ``clear_path`` and ``full_ball_path`` say whether before the stroke a straight path was clear to any part, and to the full face,
-        of a ball on (``paths.paths``); they matter with ``miss="clear_path"`` only. ``layout``: see ``Saved``.
+        ``clear_path``, ``full_ball_path``: whether before the stroke a straight path was clear to any part, and to the full face, of a
+        ball on (``paths.paths``); used with ``miss="clear_path"`` only. ``layout``: see ``Saved``.
         """
         self._in_phase("stroke", "play")
         verdict = judge(self.situation, stroke)
@@ -270,13 +272,13 @@ class Frame:
 
     @property
     def choices(self) -> tuple[Choice, ...]:
-        """What the opponent may choose after a foul; empty in other phases."""
+        """The opponent's choices after a foul; empty in other phases."""
         if self.phase != "choice":
             return ()
         return ("play", "play_again", "replace") if self.miss_called else ("play", "play_again")
 
     def choose(self, what: Choice) -> "Frame":
-        """The opponent's decision after a foul; it cannot be taken back.
+        """The opponent's decision after a foul, which is final.
 
         "play": the opponent plays the table as it lies (with the free ball, if there is one). "play_again": the offender plays it, and
         a free ball is void. "replace", after a miss: ``saved`` is restored and the offender plays from there; the penalty stands.
@@ -293,13 +295,13 @@ class Frame:
         return replace(again, warned=self.failures >= 2, **before)
 
     def draw(self, first: int) -> "Frame":
-        """Who plays first at a re-spotted black: the winner of the lot has chosen ``first``."""
+        """The winner of the lot has chosen that player ``first`` begins at the re-spotted black."""
         self._in_phase("lot", "draw")
         return replace(self, phase="stroke", striker=integer("first", first, 0, 1), break_points=0)
 
     @property
     def may_claim(self) -> bool:
-        """Whether the striker may claim the frame: only the black is left and he leads by more than 7."""
+        """Whether the striker may claim the frame: only the black is left and the lead is more than 7."""
         return self.phase == "stroke" and self.on_table == 1 << BLACK and self.situation.lead > 7
 
     def claim(self) -> "Frame":
@@ -309,7 +311,7 @@ class Frame:
         return self._over(self.striker)
 
     def concede(self, player: int) -> "Frame":
-        """``player`` gives the frame up; only the striker may."""
+        """``player`` concedes the frame; only the striker may."""
         if self.phase not in ("stroke", "choice") or integer("player", player, 0, 1) != self.striker:
             raise refuse("player", player, "must be the striker of a frame that is not over")
         return self._over(1 - player)
@@ -321,7 +323,7 @@ class Frame:
         return Frame.start(breaker=self.breaker, miss=self.miss)
 
     def to_dict(self) -> dict[str, Any]:
-        """The frame as plain numbers, strings, lists and None: what JSON can hold."""
+        """The frame as plain numbers, strings, lists and None, for JSON."""
         plain = asdict(self) | {"scores": list(self.scores), "ball_on": int(self.ball_on)}
         if self.saved is not None:
             plain["saved"]["ball_on"] = int(self.saved.ball_on)
@@ -329,9 +331,9 @@ class Frame:
 
     @classmethod
     def from_dict(cls, plain: dict[str, Any], field: str = "frame") -> "Frame":
-        """The frame that ``to_dict`` gave, also after a round trip through JSON.
+        """The frame from the result of ``to_dict``, also after a round trip through JSON.
 
-        ValueError, which names the part of ``field`` that is wrong, also where parts do not fit together by the rules.
+        Raises ValueError, which names the wrong part of ``field``; also where the rules forbid a combination of parts.
         """
         _check_fields(field, plain, cls)
         saved, scores = plain["saved"], plain["scores"]
@@ -348,10 +350,10 @@ class Frame:
 _SETTLED = {
     "ball_on": BallOn.NOTHING, "free_ball": False, "miss_called": False, "failures": 0, "warned": False, "saved": None,
 }  # fmt: skip
-"""What is void once a frame is over."""
+"""The fields of a frame that is over."""
 
 _REPLACED = ("on_table", "ball_on", "in_hand", "free_ball")
-"""What comes back with a position that is replaced."""
+"""The fields that are restored with a position that is replaced."""
 
 
 def _set(frozen, name, value):
@@ -359,7 +361,7 @@ def _set(frozen, name, value):
 
 
 def _plain(value, high):
-    """Is it an int in [0, high]? Nearly always, so the words of a complaint need not be made."""
+    """Whether it is an int in [0, high]: a quick test before the full check, which it nearly always spares."""
     return type(value) is int and 0 <= value <= high
 
 
@@ -374,13 +376,13 @@ def _check_fields(field, plain, kind):
     if not isinstance(plain, dict):
         raise refuse(field, plain, "must be a dict with the fields " + ", ".join(names))
     if set(plain) != set(names):
-        found = f"a dict that lacks {[n for n in names if n not in plain]} and has besides {[n for n in plain if n not in names]}"
+        found = f"a dict without {[n for n in names if n not in plain]} and with the others {[n for n in plain if n not in names]}"
         raise refuse_what(field, found, "must have exactly the fields " + ", ".join(names))
 
 
 @contextmanager
 def _within(field):
-    """A complaint about a field says what it is a part of."""
+    """Prefix the message of a ValueError with ``field``."""
     try:
         yield
     except ValueError as error:
@@ -388,5 +390,5 @@ def _within(field):
 
 
 def _tuples(value):
-    """Lists, as JSON gives them back, as tuples all the way down."""
+    """Nested lists, as JSON returns them, as nested tuples."""
     return tuple(map(_tuples, value)) if isinstance(value, list | tuple) else value

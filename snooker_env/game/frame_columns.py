@@ -1,10 +1,10 @@
-"""How are frames kept by the thousand? The ``Frame`` of ``frame.py`` as one row of integers, and its rules as kernels.
+"""How are thousands of frames stored? The ``Frame`` of ``frame.py`` as one row of integers, and its rules as kernels.
 
-``frame.Frame`` is the specification that one reads; this is the same for machine code, and the tests hold the two equal stroke for stroke.
-A row (int64, ``COLUMNS`` wide) holds the fields of a ``Frame``. Three acts change it: ``after_stroke``, ``choose`` and ``draw``. The layout
-that "replace" brings back lies beside the rows, in arrays of its own: ``Layouts`` says which.
+``frame.Frame`` is the readable specification; this is the same for machine code, and the tests compare the two stroke by stroke. A row
+(int64, ``COLUMNS`` wide) holds the fields of a ``Frame``. Three acts change it: ``after_stroke``, ``choose`` and ``draw``. The layouts that
+"replace" restores are in separate arrays, ``Layouts``.
 
-The first five columns mean the same for a visit without a frame, whose rows hold nothing else.
+The first five columns have the same meaning for a visit without a frame, whose rows have no others.
 """
 
 from typing import NamedTuple
@@ -18,35 +18,35 @@ from .frame import PHASES, Frame, Saved
 from .ruling import FOUL, OUTCOME
 
 (BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
-"""A ``BallOn``; flags; points of the break so far; whether it has ended by the rules; steps of the episode, for a limit on them."""
+"""A ``BallOn``; whether the cue ball is in hand; points of the break so far; whether the episode has ended by the rules; its steps."""
 VISIT_COLUMNS = 5
 (
     FREE_BALL, ON_TABLE, PHASE, STRIKER, BREAKER, SCORE_0, SCORE_1, WINNER, RESPOTTED_BLACK, MISS_CALLED, FAILURES, WARNED, SAVED,
     SAVED_ON_TABLE, SAVED_BALL_ON, SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT, STROKES,
 ) = range(5, 24)  # fmt: skip
-"""The fields of ``frame.Frame`` and ``frame.Saved`` (flags whether there are a ``Saved`` and a layout in it); strokes of both players."""
+"""The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether there is one); strokes of both players."""
 COLUMNS = 24
 
 (STROKE, CHOICE, LOT, FINISHED) = range(4)
 """Phases, in the order of ``frame.PHASES``."""
 (PLAY, PLAY_AGAIN, REPLACE) = range(3)
-"""What may be chosen after a foul."""
+"""Choices after a foul."""
 
 _MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
 
 
 class Layouts(NamedTuple):
-    """Where the balls lay on n tables before the last foul."""
+    """The positions of the balls on n tables before the last foul."""
 
     positions: Floats
     """(n, 22, 2) [m]."""
     on_table: Bools
-    """(n, 22)."""
+    """(n, 22) bool."""
 
 
 @kernel
 def strikeable(row, mask):
-    """Of the balls in ``mask`` those that may be struck first, with a free ball every colour; ``row``: of a visit or a frame."""
+    """Mask of the balls in ``mask`` that may be struck first; with a free ball, all colours too. ``row``: of a visit or a frame."""
     on = balls_on_kernel(row[BALL_ON], mask)
     if row.shape[0] > FREE_BALL and row[FREE_BALL]:
         on |= COLOURS_MASK & mask
@@ -78,7 +78,7 @@ def begin_frame(row, on_table, breaker, in_hand):
 
 @kernel
 def _end(row, winner):
-    """The frame is over; what is void then (``frame._SETTLED``) is cleared."""
+    """End the frame and clear the fields of ``frame._SETTLED``."""
     row[PHASE], row[OVER], row[WINNER] = FINISHED, 1, winner
     row[BALL_ON] = -1
     row[FREE_BALL] = row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = 0
@@ -92,7 +92,7 @@ def lead_of(row, player):
 
 @kernel
 def _is_miss(row, result, lead_before, available_before, failures, clear, full):
-    """Whether a foul is a miss too, ``row`` being that of after the stroke: ``Frame._is_miss``."""
+    """Whether a foul is also a miss, with ``row`` after the stroke: ``Frame._is_miss``."""
     if not result.fouls & _MISSED:
         return False
     if full and failures:
@@ -103,9 +103,9 @@ def _is_miss(row, result, lead_before, available_before, failures, clear, full):
 
 @kernel
 def after_stroke(row, result, miss, clear, full, layout):
-    """One stroke on which the referee gave the ``Ruling`` result: ``Frame.play``.
+    """One stroke with the referee's ``Ruling`` result: ``Frame.play``.
 
-    ``miss``: whether misses are called; ``clear``, ``full``: the paths before the stroke; ``layout``: whether that before it was kept.
+    ``miss``: whether misses are called; ``clear``, ``full``: the paths before the stroke; ``layout``: whether that before it is stored.
     """
     me = row[STRIKER]
     other = 1 - me
@@ -139,7 +139,7 @@ def after_stroke(row, result, miss, clear, full, layout):
 
 @kernel
 def choose(row, what):
-    """The decision after a foul, one that is open: ``Frame.choose``. Whoever calls it puts a replaced layout back."""
+    """An allowed decision after a foul: ``Frame.choose``. The caller restores a replaced layout."""
     row[PHASE] = STROKE
     row[MISS_CALLED] = 0
     if what == REPLACE:
@@ -156,12 +156,12 @@ def choose(row, what):
 
 @kernel
 def draw(row, first):
-    """Who plays first at a re-spotted black: ``Frame.draw``."""
+    """Player ``first`` begins at the re-spotted black: ``Frame.draw``."""
     row[PHASE], row[STRIKER], row[POINTS] = STROKE, first, 0
 
 
 def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int) -> Frame:
-    """The ``Frame`` that row ``row`` (COLUMNS,) means; ``miss``: its rule, ``layouts``: ``Layouts``, of which row k is read."""
+    """The ``Frame`` of ``row`` (COLUMNS,); ``miss``: its rule; ``layouts``: ``Layouts``, of which row k is read."""
     at = row.tolist()
     saved = None
     if at[SAVED]:
@@ -181,7 +181,7 @@ def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int) -> Frame:
 
 
 def write_frame(frame: Frame, strokes: int, row: Ints, layouts: Layouts, k: int) -> None:
-    """Write a sound ``Frame`` into ``row`` (COLUMNS,), and the layout that it keeps into row k of ``layouts``."""
+    """Write a checked ``Frame`` into ``row`` (COLUMNS,), and its stored layout into row k of ``layouts``."""
     row[:] = 0
     row[[BALL_ON, IN_HAND, POINTS, OVER]] = frame.ball_on, frame.in_hand, frame.break_points, frame.phase == "over"
     row[[FREE_BALL, ON_TABLE, PHASE]] = frame.free_ball, frame.on_table, PHASES.index(frame.phase)

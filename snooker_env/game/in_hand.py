@@ -1,6 +1,6 @@
-"""Where may the cue ball stand when it is in hand? The D, and the free place in it that is nearest to a wish, exact, as kernels.
+"""Where may the cue ball stand when it is in hand? The D, and the free place in it nearest to a given point, exact, as kernels.
 
-The centre must lie on or within the lines of the D: the baulk line's part between yellow and green, and the half circle behind it.
+The centre must lie on or within the lines of the D: the part of the baulk line between yellow and green, and the half circle behind it.
 """
 
 from typing import Any
@@ -15,21 +15,21 @@ from .balls import N_BALLS, check_table
 from .spotting import CLEARANCE, occupied
 
 ROUNDING = 1e-12
-"""A point on a line of the D is within it, to this [m]."""
+"""Tolerance for points on the lines of the D [m]."""
 
 
 def within_d(x: float, y: float) -> bool:
-    """Is (x, y) on or within the lines of the D?"""
+    """Whether (x, y) [m] is on or within the lines of the D."""
     return y <= BAULK_Y + ROUNDING and np.hypot(x, y - BAULK_Y) <= D_RADIUS + ROUNDING
 
 
 in_d: Any = kernel(within_d)
-"""The same for kernels."""
+"""``within_d`` as an inner kernel."""
 
 
 @kernel
 def _into_d(x, y):
-    """The point of the D nearest to (x, y)."""
+    """The point of the D nearest to (x, y) [m]."""
     depth = max(0.0, BAULK_Y - y)
     far = np.hypot(x, depth)
     if far <= D_RADIUS:
@@ -41,7 +41,7 @@ def _into_d(x, y):
 
 @kernel
 def _meet(ax, ay, a, bx, by, b, sign):
-    """One of the two points (``sign`` +1, -1) where circles about a and b meet; NaN if they do not."""
+    """One of the two points (``sign`` +1, -1) where the circles about a and b cross; NaN if they do not."""
     dx, dy = bx - ax, by - ay
     d2 = dx * dx + dy * dy
     along = 0.5 * (1.0 + (a * a - b * b) / d2)
@@ -51,7 +51,7 @@ def _meet(ax, ay, a, bx, by, b, sign):
 
 @kernel
 def _better(positions, on_table, wish_x, wish_y, px, py, best_x, best_y, best, radius):
-    """The better of a candidate p and the best place so far: its (x, y) and its distance from the wish. A NaN is never better."""
+    """The better of a candidate p and the best place so far: (x, y) and distance from the wish [m]. A NaN is never better."""
     far = np.hypot(px - wish_x, py - wish_y)
     if far < best and in_d(px, py) and not occupied(positions, on_table, px, py, radius):
         return px, py, far
@@ -60,10 +60,10 @@ def _better(positions, on_table, wish_x, wish_y, px, py, best_x, best_y, best, r
 
 @kernel
 def nearest_place(positions, on_table, x, y, radius):
-    """The free place in the D nearest to (x, y), and whether there is one: (x, y, bool). A place is free if a ball there touches none.
+    """The free place in the D nearest to (x, y) [m], and whether there is one: (x, y, bool). At a free place a ball touches no other.
 
-    Each ball bars a disc about it. The nearest point outside them all is the wish itself (moved into the D), the nearest point of one
-    circle, or a corner where two of the circles and lines of the D meet: all are tried. ``on_table[0]`` must be False.
+    Each ball excludes a disc around it. The nearest point outside all discs is the wish itself (moved into the D), the nearest point of one
+    circle, or a point where two of the circles and the lines of the D cross: all are tried. ``on_table[0]`` must be False.
     """
     x, y = _into_d(x, y)
     reach = 2.0 * radius + CLEARANCE
@@ -97,9 +97,9 @@ def _nearest_place(positions, on_table, x, y, radius):
 
 
 def place_cue(positions: Vectors, on_table: Flags, x: float, y: float, *, radius: float = BALL_RADIUS) -> Place:
-    """The free place in the D nearest to (x, y): (x, y). The cue ball may be anywhere; it is not in its own way.
+    """The free place (x, y) in the D nearest to (x, y) [m]. The cue ball's own position is ignored.
 
-    Raises ``ValueError`` for wrong arrays or numbers, and if the D has no free place (no legal table is that full).
+    Raises ``ValueError`` for wrong arrays or numbers, and if the D has no free place (which no legal table has).
     """
     placed, present = check_table(positions, on_table)
     present[0] = False

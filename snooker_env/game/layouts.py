@@ -1,7 +1,7 @@
-"""How can a table stand at the start of a task? Layouts from a stream of random numbers: geometry only, no shot is simulated.
+"""Which tables can a task start from? Layouts from a stream of random numbers: geometry only, no shot is simulated.
 
-A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool. It depends on the stream alone: same key and counter, same table. A
-ball off the table keeps its row of ``balls.SPOTS``. Balls that are not racked or on a spot stand at least ``GAP`` from any other.
+A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool. It depends on the stream alone: same key and counter, same table. The
+row of a ball off the table is that of ``balls.SPOTS``. Balls that are not racked or on a spot are at least ``GAP`` from any other.
 """
 
 from dataclasses import dataclass
@@ -21,11 +21,11 @@ from .pots import POT_COLUMNS, TOLERANCE, find_pots
 from .snookered import NO_JAWS, snookered_from
 
 GAP = 0.001
-"""Least gap [m] between a ball placed at random and any other."""
+"""Least gap between a ball placed at random and any other ball [m]."""
 CUSHION_GAP = 0.05
-"""... and any cushion [m]: about a ball's width, so that it can be struck normally."""
+"""Least gap between such a ball and a cushion [m]: about a ball's width, so that it can be struck normally."""
 POCKET_GAP = 0.15
-"""Least distance [m] of such a ball's centre from a pocket's nominal place: clear of the jaws."""
+"""Least distance of such a ball's centre from a pocket's nominal place [m]: clear of the jaws."""
 
 OPENED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
 """Kinds of layouts, for the kernels."""
@@ -33,7 +33,7 @@ OPENED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
 
 @kernel
 def clear(positions, on_table, x, y):
-    """Is a place clear of the balls on the table, cushions and pockets?"""
+    """Whether a place (x, y) [m] is clear of the balls on the table, the cushions and the pockets."""
     room = BALL_RADIUS + CUSHION_GAP
     if abs(x) > HALF_WIDTH - room or abs(y) > HALF_LENGTH - room:
         return False
@@ -48,7 +48,7 @@ def clear(positions, on_table, x, y):
 
 @kernel
 def _put(positions, on_table, ball, kind, stream):
-    """Put a ball at the first place drawn that is clear of the others; the cue ball within the bounds of its kind of layout."""
+    """Put a ball at the first random place that is clear; the cue ball within the bounds of its kind of layout."""
     left, bottom, right, top = -HALF_WIDTH, -HALF_LENGTH, HALF_WIDTH, HALF_LENGTH
     if ball == CUE and kind == BREAK_OFF:
         left, bottom, right, top = -D_RADIUS, BAULK_Y - D_RADIUS, D_RADIUS, BAULK_Y
@@ -60,7 +60,7 @@ def _put(positions, on_table, ball, kind, stream):
         if ball == CUE and kind == BREAK_OFF and hypot(x, y - BAULK_Y) > D_RADIUS:
             continue
         if ball == CUE and kind == COLOURS and not 0.25 <= hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1]) <= 1.2:
-            continue  # not too near the first ball on, nor too far
+            continue  # too near to the first ball on, or too far from it
         if clear(positions, on_table, x, y):
             positions[ball, 0], positions[ball, 1] = x, y
             on_table[ball] = True
@@ -69,21 +69,24 @@ def _put(positions, on_table, ball, kind, stream):
 
 @kernel
 def _opened(positions, on_table, tables, first, last, stream):
-    """One of the tables ``first`` to ``last`` of the bank, every second one mirrored in the long axis."""
+    """One of the tables ``first`` to ``last`` of the bank, with probability 1/2 mirrored in the long axis."""
     u, v = pair(stream)
     table = tables[first + int(u * (last - first))]
     for i in range(N_BALLS):
         j = i
         if v < 0.5 and YELLOW <= i <= GREEN:
-            j = YELLOW + GREEN - i  # so that each keeps its side of the table
+            j = YELLOW + GREEN - i  # so that each stays on its side of the table
         positions[i, 0], positions[i, 1] = -table[j, 0] if v < 0.5 else table[j, 0], table[j, 1]
         on_table[i] = True
 
 
 @kernel
 def _line_up_y(k):
-    """Where red k of 15 of the practice line-up stands on the centre line: two below the blue, seven from blue to pink, four on to the
-    black, two above it. They stand about 112 mm apart, so that a ball just passes between two."""
+    """The y of red k of 15 in the practice line-up on the centre line [m].
+
+    Two reds are below the blue, seven between blue and pink, four between pink and black, two above the black. They are about 112 mm apart,
+    so that a ball just passes between two.
+    """
     blue, pink, black = SPOTS[19, 1], SPOTS[20, 1], SPOTS[21, 1]
     low, high = (pink - blue) / 8, (black - pink) / 5
     if k <= 9:
@@ -92,17 +95,18 @@ def _line_up_y(k):
 
 
 SNOOKERED_REDS = 3
-"""At most so many reds are on the table in ``"snookered"``."""
+"""The most reds on the table in the layout "snookered"."""
 BEHIND = (0.08, 0.5)
-"""How far from the snookering colour its cue ball lies [m]: from about a ball's width to a third of the table's width."""
+"""Least and largest distance of its cue ball from the snookering colour [m]: from 1.5 ball widths to 28 % of the table's width."""
 
 
 @kernel
 def _hide(positions, on_table, reds, stream):
-    """Try to snooker the cue ball on every red (of 1 to ``reds``), by a colour drawn: is it now placed so?
+    """Try to snooker the cue ball on every red, 1 to ``reds``, by a random colour; returns whether this succeeded.
 
-    By construction and trial: behind the colour as seen from a red, kept only if the rule's tangent test (``snookered.is_snookered``)
-    finds no red that can be struck at both edges. A way out needs a cushion, swerve, or a touch on a red's one open edge.
+    The cue ball is placed behind the colour as seen from a red. The place is accepted only if the rule's tangent test
+    (``snookered.is_snookered``) finds no red that can be struck at both edges. An escape needs a cushion, swerve, or a contact with the one
+    open edge of a red.
     """
     u, v = pair(stream)
     far, _ = pair(stream)
@@ -119,13 +123,15 @@ def _hide(positions, on_table, reds, stream):
 
 
 POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e-3)}
-"""How far the aim of the layout's widest pot may err to either side [rad], by ``game.pots``. Along its solved line at 2.3 m/s a
-professional makes 94, 90 and 61 % of them, a club player 92, 63 and 24 % (``python -m benchmarks.hand --strokes 2000``)."""
+"""Difficulty -> range of the tolerance of the layout's widest pot [rad]: by how much the aim may err to either side, by ``game.pots``.
+
+Played along the solved line at 2.3 m/s, with the execution errors of a professional 94, 90 and 61 % of them are potted; with those of a
+club player 92, 63 and 24 % (``python -m benchmarks.execution --strokes 2000``)."""
 
 
 @kernel
 def _deal(code, tables, stream, positions, on_table, found):
-    """One layout: first the racked and spotted balls, then the loose reds, last the cue ball; again until what is asked for holds."""
+    """One layout: first the racked and spotted balls, then the loose reds, last the cue ball; repeated until its condition holds."""
     kind, reds, low, high = int(code[0]), int(code[1]), code[2], code[3]
     if kind == OPENED:
         _opened(positions, on_table, tables, int(low), int(high), stream)
@@ -155,7 +161,7 @@ def _deal(code, tables, stream, positions, on_table, found):
 
 @entry(what="the dealing of tables", seconds=4)
 def deal_tables(which, code, tables, streams, positions, on_table):
-    """Deal a new layout on each of the tables ``which``, from its own stream: positions (n, 22, 2), on_table (n, 22), in place.
+    """Write a new layout for each of the tables ``which``, from its own stream, into positions (n, 22, 2) [m] and on_table (n, 22).
 
     ``code`` and ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64.
     """
@@ -166,17 +172,27 @@ def deal_tables(which, code, tables, streams, positions, on_table):
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A layout's name as the kernels read it. A copy is made anew from the name: the bank of tables is never copied.
+    """A layout by name, in the form that the kernels read; ``plan_of`` makes one.
+
+    Pickling and copying make it again from the name, so the bank of tables is never copied.
 
     Attributes
     ----------
     name : str
+        Name of the layout.
     code : float64 (4,)
-        Kind, number of reds, and two numbers: the first and last table of the bank, or the window of a pot.
+        Kind, number of reds, and two numbers: the first and last table of the bank, or the range of a pot's tolerance [rad].
     tables : float64 (b, 22, 2)
-        The bank of opened tables [m], or none.
+        The bank of opened tables [m]; b = 0 for a layout without one.
     unfit : tuple of int
-        The tables of the bank that others stand in for, as they do not fit the table played on.
+        Tables of the bank that do not fit the table played on; others replace them.
+
+    Examples
+    --------
+    >>> from snooker_env.game import plan_of
+    >>> plan = plan_of("break_off")
+    >>> plan.name, plan.in_hand, plan.tables.shape
+    ('break_off', True, (0, 22, 2))
     """
 
     name: str
@@ -186,16 +202,22 @@ class Plan:
 
     @property
     def in_hand(self) -> bool:
-        """Whether the cue ball may be moved within the D."""
+        """Whether the cue ball is in hand at the start, and may be placed in the D."""
         return self.name == "break_off"
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         return plan_of, (self.name, self.unfit)
 
 
-_NAMES = {"break_off": (BREAK_OFF, N_REDS), "line_up": (LINE_UP, N_REDS), "colours": (COLOURS, 0), "snookered": (SNOOKERED, SNOOKERED_REDS)}
+_NAMES = {
+    "break_off": (BREAK_OFF, N_REDS),
+    "line_up": (LINE_UP, N_REDS),
+    "colours": (COLOURS, 0),
+    "snookered": (SNOOKERED, SNOOKERED_REDS),
+}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = ("opened", "held_out", *_NAMES)
+"""Names of the layouts without a number: "opened", "held_out", "break_off", "line_up", "colours" and "snookered"."""
 
 
 def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
@@ -204,18 +226,25 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     Parameters
     ----------
     name : str
-        One of ``LAYOUTS``, ``"random:N"`` with N reds, or ``"pots:D"`` with D one of ``POT_WINDOWS``.
+        One of ``LAYOUTS``, ``"random:N"`` with N reds from 0 to 15, or ``"pots:D"`` with D one of ``POT_WINDOWS``.
     unfit : tuple of int
-        Tables of the bank not to be dealt, by their indices, in order.
+        Indices of tables of the bank that are not to be dealt, in rising order.
 
     Returns
     -------
     Plan
+        The layout for ``layout``, ready for repeated use.
 
     Raises
     ------
     ValueError
-        For another name.
+        For an unknown name.
+
+    Examples
+    --------
+    >>> from snooker_env.game import plan_of
+    >>> plan_of("random:6").code.tolist()
+    [4.0, 6.0, 0.0, 0.0]
     """
     head, _, which = name.partition(":") if isinstance(name, str) else ("", "", "")
     tables, code = NO_BANK, None
@@ -237,25 +266,26 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
 
 
 def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
-    """A table as a layout deals it.
+    """Deal one table of a layout.
 
     Parameters
     ----------
     plan : str or Plan
         The layout, see ``plan_of``.
     rng : numpy.random.Generator
-        One number is drawn of it: the key of the layout's stream.
+        Source of the randomness; one number is drawn from it, the key of the layout's stream.
 
     Returns
     -------
     positions : float64 (22, 2)
-        [m], fresh.
+        Centres of the balls [m], a new array.
     on_table : bool (22,)
+        Which balls are on the table, a new array.
 
     Raises
     ------
     ValueError
-        For an unknown layout.
+        For an unknown layout, or an ``rng`` that is no numpy ``Generator``.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""Was there a clear path to a ball on? The two tests that the rule of the foul and a miss asks, as kernels.
+"""Was there a clear path to a ball on? The two tests of the rule of the foul and a miss, as kernels.
 
 *Any part*: in some direction the cue ball, rolling straight, meets a ball on before any ball not on. *Full ball*: the straight line
-from centre to centre of some ball on passes every ball not on at 2 R or more. Other balls on never obstruct. A place is asked for the
-cue ball that is on the table; for one in hand the caller asks where it was played from.
+from centre to centre of some ball on passes every ball not on at 2 R or more. Other balls on never obstruct. The cue ball must have a
+place: if it was in hand, the place from which it was played.
 """
 
 import numpy as np
@@ -15,12 +15,12 @@ from .balls import ALL_MASK, CUE_BIT, N_BALLS, check_table
 from .snookered import SLACK, segment_distance
 
 WINDOW = 1e-9
-"""An opening must be wider than this [rad] to count: below it is rounding."""
+"""A narrower opening does not count [rad]: it is rounding."""
 
 
 @kernel
 def meets(bx, by, ux, uy, radius):
-    """How far the cue ball, from the origin along the unit vector u, rolls until it meets the ball at b; inf if it passes."""
+    """Distance that the cue ball rolls from the origin along the unit vector u until it meets the ball at b [m]; inf if it misses."""
     along, across = bx * ux + by * uy, bx * uy - by * ux
     if along <= 0.0 or abs(across) >= 2.0 * radius:
         return np.inf
@@ -29,12 +29,12 @@ def meets(bx, by, ux, uy, radius):
 
 @kernel
 def full_ball_path(positions, on_table, on, radius):
-    """Is there a ball on (mask ``on``) that can be struck full from where the cue ball lies?"""
+    """Whether a ball on (mask ``on``) can be struck full from the place of the cue ball."""
     cx, cy = positions[0, 0], positions[0, 1]
     for target in range(1, N_BALLS):
         if on_table[target] and (on >> target) & 1:
             tx, ty = positions[target, 0], positions[target, 1]
-            # The run ends at contact, 2 R short of the target's centre.
+            # The path ends at contact, 2 R before the target's centre.
             d = np.hypot(tx - cx, ty - cy)
             run = max(0.0, 1.0 - 2.0 * radius / d)
             clear = True
@@ -49,7 +49,7 @@ def full_ball_path(positions, on_table, on, radius):
 
 @kernel
 def _open_direction(positions, on_table, on, target, angle, radius):
-    """Does the cue ball, rolling at ``angle``, meet ``target`` before any ball not on?"""
+    """Whether the cue ball, rolling at ``angle`` [rad], meets ``target`` before any ball not on."""
     ux, uy = np.cos(angle), np.sin(angle)
     cx, cy = positions[0, 0], positions[0, 1]
     run = meets(positions[target, 0] - cx, positions[target, 1] - cy, ux, uy, radius)
@@ -63,10 +63,10 @@ def _open_direction(positions, on_table, on, target, angle, radius):
 
 @entry  # np.sort makes an array, which an inner kernel may not
 def clear_path(positions, on_table, on, radius):
-    """Is there a straight path to any part of a ball on (mask ``on``) from where the cue ball lies?
+    """Whether there is a straight path to any part of a ball on (mask ``on``) from the place of the cue ball.
 
-    The view of a ball can open or close only in finitely many directions: tangents to a ball, and those in which the cue ball would
-    meet the target and another ball at once. Between two neighbouring ones nothing changes, so their midpoints decide, exactly.
+    The path can open or close only at finitely many directions: tangents to a ball, and those in which the cue ball would meet the target
+    and another ball at the same time. Between two neighbouring ones nothing changes, so it is exact to test their midpoints.
     """
     cx, cy = positions[0, 0], positions[0, 1]
     edges = np.empty(4 * N_BALLS)
@@ -88,7 +88,7 @@ def clear_path(positions, on_table, on, radius):
             reach = np.arcsin(min(1.0, 2.0 * radius / b))
             edges[n], edges[n + 1] = turn - reach, turn + reach
             n += 2
-            # Touching both: on the middle perpendicular of b-t, 2 R from each.
+            # Touching both: on the perpendicular bisector of b-t, 2 R from each.
             sx, sy = bx - tx, by - ty
             apart = np.hypot(sx, sy)
             if 0.0 < apart < 4.0 * radius:
@@ -115,10 +115,10 @@ def _paths(positions, on_table, on, radius):
 
 
 def paths(positions: Vectors, on_table: Flags, on: int, *, radius: float = BALL_RADIUS) -> tuple[bool, bool]:
-    """Both tests for Python: (any part, full ball). The cue ball must be on the table; raises ``ValueError`` if it is not."""
+    """Both tests for Python: (any part, full ball). Raises ``ValueError`` if the cue ball is not on the table."""
     placed, present = check_table(positions, on_table)
     if not present[0]:
-        raise refuse("on_table[0]", False, "must be True: the cue ball needs a place")
+        raise refuse("on_table[0]", False, "must be True: the cue ball must be on the table")
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on", on, "must name object balls only")
     any_part, full = _paths(placed, present, on, float(radius))

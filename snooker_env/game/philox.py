@@ -1,8 +1,8 @@
-"""Where does chance come from inside a kernel? A counter-based generator: its whole state is a key and a counter, in one array.
+"""Where do random numbers come from inside a kernel? From a counter-based generator, whose whole state is a key and a counter.
 
-Philox 4x32-10 [Salmon, Moraes, Dror & Shaw, Parallel random numbers: as easy as 1, 2, 3, SC 2011]: ten rounds of multiplying and crossing
-turn a counter of 128 bits and a key of 64 into 128 random bits. Different keys give unrelated streams, so each table has its own, and
-what is drawn on one table never depends on another, on the number of tables or on the number of threads.
+Philox 4x32-10 [Salmon, Moraes, Dror & Shaw, Parallel random numbers: as easy as 1, 2, 3, SC 2011]: ten rounds of multiplications and
+exchanges turn a counter of 128 bits and a key of 64 into 128 random bits. Different keys give independent streams. Each table has its own,
+so its numbers never depend on another table, on the number of tables or on the number of threads.
 
 A stream is a uint64 array (2,): key and counter. Each draw takes one block and adds 1 to the counter.
 """
@@ -24,7 +24,7 @@ _ROUNDS = 10
 
 @kernel
 def philox(c0, c1, c2, c3, k0, k1):
-    """One block: four words of 32 bits (held in uint64) from the counter c and the key k, also in words of 32 bits."""
+    """One block: four words of 32 bits (each in a uint64) from the counter c and the key k, which are also words of 32 bits."""
     for _ in range(_ROUNDS):
         p0, p1 = _M0 * c0, _M1 * c2
         c0, c1, c2, c3 = (p1 >> _32) ^ c1 ^ k0, p1 & _LOW, (p0 >> _32) ^ c3 ^ k1, p0 & _LOW
@@ -50,7 +50,7 @@ def normals(stream):
 
 
 def stream_of(rng: np.random.Generator) -> Words:
-    """A new stream whose key is drawn from a numpy ``Generator``. Raises ValueError for anything else."""
+    """A new stream, uint64 (2,), whose key is drawn from a numpy ``Generator``. Raises ValueError for anything else."""
     if not isinstance(rng, np.random.Generator):
         raise refuse("rng", rng, "must be a numpy.random.Generator")
     return np.array([rng.integers(0, 2**64 - 1, dtype=np.uint64, endpoint=True), 0], np.uint64)

@@ -1,13 +1,13 @@
-"""Which direct pots does a layout offer, and how wide is each? Ghost-ball geometry: straight lines, no throw, no spin.
+"""Which direct pots does a layout have, and how wide is each? Ghost-ball geometry: straight lines, no throw, no spin.
 
 For object ball b and pocket k the object ball must go along d, the unit vector from b to the pocket's aim point; the cue ball must
-arrive at the ghost G = b - 2 R d. With theta the cut angle (between d and the cue ball's path C -> G), the aim may err by about::
+arrive at the ghost ball G = b - 2 R d. With theta the cut angle (between d and the cue ball's path C -> G), the aim may err by about::
 
     tolerance = w(a) / (2 |b pocket|)  *  2 R cos(theta) / |C G|      [rad]
 
-that is: the pocket's half window as an angle of the object ball's path, divided by how much an error of aim is magnified at the impact.
-w(a) is the width of the lateral window that the pocket offers at the angle a off its axis, to a ball that rolls at 1.5 m/s on table
-"match", jaws included, to a millimetre (tests/benchmarks/test_pocket_windows.py; a firm ball has less, a dying one more).
+This is the half window of the pocket as an angle of the object ball's path, divided by the magnification of an aiming error at the impact.
+w(a) is the width of the lateral window of the pocket at the angle a off its axis [m], for a ball that rolls at 1.5 m/s on table "match",
+jaws included, to a millimetre (tests/benchmarks/test_pocket_windows.py). The window is smaller for a fast ball and larger for a slow one.
 """
 
 from math import acos, hypot
@@ -23,13 +23,27 @@ _CORNER_ANGLE, _CORNER_WINDOW = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.0
 _MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0), (0.073, 0.071, 0.063, 0.043, 0.018, 0.0)
 
 POT_BALL, POT_POCKET, GHOST_X, GHOST_Y, COS_CUT, TOLERANCE = range(6)
-"""Columns of a pot: object ball, pocket, place of the ghost ball [m], cosine of the cut angle, tolerance [rad]."""
+"""Columns of a pot: object ball, pocket, place of the ghost ball [m], cosine of the cut angle, tolerance of the aim [rad]."""
 POT_COLUMNS = 6
+"""Number of columns of a pot."""
 
 
 @kernel
 def window(cos_angle, middle):
-    """Width w [m] of the pocket's window at an angle off its axis, by linear interpolation; 0 past the table's end."""
+    """Width of a pocket's window at an angle off its axis, by linear interpolation. An inner kernel.
+
+    Parameters
+    ----------
+    cos_angle : float
+        Cosine of the angle between the ball's path and the pocket's axis.
+    middle : bool
+        Whether it is a middle pocket.
+
+    Returns
+    -------
+    float
+        Width [m]; 0 beyond 50 degrees at a corner and 70 degrees in the middle.
+    """
     angle = acos(min(1.0, max(-1.0, cos_angle))) * 57.29577951308232
     angles, widths = (_MIDDLE_ANGLE, _MIDDLE_WINDOW) if middle else (_CORNER_ANGLE, _CORNER_WINDOW)
     for k in range(len(angles) - 1):
@@ -41,7 +55,28 @@ def window(cos_angle, middle):
 
 @kernel
 def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
-    """Does no ball but ``skip1``, ``skip2`` come nearer than d to the segment a-b?"""
+    """Whether all balls except two are at least a distance away from a segment. An inner kernel.
+
+    Parameters
+    ----------
+    positions : float64 (22, 2)
+        Centres of the balls [m].
+    on_table : bool (22,)
+        Which balls are on the table.
+    ax, ay : float
+        One end of the segment [m].
+    bx, by : float
+        The other end [m].
+    skip1, skip2 : int
+        Ids of the balls that do not count.
+    d : float
+        The distance [m].
+
+    Returns
+    -------
+    bool
+        False if a ball's centre is nearer than d to the segment.
+    """
     ux, uy = bx - ax, by - ay
     length2 = ux * ux + uy * uy
     for i in range(N_BALLS):
@@ -59,9 +94,25 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
 
 @kernel
 def find_pots(positions, on_table, on, radius, pots):
-    """Fill ``pots`` (m, POT_COLUMNS) with the direct pots of the balls in the mask ``on``, widest first; returns how many there are.
+    """Find the direct pots of a layout, widest tolerance first. An inner kernel.
 
-    If there are more than m, the m widest are kept.
+    Parameters
+    ----------
+    positions : float64 (22, 2)
+        Centres of the balls [m], the cue ball first.
+    on_table : bool (22,)
+        Which balls are on the table.
+    on : int
+        Mask of the balls that may be potted, bit i for ball i.
+    radius : float
+        Radius of the balls [m].
+    pots : float64 (m, POT_COLUMNS)
+        Output: the pots, columns ``POT_BALL`` to ``TOLERANCE``. If there are more than m, the m widest.
+
+    Returns
+    -------
+    int
+        Number of rows written.
     """
     count = 0
     cx, cy = positions[0, 0], positions[0, 1]
@@ -82,10 +133,10 @@ def find_pots(positions, on_table, on, radius, pots):
             path = hypot(px, py)
             if width <= 0.0 or path < 1e-9:
                 continue
-            if abs(gx) > HALF_WIDTH - radius + 1e-9 or abs(gy) > HALF_LENGTH - radius + 1e-9:  # the cue ball would be in the cushion
+            if abs(gx) > HALF_WIDTH - radius + 1e-9 or abs(gy) > HALF_LENGTH - radius + 1e-9:  # the ghost ball would be in the cushion
                 continue
             cos_cut = (px * dx + py * dy) / path
-            if cos_cut < 0.05:  # thinner than 87 degrees
+            if cos_cut < 0.05:  # a cut of more than 87 degrees
                 continue
             tolerance = width / (2.0 * run) * d * cos_cut / path
             if count == pots.shape[0] and tolerance <= pots[count - 1, TOLERANCE]:
@@ -112,7 +163,7 @@ def _pots(positions, on_table, on, radius, pots):
 
 
 def pots(positions: Vectors, on_table: Flags, on: int, *, most: int = 32, radius: float = BALL_RADIUS) -> Floats:
-    """The direct pots (k, POT_COLUMNS) of the balls in the mask ``on``, widest tolerance first, ``most`` at the most."""
+    """The direct pots (k, POT_COLUMNS) of the balls in the mask ``on``, widest tolerance first, k at most ``most``."""
     out = np.zeros((most, POT_COLUMNS))
     n = _pots(np.ascontiguousarray(positions, dtype=np.float64), np.ascontiguousarray(on_table, dtype=np.bool_), int(on), radius, out)
     return out[:n].copy()

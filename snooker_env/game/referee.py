@@ -1,4 +1,4 @@
-"""How does Python ask the referee? ``judge(Situation, Stroke) -> Verdict``: checked in, named out, around the kernel ``ruling``."""
+"""How does Python call the referee? ``judge(Situation, Stroke) -> Verdict``: checked input, named results, and the kernel ``ruling``."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,12 +12,12 @@ FULL_TABLE = ALL_MASK & ~CUE_BIT
 """The mask of all 21 object balls."""
 
 MOST_POINTS = 2**60
-"""A score that no play reaches, and a lead that the kernel's integers of 64 bits still hold."""
+"""Upper limit of scores: no play reaches it, and the kernel's integers of 64 bits can hold it."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
-    """What the referee must know of the frame before the stroke. Masks have bit i for ball i (``balls.mask_of``).
+    """The state of the frame before the stroke, as far as the referee needs it. Masks have bit i for ball i (``balls.mask_of``).
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class Situation:
     free_ball : bool
         The striker may nominate a free ball: only with a red or a colour of the sequence on.
     lead : int
-        The striker's score less the opponent's; it matters for the end of the frame only.
+        The striker's score minus the opponent's; used at the end of the frame only.
     """
 
     on_table: int = FULL_TABLE
@@ -50,12 +50,12 @@ class Situation:
 
 @dataclass(frozen=True, kw_only=True)
 class Stroke:
-    """What was seen of one stroke. Masks have bit i for ball i; every ball named must be on the table.
+    """The events of one stroke. Masks have bit i for ball i; every ball in them must be on the table.
 
     Attributes
     ----------
     first : int
-        Object balls struck by the cue ball's first impact: 0 for none, more than one if struck at the same time.
+        Object balls struck by the cue ball's first impact: 0 for none, more than one for simultaneous impacts.
     potted : int
         Balls that entered a pocket, bit 0 the cue ball.
     off : int
@@ -63,7 +63,7 @@ class Stroke:
     touching : int
         Object balls that touched the cue ball before the stroke.
     moved : int
-        Those of ``touching`` that the cue ball moved in leaving (not those that another ball moved later).
+        Those of ``touching`` that the cue ball moved as it left them (not those that another ball moved later).
     nominated : int
         Id of the colour nominated, after a red or as the free ball; 0 for none (a free ball declined); AUTO: the colour first
         struck.
@@ -80,11 +80,11 @@ class Stroke:
     out_of_turn : bool
         Played out of turn.
     seven : bool
-        An act that costs 7 whatever is on: wrong cue ball, a ball off the table used, measuring, no declaration on request ...
+        An act that costs 7 points whatever is on: wrong cue ball, a ball off the table used, measuring, no declaration on request ...
     snookered : bool
-        After it, colours respotted, the next striker is snookered on the next ball on.
+        After the stroke, with colours respotted, the next striker is snookered on the next ball on.
     behind_free_ball : bool
-        ... and by the ball that was nominated as the free ball.
+        As ``snookered``, and the snookering ball is the one that was nominated as the free ball.
     """
 
     first: int = 0
@@ -118,18 +118,18 @@ class Stroke:
 
     @property
     def flags(self) -> Flag:
-        """The true ones among the bool fields, as a ``Flag``."""
+        """The bool fields as a ``Flag``."""
         return Flag(sum(flag for flag in Flag if getattr(self, str(flag.name).lower())))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """What the referee decides. A stroke with a foul scores nothing.
+    """The referee's decision. A stroke with a foul scores nothing.
 
     Attributes
     ----------
     fouls : Foul
-        The rules broken; false if the stroke was fair.
+        The fouls of the stroke; false if it was fair.
     penalty : int
         Points to the opponent: 0, or the highest that any of the fouls costs (4 to 7).
     points : int
@@ -141,17 +141,17 @@ class Verdict:
     ball_on : BallOn
         The next ball on; NOTHING when the frame is over.
     stays : bool, or None
-        Whether the striker plays on; None: a lot decides (re-spotted black). After a foul the opponent may choose otherwise.
+        Whether the striker plays on; None: a lot decides (re-spotted black). After a foul the opponent may decide otherwise.
     in_hand : bool
         The next stroke is played from the D.
     free_ball : bool
         The next striker, if it is the opponent, has a free ball.
     visit_end : VisitEnd
-        Why the visit ended, if it did.
+        Whether and why the visit ended.
     outcome : Outcome
-        What the stroke did to the frame.
+        Whether the frame goes on, and if not, how it ended.
     nominated : int
-        The colour that counted as nominated (or as the free ball), 0 if none.
+        Id of the colour that counted as nominated (or as the free ball), 0 if none.
     """
 
     fouls: Foul
@@ -211,7 +211,7 @@ def check(situation: Situation, stroke: Stroke) -> None:
 
 
 def numbers_of(situation: Situation, stroke: Stroke) -> tuple[int, ...]:
-    """Both as the integers that the kernels take, in their order."""
+    """Both as the integer arguments of the kernels, in order."""
     state = (situation.on_table, int(situation.ball_on), int(situation.free_ball), situation.lead)
     return (*state, stroke.first, stroke.touching, stroke.moved, stroke.potted, stroke.off, stroke.nominated, int(stroke.flags))
 
@@ -219,7 +219,7 @@ def numbers_of(situation: Situation, stroke: Stroke) -> tuple[int, ...]:
 def judge(situation: Situation, stroke: Stroke) -> Verdict:
     """Judge one stroke: the ``Verdict`` on a ``Stroke`` in a ``Situation``. A pure function.
 
-    Raises ``ValueError`` if the two cannot belong together (a ball potted that was not on the table, a nomination not open).
+    Raises ``ValueError`` if the two do not fit together (a ball potted that was not on the table, a nomination that is not allowed).
     """
     check(situation, stroke)
     return verdict_of(_ruling(*numbers_of(situation, stroke)))

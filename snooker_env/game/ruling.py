@@ -1,12 +1,12 @@
 """Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke, as a pure function.
 
-``ruling`` is a kernel on integers and masks (bit i is ball i), so one and the same machine code judges one table from Python and
-thousands in a batch. ``referee.judge`` is its face for Python, ``apply_ruling.settle`` the same for a table with positions.
+``ruling`` is a kernel on integers and masks (bit i is ball i), so the same machine code judges one table from Python and thousands in a
+batch. ``referee.judge`` calls it from Python; ``apply_ruling.settle`` also sets up the table.
 
-It takes what a simulator can see. It does not judge intent or effort (whether a miss was deliberate or the attempt good enough,
-``frame.py`` has the part of that rule which geometry decides), time wasting or conduct; acts that happen outside the simulation (a foot
-off the floor, playing out of turn, measuring ...) come in as flags. An illegal jump, a push and a double hit are flags too: whoever
-simulates the cue ball's flight and the tip's contact must know them.
+Its input is what a simulator can observe. It does not judge intent or effort (whether a miss was deliberate or the attempt good enough;
+``frame.py`` has the part of that rule that geometry decides), time wasting or conduct. Acts outside the simulation (a foot off the floor,
+playing out of turn, measuring ...) are passed in as flags. So are an illegal jump, a push and a double hit, which depend on the cue ball's
+flight and the tip's contact.
 """
 
 from collections import namedtuple
@@ -17,24 +17,24 @@ from .._jit import kernel
 from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on_kernel, count, next_on_kernel
 
 AUTO = -1
-"""Nomination left to the referee: the ball that was evidently played at (see ``_nomination``)."""
+"""The referee decides which ball was nominated: the one that was evidently played at (see ``_nomination``)."""
 
 
 class Flag(IntFlag):
-    """What else was seen of a stroke: input of ``ruling``.
+    """Other facts about a stroke: input of ``ruling``.
 
     ================= ==================================================================================================
-    JUMP              An illegal jump: the cue ball passed over part of a ball before it struck one, or landed on the far
-                      side of the ball struck.
+    JUMP              An illegal jump: the cue ball passed over a part of a ball before it struck one, or landed on the
+                      far side of the ball that it struck.
     PUSH              A push stroke.
     DOUBLE_HIT        The tip struck the cue ball twice.
     OUTSIDE_D         In hand, but not played from on or within the lines of the D.
     FEET              Both feet off the floor.
     OUT_OF_TURN       Played out of turn.
-    SEVEN             An act that costs 7 whatever is on: wrong cue ball, a ball off the table used, measuring, no
+    SEVEN             An act that costs 7 points whatever is on: wrong cue ball, a ball off the table used, measuring, no
                       declaration on request ...
-    SNOOKERED         After the stroke, colours respotted, the next striker is snookered on the next ball on.
-    BEHIND_FREE_BALL  ... and the effective snookering ball is the free ball just nominated.
+    SNOOKERED         After the stroke, with colours respotted, the next striker is snookered on the next ball on.
+    BEHIND_FREE_BALL  As SNOOKERED, and the effective snookering ball is the free ball just nominated.
     ================= ==================================================================================================
     """
 
@@ -50,7 +50,7 @@ class Flag(IntFlag):
 
 
 class Foul(IntFlag):
-    """Which rules a stroke broke: output of ``ruling``.
+    """The fouls of a stroke: output of ``ruling``.
 
     ================= ==================================================================================================
     NO_CONTACT        The cue ball struck no ball.
@@ -67,7 +67,7 @@ class Foul(IntFlag):
     OUT_OF_TURN       Played out of turn.
     BEHIND_FREE_BALL  A snooker was laid behind the free ball.
     NO_NOMINATION     A foul on a colour that was never nominated; reds played in successive strokes are of this kind.
-    SEVEN             An act that costs 7 whatever is on.
+    SEVEN             An act that costs 7 points whatever is on.
     ================= ==================================================================================================
     """
 
@@ -89,7 +89,7 @@ class Foul(IntFlag):
 
 
 class VisitEnd(IntEnum):
-    """Why the striker's visit ended with this stroke.
+    """Whether and why the striker's visit ended with this stroke.
 
     ========== ===================================
     CONTINUES  It goes on.
@@ -106,14 +106,14 @@ class VisitEnd(IntEnum):
 
 
 class Outcome(IntEnum):
-    """What the stroke did to the frame.
+    """Whether the frame goes on after the stroke, and if not, how it ended.
 
     =============== ==================================================================================================
     PLAYING         It goes on.
     STRIKER_WINS    The striker has won it.
     OPPONENT_WINS   The opponent has won it.
-    RESPOTTED_BLACK Level with no ball to play for: the black comes back, the cue ball is in hand, a lot decides who
-                    chooses to play first.
+    RESPOTTED_BLACK Scores are level and no ball is left: the black is re-spotted, the cue ball is in hand, and the winner
+                    of a lot decides who plays first.
     =============== ==================================================================================================
     """
 
@@ -124,7 +124,7 @@ class Outcome(IntEnum):
 
 
 def _plain(enum):
-    """The members of an enumeration as plain integers: kernels know no ``IntFlag``."""
+    """The members of an enumeration as plain integers, because numba does not support ``IntFlag``."""
     return namedtuple(enum.__name__, enum.__members__)(*map(int, enum))
 
 
@@ -132,7 +132,7 @@ FLAG, FOUL, VISIT, OUTCOME = _plain(Flag), _plain(Foul), _plain(VisitEnd), _plai
 
 
 class Ruling(NamedTuple):
-    """What ``ruling`` returns, all integers; the fields are explained in ``referee.Verdict``."""
+    """The result of ``ruling``, all integers; ``referee.Verdict`` explains the fields."""
 
     fouls: int
     penalty: int
@@ -150,7 +150,7 @@ class Ruling(NamedTuple):
 
 @kernel
 def _highest(mask, free, value_on):
-    """The highest value in a mask; a free ball counts as the ball on that it stands for."""
+    """The highest value in a mask; a free ball has the value of the ball on that it replaces."""
     high = 0
     for i in range(N_BALLS):
         if (mask >> i) & 1:
@@ -171,8 +171,8 @@ def _top_ball(mask):
 def _nomination(on, ball_on, free_ball, first, touching, nominated):
     """The id of the colour on, or of the free ball, or 0 for none.
 
-    A nomination is asked for only on "any colour" or with a free ball. Left to the referee (AUTO) it is the colour first struck that
-    it could be, the highest if there are several; if none was struck, such a colour that the cue ball was touching.
+    A nomination is needed only on "any colour" or with a free ball. With AUTO it is the colour first struck among those allowed, the
+    highest if there are several; if none was struck, an allowed colour that the cue ball was touching.
     """
     if ball_on != 0 and not free_ball:
         return 0
@@ -180,7 +180,7 @@ def _nomination(on, ball_on, free_ball, first, touching, nominated):
         return nominated
     could_be = COLOURS_MASK if ball_on == 0 else COLOURS_MASK & ~on
     ball = _top_ball(first & could_be)
-    # Who plays from a touching ball and strikes the real ball on first has not asked for his free ball.
+    # A striker who plays from a touching ball and strikes the real ball on first has not nominated a free ball.
     return ball if ball != 0 or (ball_on != 0 and first & on != 0) else _top_ball(touching & could_be)
 
 
@@ -189,10 +189,10 @@ def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, o
     """Judge one stroke. Everything is an integer; masks have bit i for ball i. Returns a ``Ruling``.
 
     Before the stroke: ``on_table`` mask, ``ball_on`` a BallOn, ``free_ball`` 0 or 1 (the striker has one), ``lead`` the striker's
-    score less the opponent's. The stroke: ``first`` the balls struck by the first impact (more than one: at the same time),
-    ``touching`` the balls that touched the cue ball beforehand, ``moved`` those of them that the cue ball moved in leaving,
+    score minus the opponent's. The stroke: ``first`` the balls struck by the first impact (more than one: simultaneously),
+    ``touching`` the balls that touched the cue ball before it, ``moved`` those of them that the cue ball moved as it left them,
     ``potted`` and ``off`` the balls in pockets and off the table (bit 0 the cue ball), ``nominated`` an id, 0 for none or AUTO,
-    ``flags`` Flag bits. The order is that of the rule book; the highest penalty counts and nothing is scored with a foul.
+    ``flags`` Flag bits. The order is that of the rule book; the highest penalty counts, and a foul scores nothing.
     """
     reds_and_colours = on_table & ~CUE_BIT
     on = balls_on_kernel(ball_on, reds_and_colours)
@@ -265,7 +265,7 @@ def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, o
         fouls |= FOUL.NO_NOMINATION
         penalty = 7
 
-    # Points, and the colours that return: all after a foul; else those not potted as the ball on of the sequence.
+    # Points, and the colours that return: after a foul all, else those that were not potted as the ball on of the sequence.
     points = 0
     respotted = down & COLOURS_MASK
     if not fouls:
@@ -277,7 +277,7 @@ def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, o
                 respotted &= ~on
     remaining = (reds_and_colours & ~down) | respotted
 
-    # Who plays on, and on what.
+    # Who plays on, and on which ball.
     stays = 1 if points else 0
     next_on = next_on_kernel(remaining)
     if points and ball_on == 1 and remaining & COLOURS_MASK:
@@ -286,7 +286,7 @@ def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, o
     if remaining == 0 and not fouls:
         visit_end = VISIT.CLEARANCE
 
-    # The frame ends with the table empty, and with the first score or foul when only the black is left; level, the black comes back.
+    # The frame ends when the table is empty, and with the first score or foul when only the black is left. If level, the black returns.
     outcome = OUTCOME.PLAYING
     if remaining == 0 or (fouls and reds_and_colours == 1 << BLACK):
         lead += points - penalty

@@ -1,12 +1,13 @@
 """Is the cue ball snookered, by which ball, and is there a clear path? Straight lines past circles, as kernels.
 
-A ball on can be struck at an extreme edge if the cue ball's centre can run straight along the line that passes the ball's centre at
-2 R; the run ends at the graze, and no ball not on may come nearer to it than 2 R. The cue ball is not snookered if one ball on can be
-struck so at both edges (or touches it). Other balls on never hide a ball on. A cushion does not snooker: where the curved face of a jaw
-bars an edge and is nearer to the cue ball than any ball not on that bars it, the cue ball counts as not snookered.
+A ball on can be struck at an extreme edge if the cue ball's centre can move straight along the line that passes the ball's centre at 2 R;
+the path ends at the grazing contact, and no ball not on may be nearer to it than 2 R. The cue ball is not snookered if one ball on can be
+struck in this way at both edges (or touches it). Other balls on never hide a ball on. A cushion does not snooker: where the curved face of
+a jaw obstructs an edge and is nearer to the cue ball than any ball not on that does, the cue ball counts as not snookered.
 
-In hand the whole D is asked: its three corners (the ends of the baulk line's part, the brown spot), then a grid of ``D_STEP`` with the
-arc. A place is taken only if a ball can stand there. An opening narrower than the step may be overlooked: nobody places a ball finer.
+In hand all of the D is tested: three points of the baulk line (the ends of its part in the D, the brown spot), then a grid of ``D_STEP``
+with the arc. A place counts only if a ball can stand there. An opening narrower than the step may be missed; no player places a ball more
+exactly.
 """
 
 import numpy as np
@@ -19,16 +20,16 @@ from .balls import ALL_MASK, CUE_BIT, N_BALLS, TOUCH, check_table
 from .spotting import occupied
 
 D_STEP = 0.005
-"""Distance [m] between neighbouring places tried in the D."""
+"""Distance between neighbouring places that are tested in the D [m]."""
 SLACK = 1e-9
-"""A ball counts as in the way only if it is nearer than 2 R by more than this [m]: touching the path is not obstructing it."""
+"""A ball obstructs only if it is nearer than 2 R by more than this [m]; touching the path is no obstruction."""
 NO_JAWS = np.empty((0, 3))
-"""No curved cushion faces known: an (m, 3) array of their circles (x, y, radius) in the world frame may be given."""
+"""No curved cushion faces. Other arrays are (m, 3): their circles (x, y, radius) in the table frame [m]."""
 
 
 @kernel
 def segment_distance(px, py, ax, ay, bx, by):
-    """The distance of the point p from the segment a-b."""
+    """The distance of the point p from the segment a-b [m]."""
     ux, uy = bx - ax, by - ay
     length2 = ux * ux + uy * uy
     t = 0.0 if length2 == 0.0 else min(1.0, max(0.0, ((px - ax) * ux + (py - ay) * uy) / length2))
@@ -37,7 +38,7 @@ def segment_distance(px, py, ax, ay, bx, by):
 
 @kernel
 def _edge(cx, cy, tx, ty, side, radius):
-    """Where the cue ball, starting at c, grazes the ball at t at its edge ``side`` (+1 left, -1 right of the line c-t): (x, y)."""
+    """Where the cue ball, starting at c, grazes the ball at t at its edge ``side`` (+1 left, -1 right of the line c-t): (x, y) [m]."""
     dx, dy = tx - cx, ty - cy
     d = np.hypot(dx, dy)
     s = 2.0 * radius / d  # the sine of the angle between the line of centres and the tangent
@@ -48,9 +49,9 @@ def _edge(cx, cy, tx, ty, side, radius):
 
 @kernel
 def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
-    """The mask of the nearest balls not on that bar an edge of ``target`` from the cue ball at (cx, cy); 0: it can be struck fully.
+    """Mask of the nearest balls not on that hide an edge of ``target`` from the cue ball at (cx, cy); 0: both edges can be struck.
 
-    -1: a jaw bars an edge and is nearer than those balls. ``on`` is the mask of the balls on. Nearest is by the distance of centres.
+    -1: a jaw obstructs an edge and is nearer than those balls. ``on`` is the mask of the balls on. Nearest: by the distance of centres.
     """
     tx, ty = positions[target, 0], positions[target, 1]
     if np.hypot(tx - cx, ty - cy) <= 2.0 * radius + TOUCH:
@@ -93,7 +94,7 @@ def snookered_from(positions, on_table, on, cx, cy, jaws, radius):
 
 @kernel
 def _open_at(positions, on_table, on, x, y, jaws, radius):
-    """Can the cue ball stand at (x, y), and is it not snookered there?"""
+    """Whether the cue ball can stand at (x, y) and is not snookered there."""
     return not occupied(positions, on_table, x, y, radius) and not snookered_from(positions, on_table, on, x, y, jaws, radius)[0]
 
 
@@ -131,7 +132,7 @@ def _snookered(positions, on_table, on, jaws, radius):
 def is_snookered(positions: Vectors, on_table: Flags, on: int, *, jaws: Vectors = NO_JAWS, radius: float = BALL_RADIUS) -> tuple[bool, int]:
     """``snookered`` for Python: (bool, mask of the effective snookering balls). ``on`` is the mask of the balls on.
 
-    Raises ``ValueError`` for wrong arrays or a mask that names the cue ball.
+    Raises ``ValueError`` for wrong arrays, or a mask that contains the cue ball.
     """
     placed, present = check_table(positions, on_table)
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:

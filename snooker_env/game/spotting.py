@@ -1,9 +1,9 @@
-"""Where does a colour go when it comes back? The spotting rule, exact, as kernels.
+"""Where does a colour go when it returns? The spotting rule, exact, as kernels.
 
-A colour goes on its own spot; if that is occupied, on the free spot of the highest value; if every spot is occupied, as near its own spot
-as it can be without touching another ball, on the straight line from there to the top cushion; and if that line has no room, on the same
-line below the spot (the rules say so for pink and black; the centre line is their line). A spot is occupied when a ball placed there
-would touch another. Of several colours, those whose own spot is free go first, then the highest value first.
+A colour goes on its own spot. If that is occupied, it goes on the free spot of the highest value. If every spot is occupied, it goes as
+near its own spot as possible without touching another ball, on the straight line from there to the top cushion. If that line has no room,
+it goes on the same line below the spot (the rules state this for pink and black, whose line is the centre line). A spot is occupied if a
+ball placed there would touch another. Of several colours, those whose own spot is free go first, then the highest value first.
 """
 
 import numpy as np
@@ -15,12 +15,12 @@ from ..geometry import BALL_RADIUS, HALF_LENGTH
 from .balls import ALL_MASK, BLACK, COLOURS_MASK, N_BALLS, SPOTS, TOUCH, YELLOW, check_table
 
 CLEARANCE = 2.0 * TOUCH
-"""The gap [m] left to a ball or cushion that a spotted colour must not touch: the least that no test of touching can mistake."""
+"""The gap between a spotted colour and a ball or cushion that it must not touch [m]: the least that every test of touching recognises."""
 
 
 @kernel
 def occupied(positions, on_table, x, y, radius):
-    """Would a ball at (x, y) touch one that is on the table?"""
+    """Whether a ball at (x, y) [m] would touch one that is on the table."""
     reach = 2.0 * radius + TOUCH
     for i in range(N_BALLS):
         if on_table[i]:
@@ -32,10 +32,10 @@ def occupied(positions, on_table, x, y, radius):
 
 @kernel
 def nearest_free(positions, on_table, x, y, direction, radius):
-    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line at ``x`` touches nothing; cushions not asked.
+    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no other [m]. Cushions are ignored.
 
-    Each ball i bars an open interval of the line, its centre less and more h with h^2 = (2 R + clearance)^2 - (x_i - x)^2. Leaving
-    each interval that holds y at its far end, until none does, gives the nearest free place exactly.
+    Each ball i excludes an open interval of the line, y_i - h to y_i + h with h^2 = (2 R + clearance)^2 - (x_i - x)^2. To move y to the far
+    end of each interval that contains it, until none does, gives the nearest free place exactly.
     """
     reach = 2.0 * radius + CLEARANCE
     moved = True
@@ -54,7 +54,7 @@ def nearest_free(positions, on_table, x, y, direction, radius):
 
 @kernel
 def place_colour(positions, on_table, ball, radius):
-    """Where the colour ``ball`` belongs now: (x, y). Its own entry in ``on_table`` must be False."""
+    """The place of the colour ``ball`` by the rule: (x, y) [m]. Its own entry in ``on_table`` must be False."""
     x, y = SPOTS[ball, 0], SPOTS[ball, 1]
     if not occupied(positions, on_table, x, y, radius):
         return x, y
@@ -64,15 +64,15 @@ def place_colour(positions, on_table, ball, radius):
     up = nearest_free(positions, on_table, x, y, 1.0, radius)
     if up <= HALF_LENGTH - radius - CLEARANCE:
         return x, up
-    # Twenty-one balls cannot fill a line that runs the table's length, so below there is always room.
+    # Twenty-one balls cannot fill a line along the whole table, so there is always room below.
     return x, nearest_free(positions, on_table, x, y, -1.0, radius)
 
 
 @kernel
 def spot(positions, on_table, mask, radius):
-    """Return the colours in ``mask`` to the table: writes their rows of ``positions`` (22, 2) and ``on_table`` (22,) bool.
+    """Return the colours in ``mask`` to the table: write their rows of ``positions`` (22, 2) [m] and ``on_table`` (22,) bool.
 
-    ``mask`` may name balls that still stand on the table; they are lifted first (the black of a re-spotted black).
+    ``mask`` may contain balls that are still on the table; they are removed first (the black of a re-spotted black).
     """
     for ball in range(YELLOW, BLACK + 1):
         if (mask >> ball) & 1:
@@ -96,9 +96,9 @@ def _spot(positions, on_table, mask, radius):
 
 
 def spot_colours(positions: Vectors, on_table: Flags, mask: int, *, radius: float = BALL_RADIUS) -> tuple[Floats, Bools]:
-    """Return colours to the table: new ``positions`` (22, 2) and ``on_table`` (22,) with the colours in ``mask`` placed by the rule.
+    """Return colours to the table: new ``positions`` (22, 2) [m] and ``on_table`` (22,) with the colours in ``mask`` placed by the rule.
 
-    The arrays given are not changed. Raises ``ValueError`` for other shapes or a mask that names a ball that is no colour.
+    The arrays given are not changed. Raises ``ValueError`` for other shapes, or a mask that contains a ball that is no colour.
     """
     if integer("mask", mask, 0, ALL_MASK) & ~COLOURS_MASK:
         raise refuse("mask", mask, "must name colours only (ids 16 to 21)")

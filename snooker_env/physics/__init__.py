@@ -1,4 +1,4 @@
-"""What happens to balls on a table? Pure kernels on float64 arrays; no Gymnasium, no rules, no objects inside kernels.
+"""The motion and the impacts of balls on a table: pure kernels on float64 arrays; no Gymnasium, no rules, no objects inside kernels.
 
-Symbols: ``docs/symbols.md`` in the repository.
+Symbols: ``docs/develop/symbols.md`` in the repository.
 """

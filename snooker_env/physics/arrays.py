@@ -1,6 +1,7 @@
-"""Which arrays does a shot work on? Named and grouped: what ``engine.run`` takes; the last two groups are its work space.
+"""Which arrays does a shot work on? The arguments of ``engine.run``, named and grouped; the last two groups are its work space.
 
-Kernels below it take arrays one by one, and so does the one that Python calls: see ``engine.run`` and ``engine.run_batch`` for the cost.
+The kernels that ``engine.run`` calls take arrays one by one, and so does the kernel that Python calls; ``engine.run`` and
+``engine.run_batch`` say why.
 """
 
 from typing import NamedTuple
@@ -8,21 +9,22 @@ from typing import NamedTuple
 import numpy as np
 
 
-class World(NamedTuple):
-    """What is the same in all shots: constants, the table, and how impacts are solved."""
+class Setup(NamedTuple):
+    """What is the same in all shots of a batch: constants, the table, and how impacts are solved."""
 
     phys: np.ndarray
-    """``Physics.pack()``."""
+    """(17,) ``Physics.pack()``."""
     noses: np.ndarray
+    """(k, 5), and the next two: as in ``table.Table``."""
     jaws: np.ndarray
     falls: np.ndarray
     fidelity: int
-    """As ``contact.parse_fidelity`` returns it, with n_steps."""
+    """As ``contact.parse_fidelity`` returns it, together with n_steps."""
     n_steps: int
 
 
 class Balls(NamedTuple):
-    """The n balls of a shot, before it and then after it."""
+    """The n balls of a shot: before it, and in the same arrays after it."""
 
     positions: np.ndarray
     """(n, 2) [m]."""
@@ -33,22 +35,22 @@ class Balls(NamedTuple):
     on_table: np.ndarray
     """(n,) bool."""
     potted: np.ndarray
-    """(n,) int64: the pocket that a ball was lost in during the shot, or -1."""
+    """(n,) int64: the pocket into which the ball was potted in this shot, or -1."""
 
 
 class Log(NamedTuple):
-    """What is written down while a shot runs; arrays of length 0 for what is not wanted."""
+    """The log of a shot. Arrays of length 0 switch a part of it off."""
 
     time: np.ndarray
-    """(m,) [s], of each event."""
+    """(m,) time of each event [s]."""
     what: np.ndarray
-    """(m, 3) int32: kind, i, j."""
+    """(m, 3) int32: kind, i and j of each event."""
     segments: np.ndarray
     """(k, cloth.SEGMENT): the paths."""
 
 
 class Ends(NamedTuple):
-    """How each of b shots ended; (b,) each."""
+    """How each of b shots ended; each array has shape (b,)."""
 
     status: np.ndarray
     n_events: np.ndarray
@@ -58,34 +60,35 @@ class Ends(NamedTuple):
 
 
 class Motions(NamedTuple):
-    """How each ball moves now."""
+    """The present motion of each ball."""
 
     motion: np.ndarray
     """(n, cloth.COLUMNS)."""
     state: np.ndarray
-    """(n,) int64: see ``cloth.py``."""
+    """(n,) int64: a state of ``cloth.py``."""
     flight: np.ndarray
-    """(n, FLIGHT): what a falling ball has besides its motion, columns below."""
+    """(n, FLIGHT): the rest of the state of a falling ball, columns below."""
 
 
 class Forecast(NamedTuple):
-    """What each ball will meet, as things stand; inf: nothing."""
+    """The next events of each ball, from the present motions. A time of inf means that there is none."""
 
     pair: np.ndarray
-    """(n, n) [s]: when two balls meet."""
+    """(n, n) times at which two balls meet [s]."""
     best_time: np.ndarray
-    """(n,): the earliest of a row of ``pair``,"""
+    """(n,) the earliest time of each row of ``pair`` [s]."""
     best_ball: np.ndarray
-    """and which ball it is with; -1 if none."""
+    """(n,) the other ball of that meeting; -1 if there is none."""
     own_time: np.ndarray
-    """(n,): the next event without another ball,"""
+    """(n,) time of the next event without another ball [s]."""
     own_kind: np.ndarray
-    """its kind,"""
+    """(n,) kind of that event."""
     own_index: np.ndarray
-    """and its nose, jaw or pocket; -1 if it has none."""
+    """(n,) its nose, jaw or pocket; -1 if it has none."""
 
 
 IN_X, IN_Y, POCKET, Z0, U0, Z1, U1, END_VX, END_VY, KIND, INDEX = range(11)
 FLIGHT = 11
-"""Columns of ``flight``. Where the ball came in, seen from the pocket's centre, and the pocket; the drop of its centre and the rate of
-that, at the start and the end of this leg; velocity, kind of event and its index at the end."""
+"""Columns of ``flight``. IN_X, IN_Y: where the ball came in, relative to the pocket's centre [m]; POCKET: the pocket. Z0, U0 and Z1, U1:
+drop of the centre [m] and its rate [m/s] at the start and at the end of this leg. END_VX, END_VY, KIND, INDEX: velocity [m/s],
+kind of event and its index at the end."""

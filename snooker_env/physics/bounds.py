@@ -1,4 +1,4 @@
-"""How far can a ball get on a table, and what is its narrowest place? Found from noses, jaws and falls, as ``table.Table`` holds them."""
+"""How far can a ball go on a table, and how narrow is the table? Computed from noses, jaws and falls, as ``table.Table`` holds them."""
 
 from math import hypot, inf, sqrt
 
@@ -9,7 +9,7 @@ from .columns import JAW_COS, JAW_RADIUS, JAW_UX, JAW_UY, JAW_X, JAW_Y, NOSE_AXI
 
 
 def bounds_of(noses: Floats) -> Floats:
-    """``Table.bounds`` of its noses."""
+    """``Table.bounds`` (2, 2) [m], from the noses (k, 5)."""
     bounds = np.full((2, 2), inf)
     for axis in (0, 1):
         for end, side in enumerate((-1, 1)):
@@ -19,11 +19,11 @@ def bounds_of(noses: Floats) -> Floats:
 
 
 def deepest(jaws: Floats, falls: Floats, bounds: Floats, R: float) -> float:
-    """How far past the line of the noses [m] a ball of radius R can lie between a jaw and the fall, and a little more."""
+    """How far past the line of the noses a ball of radius R can lie between a jaw and the fall, plus 0.5 mm [m]."""
     deepest = 0.0
     for x, y, edge in falls:
         for jx, jy, radius, ux, uy, cos_half in jaws:
-            # where the ball's centre is on the fall's edge and the ball at the jaw: two circles cross
+            # the ball's centre on the fall's edge and the ball at the jaw: the crossing of two circles
             dx, dy, reach = jx - x, jy - y, radius + R
             far = hypot(dx, dy)
             if not abs(reach - edge) < far < reach + edge:
@@ -46,7 +46,7 @@ def _in_a_jaw(x, y, jaws, R):
 
 
 def narrowest(noses: Floats) -> tuple[float, int, int]:
-    """The least distance [m] of two facing noses that a ball can touch both at once, and which they are."""
+    """The least distance between two facing noses that a ball can touch at the same time [m], and their indices."""
     found = (np.inf, -1, -1)
     for a, (axis, side, level, low, high) in enumerate(noses):
         for b, (other_axis, other_side, other_level, other_low, other_high) in enumerate(noses):

@@ -1,15 +1,16 @@
-"""How does a ball move on the cloth? Slide on a parabola, roll, spin down: closed forms, and when each phase ends.
+"""How does a ball move on the cloth? It slides on a parabola, rolls, spins down: closed forms, and when each phase ends.
 
-[MJP14] 2.5, eq. 16 to 21 (with their slips mended): slip u = v + R (-w_y, w_x); while it lasts du/dt = -(7/2) mu_s g u/|u|, so its
-direction is constant and the path a parabola (curved when the spin is not about the axis of rolling: the masse curve). Slip ends
-after T = 2 |u| / (7 mu_s g); rolling decelerates by mu_r g; spin about the vertical decays by ``spin_decel`` in every state.
+[MJP14] 2.5, eq. 16 to 21 (with the errors in the printed equations corrected). Slip: u = v + R (-w_y, w_x) [m/s]. While the ball slides,
+du/dt = -(7/2) mu_s g u/|u|, so the direction of u is constant and the path is a parabola (curved if the spin is not about the axis of
+rolling: the masse curve). Sliding ends after T = 2 |u| / (7 mu_s g); a rolling ball decelerates by mu_r g; spin about the vertical
+decelerates by ``spin_decel`` in every state. Table frame, SI units.
 
-Nap. The cloth's fibres lean towards +y, so that its force on a rolling ball differs with the direction v/|v|. Rolling resistance is the
-term of that force that is odd in the direction; the lowest even one is a constant: dv/dt = -mu_r g v/|v| + nap y, as on a bed that slopes
-a little. A ball that rolls across the nap turns slowly towards it; ``_bent`` has its motion in closed form, and it is followed in pieces
-of constant acceleration whose ends are exact. A sliding ball does not feel the nap: its friction is a thousand times as strong.
+Nap. The fibres of the cloth lean towards +y, so the force on a rolling ball depends on the direction v/|v|. Rolling resistance is the
+part of that force that is odd in the direction; the lowest even part is a constant: dv/dt = -mu_r g v/|v| + nap y, as on a bed with a
+small slope. A ball that rolls across the nap turns slowly towards it. ``_bent`` is its motion in closed form; the engine follows it in
+pieces of constant acceleration whose ends are exact. The nap is neglected for a sliding ball, whose friction is a thousand times as strong.
 
-A ball over a pocket (``FALLING``) moves straight and evenly, see ``pocket.py``.
+A ball over a pocket (``FALLING``) moves at constant velocity, see ``pocket.py``.
 
 A ball's motion is one row of ``motion`` (float64, columns below), valid from its time T0 to T_END, and one code in ``state``. LO_X to
 HI_Y bound its whole path in that time: the ball meets nothing that lies outside them.
@@ -21,20 +22,20 @@ from .._jit import kernel
 from .parameters import P_G, P_MU_R, P_MU_S, P_NAP, P_R, P_SPIN
 
 GONE, REST, ROLL, SLIDE, FALLING, BEND = range(6)
-# ROLL: straight, to rest; BEND: a piece of a path that the nap bends, and it rolls on; FALLING: over a pocket
+# ROLL: straight, to rest; BEND: a piece of a path that the nap bends, after which the ball rolls on; FALLING: over a pocket
 X, Y, VX, VY, AX, AY, WX, WY, WZ, T0, T_END, LO_X, HI_X, LO_Y, HI_Y = range(15)
 COLUMNS = 15
 SEGMENT_BALL, SEGMENT_STATE = COLUMNS, COLUMNS + 1
 SEGMENT = COLUMNS + 2
-"""Columns of a segment, a row of a shot's path log: a ball's motion, then which ball it is, and its state."""
+"""Columns of a segment, a row of a shot's path log: the columns of ``motion``, then the ball and its state."""
 
-_STILL = 1e-12  # m/s: slower is at rest (it would roll 4e-24 m)
-_STRAY = 2e-6  # m; no piece is further than this from the bent path that it stands for
+_STILL = 1e-12  # m/s: a slower ball is at rest (it would roll 4e-24 m)
+_STRAY = 2e-6  # m; the largest distance of a piece from the bent path that it replaces
 
 
 @kernel
 def extent(x, v, a, T):
-    """Least and largest value of x + v t + a t^2 / 2 for t in [0, T]."""
+    """Lowest and highest value of x + v t + a t^2 / 2 for t in [0, T]."""
     end = x + (v + 0.5 * a * T) * T
     low, high = min(x, end), max(x, end)
     if v * a < 0.0 and abs(v) < abs(a) * T:
@@ -51,10 +52,11 @@ def _faded(rate, s):
 
 @kernel
 def _bent(vx, vy, s, decel, nap):
-    """A ball rolls at (vx, vy) across the nap until the integral of ds = dt/|v| is s (inf: to rest): time, displacement and velocity then.
+    """A ball rolls at (vx, vy) [m/s] across the nap until the integral of dt/|v| is s [s^2/m]; s = inf: to rest.
 
-    In s the motion is linear: v_x falls as exp(-decel s), p = (|v| + v_y)/2 as exp(-(decel - nap) s) and m = (|v| - v_y)/2 as
-    exp(-(decel + nap) s). Time is the integral of |v| = p + m, x that of v_x (p + m), y that of v_y (p + m) = p^2 - m^2.
+    Returns the time t [s], the displacement x, y [m] and the velocity vx, vy [m/s] at that point. As a function of s the motion is linear:
+    v_x falls as exp(-decel s), p = (|v| + v_y)/2 as exp(-(decel - nap) s) and m = (|v| - v_y)/2 as exp(-(decel + nap) s). Time is the
+    integral of |v| = p + m, x that of v_x (p + m), y that of v_y (p + m) = p^2 - m^2. ``decel`` = mu_r g and ``nap`` [m/s^2].
     """
     v = sqrt(vx * vx + vy * vy)
     p, m = 0.5 * (v + vy), 0.5 * (v - vy)
@@ -66,10 +68,10 @@ def _bent(vx, vy, s, decel, nap):
 
 @kernel
 def _piece(vx, vy, decel, nap):
-    """The length, as s of ``_bent``, of a piece that starts at velocity (vx, vy); inf: it is straight, to rest.
+    """The length, as s of ``_bent``, of a piece that starts at velocity (vx, vy) [m/s]; inf if it is straight, to rest.
 
-    A piece that takes the share b c of the speed, b = decel - |nap|, strays from the path by decel |nap v_x| |v| c^3 / 40 if short, and
-    by at most 1/10 of that if not (computed: tests/physics/test_nap.py).
+    Let a piece take the share b c of the speed, b = decel - |nap|. Its distance from the true path is decel |nap v_x| |v| c^3 / 40 for a
+    short piece, and at most decel |nap v_x| |v| c^3 / 10 for any (computed: tests/physics/test_nap.py).
     """
     b = decel - abs(nap)
     cube = 10.0 * _STRAY * b * b * b
@@ -79,11 +81,11 @@ def _piece(vx, vy, decel, nap):
 
 @kernel
 def _roll_on_nap(motion, state, i, vx, vy, decel, nap):
-    """Ball i rolls at (vx, vy): write its next piece; returns how long it takes."""
+    """Ball i rolls at (vx, vy) [m/s]: write its next piece; returns its duration [s]."""
     s = _piece(vx, vy, decel, nap)
     T, x, y, _, _ = _bent(vx, vy, s, decel, nap)
     state[i] = BEND
-    if s == inf:  # almost or wholly straight: one piece to the place where it stops
+    if s == inf:  # straight, or nearly so: one piece to the place where it stops
         state[i] = ROLL
         vx, vy = 2.0 * x / T, 2.0 * y / T
     motion[i, VX], motion[i, VY] = vx, vy
@@ -93,7 +95,7 @@ def _roll_on_nap(motion, state, i, vx, vy, decel, nap):
 
 @kernel
 def begin(motion, state, i, t, x, y, vx, vy, wx, wy, wz, phys):
-    """Ball i is at (x, y) at time t with these velocities: write its next phase of motion into row i."""
+    """Write the next phase of motion of ball i into its row: at time t [s] it is at (x, y) [m] with velocity v [m/s] and spin w [rad/s]."""
     R, g = phys[P_R], phys[P_G]
     ux, uy = vx - R * wy, vy + R * wx
     u = sqrt(ux * ux + uy * uy)
@@ -129,20 +131,20 @@ def begin(motion, state, i, t, x, y, vx, vy, wx, wy, wz, phys):
 
 @kernel
 def spin_after(wz, dt, decel):
-    """Spin about the vertical after dt, eq. 21."""
+    """Spin about the vertical after dt [rad/s], eq. 21."""
     return copysign(max(0.0, abs(wz) - decel * dt), wz)
 
 
 @kernel
 def evaluate(motion, state, i, t, phys):
-    """Ball i at time t within its present phase: (x, y), (vx, vy), (wx, wy, wz)."""
+    """Ball i at time t [s] within its present phase: (x, y) [m], (vx, vy) [m/s], (wx, wy, wz) [rad/s]."""
     dt = t - motion[i, T0]
     ax, ay = motion[i, AX], motion[i, AY]
     vx, vy = motion[i, VX] + ax * dt, motion[i, VY] + ay * dt
     x, y = motion[i, X] + (motion[i, VX] + 0.5 * ax * dt) * dt, motion[i, Y] + (motion[i, VY] + 0.5 * ay * dt) * dt
     R = phys[P_R]
     wz = spin_after(motion[i, WZ], dt, phys[P_SPIN])
-    if state[i] == SLIDE or state[i] == FALLING:  # friction at the cloth turns the ball: dw = (5/2) z x (-a) / R; in the air a is 0
+    if state[i] == SLIDE or state[i] == FALLING:  # friction at the cloth changes the spin: dw = (5/2) z x (-a) / R; in the air a is 0
         wx, wy = motion[i, WX] + 2.5 * ay * dt / R, motion[i, WY] - 2.5 * ax * dt / R
     else:
         wx, wy = -vy / R, vx / R
@@ -151,9 +153,9 @@ def evaluate(motion, state, i, t, phys):
 
 @kernel
 def next_phase(motion, state, i, phys):
-    """Ball i has come to the end of its phase (T_END): slide -> roll or rest, bend -> bend or roll, roll -> rest.
+    """Ball i is at the end of its phase (T_END): slide -> roll or rest, bend -> bend or roll, roll -> rest.
 
-    The new phase starts exactly rolling.
+    In the new phase the ball rolls exactly, without a remaining slip.
     """
     t = motion[i, T_END]
     (x, y), (vx, vy), (_wx, _wy, wz) = evaluate(motion, state, i, t, phys)

@@ -1,13 +1,12 @@
-"""Where do the numbers of a table lie? Columns of the rows of ``Table.noses``, ``Table.jaws`` and ``Table.falls``, which state their
-meaning.
+"""Where do the numbers of a table lie? Columns of ``Table.noses``, ``Table.jaws`` and ``Table.falls``; ``Table`` states their meaning.
 
-They are indices, not tunables: freezing them into a kernel is safe. Kernels read single numbers by them; a row, or a tuple of its
-numbers, is not made (see ``detection.may_meet``).
+They are indices, not tunable constants: freezing them into a kernel is safe. Kernels read single numbers by them, and make no row and no
+tuple of its numbers (``detection.may_meet`` says why).
 """
 
 NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL, NOSE_LOW, NOSE_HIGH = range(5)
 AXIS_X, AXIS_Y = 0.0, 1.0
-"""What NOSE_AXIS says: the coordinate that the nose bounds."""
+"""Values of the column NOSE_AXIS: the coordinate that the nose bounds."""
 
 JAW_X, JAW_Y, JAW_RADIUS, JAW_UX, JAW_UY, JAW_COS = range(6)
 

@@ -1,4 +1,4 @@
-"""What does the cue do to the ball? Speed, aim, tip offset and elevation -> velocity and spin; squirt and miscue."""
+"""How does the cue move the ball? Speed, aim, tip offset and elevation -> velocity and spin; squirt and miscue."""
 
 from math import atan, cos, hypot, sin, sqrt
 
@@ -8,22 +8,24 @@ from .._types import Real
 from .parameters import FASTEST, Physics
 
 MAX_ELEVATION = 1.5
-"""Highest elevation of the butt [rad]: just under the vertical."""
+"""Highest elevation of the cue [rad]: just below the vertical."""
 
 
 @kernel
 def squirt(side, end_mass_ratio):
-    """Angle [rad] by which the ball leaves the line of aim, anticlockwise for right side: tan a = (5/2) b sqrt(1 - b^2) / (1 + m_r +
-    (5/2) (1 - b^2)), b the side offset over R, m_r ball mass over the cue's end mass [Alciatore, TP A.31]."""
+    """Angle a by which the ball leaves the line of aim [rad], anticlockwise for right side [Alciatore, TP A.31].
+
+    tan a = (5/2) b sqrt(1 - b^2) / (1 + m_r + (5/2) (1 - b^2)), b: side offset over R, m_r: ball mass over the cue's end mass.
+    """
     return atan(2.5 * side * sqrt(1.0 - side * side) / (1.0 + end_mass_ratio + 2.5 * (1.0 - side * side)))
 
 
 @kernel
 def struck(speed, aim, side, top, elevation, R, end_mass_ratio):
-    """Cue ball's (vx, vy, vz), (wx, wy, wz) just after the strike; the offset is known to be no miscue.
+    """Cue ball's (vx, vy, vz) [m/s] and (wx, wy, wz) [rad/s] just after the strike, in the table frame. The offset is no miscue.
 
-    Spin w = (5/2) (speed / R) offset x cue direction, offset and direction being unit-scaled vectors [TP A.30]; with the cue level this
-    is w = (5/2) v b / R^2. The cloth takes the downward part of an elevated strike: the ball leaves along the cloth.
+    Spin [TP A.30]: w = (5/2) (speed / R) b x d, with b the offset of the tip over R and d the unit vector along the cue. For a level cue
+    its size is (5/2) v |b| / R. The cloth takes the downward part of an elevated strike: the ball leaves along the cloth.
     """
     aim += squirt(side, end_mass_ratio)
     c, s, ce, se = cos(aim), sin(aim), cos(elevation), sin(elevation)
@@ -41,7 +43,7 @@ def _struck(speed, aim, side, top, elevation, R, end_mass_ratio):
 def strike(
     speed: Real, aim: Real, side: Real, top: Real, elevation: Real, physics: Physics
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """``struck`` from Python, with its input checked; see ``snooker_env.strike``."""
+    """``struck`` for Python, with its input checked; see ``snooker_env.strike``."""
     speed = number("speed", speed, 0, FASTEST)
     aim = number("aim", aim)
     side, top = number("side", side), number("top", top)

@@ -1,11 +1,12 @@
 """What happens next to a ball? Times of its next contact with a ball, nose, jaw or fall: reject cheaply, then solve exactly.
 
-Relative position over a phase is c(x) = c0 + c1 x + c2 x^2. A contact is the first fall of |c| through a distance d.
+The relative position in a phase is c(x) = c0 + c1 x + c2 x^2 [m], with x the time from now [s]. A contact is the first time at which |c|
+falls through a distance d.
 
-Bodies in touch. Two bodies whose gap is below TOUCH and which close faster than CREEP meet at once. If they close more slowly, stand still,
-or part, their next contact is where the gap falls through -SKIN (at once if it is there already). So bodies that friction presses together
-from rest gain a closing speed before they meet, and do not meet without end at speed zero; and bodies that part do not meet again because
-of rounding.
+Bodies in touch. Two bodies whose gap is below TOUCH and which approach faster than CREEP meet at once. If they approach more slowly, are at
+rest or separate, their next contact is where the gap falls through -SKIN (at once if it is there already). So bodies that friction
+presses together from rest gain a closing speed before they meet, and do not meet infinitely often at speed zero. And bodies that separate
+do not meet again because of rounding.
 """
 
 from math import inf, sqrt
@@ -33,8 +34,8 @@ from .columns import (
 from .roots import quadratic_crossing, quartic_crossing
 
 TOUCH = 1e-10  # m
-SKIN = 5e-10  # m; overlap stays under the 1e-9 that the tests allow
-_DEEP = SKIN * (1.0 - 1e-6)  # an overlap of this or more is SKIN, up to rounding
+SKIN = 5e-10  # m; so the overlap stays under the 1e-9 that the tests allow
+_DEEP = SKIN * (1.0 - 1e-6)  # an overlap of at least this is SKIN, up to rounding
 _MARGIN = 1e-9  # m; bodies nearer than this to a path may touch it
 STILL = 1e-12  # m/s; rounding may leave this much of a closing speed after a meeting
 CREEP = 5e-5  # m/s; the speed gained over SKIN at the largest relative acceleration on cloth, about 2 mu_s g
@@ -42,12 +43,12 @@ CREEP = 5e-5  # m/s; the speed gained over SKIN at the largest relative accelera
 
 @kernel
 def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
-    """Earliest time in [0, T] at which |c| falls through d, or inf."""
+    """Earliest time in [0, T] at which |c| falls through d [s], or inf. c = (x0 + x1 t + x2 t^2, y0 + y1 t + y2 t^2) [m]."""
     far2 = x0 * x0 + y0 * y0
     dot1 = x0 * x1 + y0 * y1
     dot2 = x0 * x2 + y0 * y2
     if dot1 >= 0.0 and dot2 >= 0.0 and far2 > d * d:
-        return inf  # the component along the line of centres only grows
+        return inf  # the component along the line of centres can only grow
     far = sqrt(far2)
     gap = far - d
     if gap < TOUCH:
@@ -55,13 +56,13 @@ def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
             return 0.0
         d = d - SKIN if gap > -1.5 * SKIN else far - SKIN
     else:
-        # along the line of centres: its least value in [0, T] must come down to d
+        # along the line of centres: the lowest value in [0, T] must be d or less
         reach = dot1 * T + dot2 * T * T
         if dot2 > 0.0 and dot1 < 0.0 and -dot1 < 2.0 * dot2 * T:
             reach = -0.25 * dot1 * dot1 / dot2
         if far2 + min(0.0, reach) > d * far:
             return inf
-        # across the first direction of motion: the offset, less what the curve can take off it, must come down to d
+        # across the first direction of motion: the offset, less the most that the curvature can change it, must be d or less
         speed2 = x1 * x1 + y1 * y1
         side = abs(x1 * y0 - y1 * x0) - abs(x1 * y2 - y1 * x2) * T * T
         if side > 0.0 and side * side > d * d * speed2 * (1.0 + 1e-12):
@@ -71,7 +72,7 @@ def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
 
 @kernel
 def _rolls_onto(dx, dy, vx, vy, ax, ay, d):
-    """How long until a ball that rolls at v, with deceleration a along its path, meets a still one at (dx, dy) from it; inf if never."""
+    """Time until a ball that rolls at v, with deceleration a along its path, meets a ball at rest at (dx, dy) from it [s]; inf if never."""
     speed2 = vx * vx + vy * vy
     along, across = dx * vx + dy * vy, dx * vy - dy * vx  # times the speed
     half = d * d * speed2 - across * across
@@ -85,9 +86,9 @@ def _rolls_onto(dx, dy, vx, vy, ax, ay, d):
 
 @kernel
 def may_meet(motion, i, j, d):
-    """Do the paths of balls i and j in their present phases come within d of each other? A quick test of their bounds.
+    """Whether the paths of balls i and j in their present phases can come within d of each other [m]: a quick test of their bounds.
 
-    (Here and below: indices, no rows. A row is an object whose references numba counts, which costs more than the arithmetic.)
+    (Here and below: indices, no rows. numba counts the references to a row, which takes longer than the arithmetic.)
     """
     return (
         motion[i, LO_X] <= motion[j, HI_X] + d and motion[j, LO_X] <= motion[i, HI_X] + d
@@ -97,7 +98,7 @@ def may_meet(motion, i, j, d):
 
 @kernel
 def pair_time(motion, state, i, j, t, d):
-    """Absolute time of the next contact of balls i and j, at centre distance d, within their present phases; t is now."""
+    """Absolute time of the next contact of balls i and j within their present phases [s]; t: now; d: distance of the centres in contact."""
     ti, tj = t - motion[i, T0], t - motion[j, T0]
     axi, ayi, axj, ayj = motion[i, AX], motion[i, AY], motion[j, AX], motion[j, AY]
     vxi, vyi, vxj, vyj = motion[i, VX], motion[i, VY], motion[j, VX], motion[j, VY]
@@ -105,7 +106,7 @@ def pair_time(motion, state, i, j, t, d):
     x0 = motion[j, X] + (vxj + 0.5 * axj * tj) * tj - motion[i, X] - (vxi + 0.5 * axi * ti) * ti
     y0 = motion[j, Y] + (vyj + 0.5 * ayj * tj) * tj - motion[i, Y] - (vyi + 0.5 * ayi * ti) * ti
     if state[i] + state[j] == ROLL + REST and x0 * x0 + y0 * y0 > (d + TOUCH) * (d + TOUCH):
-        # one is still, so the relative motion is the other's
+        # one is at rest, so the relative motion is that of the other
         return t + _rolls_onto(-x0, -y0, x1, y1, axj - axi, ayj - ayi, d)
     T = min(motion[i, T_END], motion[j, T_END]) - t
     return t + distance_crossing(x0, y0, x1, y1, 0.5 * (axj - axi), 0.5 * (ayj - ayi), d, T)
@@ -113,14 +114,14 @@ def pair_time(motion, state, i, j, t, d):
 
 @kernel
 def _apart(lo_x, hi_x, lo_y, hi_y, x, y, r):
-    """Is a circle apart from a rectangle?"""
+    """Whether the circle of radius r about (x, y) and the rectangle have no common point."""
     dx, dy = max(lo_x - x, x - hi_x, 0.0), max(lo_y - y, y - hi_y, 0.0)
     return dx * dx + dy * dy > r * r
 
 
 @kernel
 def clear_box(noses, jaws, falls, R):
-    """A rectangle (lo_x, hi_x, lo_y, hi_y) in which a ball's centre meets no nose, jaw or fall; empty if there is none."""
+    """A rectangle (lo_x, hi_x, lo_y, hi_y) [m] in which a ball's centre meets no nose, jaw or fall; empty if there is none."""
     lo_x, hi_x, lo_y, hi_y = -inf, inf, -inf, inf
     for k in range(noses.shape[0]):
         level = noses[k, NOSE_LEVEL] - R
@@ -140,9 +141,9 @@ def clear_box(noses, jaws, falls, R):
 
 @kernel
 def _level_crossing(gap, closing, closing2, beside, T):
-    """Earliest time in [0, T] at which gap - closing x - closing2 x^2 falls through contact, or inf.
+    """Earliest time x in [0, T] at which gap - closing x - closing2 x^2 falls through 0 [s], or inf.
 
-    beside: the ball is beside the nose itself. In the mouth of a pocket it may be far beyond the nose's line without touching anything.
+    beside: whether the ball is beside the nose itself. In the mouth of a pocket it may be far past the nose's line and touch nothing.
     """
     if beside and gap < TOUCH:
         if closing > CREEP or (gap <= -_DEEP and closing > STILL):
@@ -153,7 +154,7 @@ def _level_crossing(gap, closing, closing2, beside, T):
 
 @kernel
 def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
-    """The next nose (CUSHION), jaw (JAW) or fall (POT) that ball i meets after T0 within its phase: time, kind, index; inf if none.
+    """The next nose (CUSHION), jaw (JAW) or fall (POT) that ball i meets after T0 within its phase: time [s], kind, index; inf if none.
 
     clear: as ``clear_box`` returns it.
     """
@@ -180,11 +181,11 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
             along = q + (q1 + q2 * s) * s
             if noses[k, NOSE_LOW] <= along <= noses[k, NOSE_HIGH]:
                 best, kind, index = s, events.CUSHION, k
-    if best < T:  # only what lies on the way to the nose can come first
+    if best < T:  # only something on the way to the nose can come first
         lo_x, hi_x = extent(x0, x1, motion[i, AX], best)
         lo_y, hi_y = extent(y0, y1, motion[i, AY], best)
         lo_x, hi_x, lo_y, hi_y = lo_x - _MARGIN, hi_x + _MARGIN, lo_y - _MARGIN, hi_y + _MARGIN
-    # one limit for all falls, then one for all jaws: so what is found for one does not depend on the order of the list
+    # one limit for all falls, then one for all jaws: so the result does not depend on their order
     T = min(T, best)
     for k in range(falls.shape[0]):
         if _apart(lo_x, hi_x, lo_y, hi_y, falls[k, FALL_X], falls[k, FALL_Y], falls[k, FALL_RADIUS]):
@@ -204,7 +205,7 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
             before = jaws[k, JAW_COS] - (dx * jaws[k, JAW_UX] + dy * jaws[k, JAW_UY]) / d
             if before > 0.0:
                 # The nose ends where the arc starts, with a common tangent: a ball pressed SKIN deep into the nose falls through the circle
-                # an angle of sqrt(2 SKIN / d) before that. One that glides along the nose only grazes it, by less than a tenth of that.
+                # an angle of sqrt(2 SKIN / d) before that. A ball that moves along the nose only grazes it, by less than a tenth of that.
                 seam = sqrt(2.5 * SKIN / (jaws[k, JAW_RADIUS] + R))
                 vx, vy = x1 + 2.0 * x2 * s, y1 + 2.0 * y2 * s
                 grazes = -(dx * vx + dy * vy) < 0.3 * seam * d * sqrt(vx * vx + vy * vy)

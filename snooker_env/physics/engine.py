@@ -1,7 +1,7 @@
-"""How does a whole shot run? The event loop: predict, take the earliest event, resolve it, predict again what it touched.
+"""How does a whole shot run? The event loop: predict, take the earliest event, resolve it, predict again for the balls that it changed.
 
-Predictions are kept: a ball's contacts stand as long as no event changes its motion. Ties are decided by (time, kind, ball, partner),
-kinds in the order of ``EventKind``. Nothing is allocated inside the loop.
+Predictions are stored: those of a ball hold as long as no event changes its motion. Ties are decided by (time, kind, ball, partner), kinds
+in the order of ``EventKind``. The loop allocates nothing.
 """
 
 from math import inf, sqrt
@@ -10,7 +10,7 @@ import numpy as np
 
 from .._jit import entry, inlined, kernel
 from . import cloth, events, pocket
-from .arrays import END_VX, END_VY, FLIGHT, IN_X, IN_Y, INDEX, KIND, POCKET, U0, U1, Z0, Z1, Balls, Forecast, Log, Motions, World
+from .arrays import END_VX, END_VY, FLIGHT, IN_X, IN_Y, INDEX, KIND, POCKET, U0, U1, Z0, Z1, Balls, Forecast, Log, Motions, Setup
 from .cloth import AX, AY, FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, VX, VY, WX, WY, WZ, X, Y
 from .columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_SIDE
 from .detection import TOUCH, boundary_event, clear_box, may_meet, pair_time
@@ -29,7 +29,7 @@ def _begin(motion, state, i, t, r, v, w, phys):
 
 @kernel
 def _fly(motion, state, flight, i, t, x, y, z, vx, vy, u, w, falls, jaws, phys):
-    """Ball i is over a pocket, in the air: write its next leg, a straight line to where something happens to it."""
+    """Ball i is over a pocket, in the air: write its next leg, a straight line to its next event."""
     here = int(flight[i, POCKET])
     end, jaw, T, x1, y1, z1, vx1, vy1, u1 = pocket.fly(x, y, z, vx, vy, u, flight[i, IN_X], flight[i, IN_Y], falls, here, jaws, phys)
     state[i] = FALLING
@@ -46,7 +46,7 @@ def _fly(motion, state, flight, i, t, x, y, z, vx, vy, u, w, falls, jaws, phys):
 
 @kernel
 def _begin_again(motion, state, flight, i, t, r, v, w, falls, jaws, phys):
-    """Ball i has new velocities at time t, after a meeting with another ball: on the bed or on its way down."""
+    """Ball i has new velocities at time t, after a meeting with another ball: write its next phase, on the bed or in the air."""
     if state[i] == FALLING:
         s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
         z, u = flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0]), flight[i, U0] + s * (flight[i, U1] - flight[i, U0])
@@ -57,7 +57,7 @@ def _begin_again(motion, state, flight, i, t, r, v, w, falls, jaws, phys):
 
 @kernel
 def _rescan(pair, best_time, best_ball, i):
-    """The earliest partner of ball i from the kept pair times; the lower ball wins a tie."""
+    """Find the earliest partner of ball i from the stored pair times; in a tie the ball with the lower index."""
     n = pair.shape[0]
     time, ball = inf, -1
     for j in range(n):
@@ -68,7 +68,7 @@ def _rescan(pair, best_time, best_ball, i):
 
 @kernel
 def _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index):
-    """Ball i has a new motion at time t: predict all its events, and mend the rows of its partners."""
+    """Ball i has a new motion at time t: predict all its events, and correct the rows of its partners."""
     n = pair.shape[0]
     still = state[i] == REST
     time, ball = inf, -1
@@ -100,7 +100,7 @@ def _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, be
 
 @kernel
 def _leave(state, i, pair, best_time, best_ball, own_time):
-    """Ball i is off the table: no more events for it, and none with it."""
+    """Ball i is off the table: remove all its events."""
     state[i] = GONE
     n = pair.shape[0]
     for j in range(n):
@@ -113,7 +113,7 @@ def _leave(state, i, pair, best_time, best_ball, own_time):
 
 @kernel
 def _lie(motion, i, x, y):
-    """Ball i is out of play, at (x, y)."""
+    """Ball i is out of play: write a row that leaves it at (x, y) [m]."""
     for c in range(cloth.COLUMNS):
         motion[i, c] = 0.0
     motion[i, X], motion[i, Y] = x, y
@@ -132,7 +132,7 @@ def _record(segments, n_segments, motion, state, i):
 
 @inlined
 def _next_event(best_time, best_ball, own_time, own_kind, own_index):
-    """The earliest event: time, kind, ball and partner; of simultaneous ones the lowest kind, then the lowest ball."""
+    """The earliest event: time [s], kind, ball and partner; of simultaneous ones the lowest kind, then the lowest ball."""
     t, kind, i, j = inf, np.int64(events.NONE), np.int64(-1), np.int64(-1)
     for k in range(best_time.shape[0]):
         s = best_time[k]
@@ -145,23 +145,23 @@ def _next_event(best_time, best_ball, own_time, own_kind, own_index):
 
 
 @inlined
-def run(balls, world, max_events, log, paths, forecast, series):
-    """One shot to rest, in place. ``paths``, ``forecast`` and ``series`` are work space.
+def run(balls, setup, max_events, log, paths, forecast, series):
+    """Simulate one shot to rest, in place. ``paths``, ``forecast`` and ``series`` are work space.
 
     Returns status, number of events, number of segments, duration [s].
 
-    The tuples end here: the kernels that run at every event take the arrays one by one. With tuples all the way down shots took 4 to 7 %
-    longer at "standard" and 6 to 16 % at "fast" (measured in turn, machine code of both from the cache).
+    The kernels called at every event take the arrays one by one, not the tuples. With tuples shots took 4 to 7 % longer at "standard" and
+    6 to 16 % longer at "fast" (measured in turn, machine code of both from the cache).
     """
     positions, velocities, spins, on_table, potted = balls
-    phys, noses, jaws, falls, fidelity, n_steps = world
+    phys, noses, jaws, falls, fidelity, n_steps = setup
     time, what, segments = log
     motion, state, flight = paths
     pair, best_time, best_ball, own_time, own_kind, own_index = forecast
     n = positions.shape[0]
     R = phys[P_R]
     clear = clear_box(noses, jaws, falls, R)
-    n_segments = n_events = np.int64(0)  # (typed: a literal would have numba compile every callee twice)
+    n_segments = n_events = np.int64(0)  # (typed: with a literal numba would compile every callee twice)
     for i in range(n):
         potted[i] = -1
         best_time[i], best_ball[i], own_time[i] = inf, -1, inf
@@ -230,7 +230,7 @@ def run(balls, world, max_events, log, paths, forecast, series):
                 _, nx, ny, sin_phi, _ = pocket.jaw_gap(r[0], r[1], z, jaws, j, R, phys[P_SIN])
                 vx, vy, u, w = pocket.strike_jaw(v[0], v[1], u, w, nx, ny, sin_phi, phys)
                 _fly(motion, state, flight, i, t, r[0], r[1], z, vx, vy, u, w, falls, jaws, phys)
-            else:  # back on the bed, which takes its vertical velocity
+            else:  # back on the bed, which stops the vertical motion
                 _begin(motion, state, i, t, r, v, w, phys)
             solved = True
         else:
@@ -268,14 +268,14 @@ def run(balls, world, max_events, log, paths, forecast, series):
 @entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion))
 def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, fidelity, n_steps, max_events, time, what, segments,
               status, n_events, n_segments, duration, start, stop):  # fmt: skip
-    """Shots ``start`` to ``stop`` of a batch, all arrays of the balls, the log and the outcome with a leading batch axis.
+    """Simulate shots ``start`` to ``stop`` of a batch. All arrays of the balls, the log and the outcome have a leading batch axis.
 
-    The arguments are those of ``Balls``, ``World``, ``Log`` and ``Ends``, in their order: ``run_batch(*balls, *world, max_events, *log,
-    *ends, start, stop)``. Given as four tuples they would cost 3 us a call, since numba then looks up the type of each array anew
-    (measured; a shot of two balls takes 6 us). Work space is made once.
+    The arguments are those of ``Balls``, ``Setup``, ``Log`` and ``Ends``, in their order: ``run_batch(*balls, *setup, max_events, *log,
+    *ends, start, stop)``. Passed as four tuples they would take 3 us a call, because numba would then determine the type of each array at
+    every call (measured; a shot of two balls takes 6 us). The work space is made once.
     """
     n = positions.shape[1]
-    world = World(phys, noses, jaws, falls, fidelity, n_steps)
+    setup = Setup(phys, noses, jaws, falls, fidelity, n_steps)
     paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, FLIGHT)))
     forecast = Forecast(
         np.full((n, n), inf), np.full(n, inf), np.full(n, -1), np.full(n, inf), np.zeros(n, np.int64), np.full(n, -1)
@@ -283,4 +283,4 @@ def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws,
     series = np.empty(WORK)
     for k in range(start, stop):
         balls, log = Balls(positions[k], velocities[k], spins[k], on_table[k], potted[k]), Log(time[k], what[k], segments[k])
-        status[k], n_events[k], n_segments[k], duration[k] = run(balls, world, max_events, log, paths, forecast, series)
+        status[k], n_events[k], n_segments[k], duration[k] = run(balls, setup, max_events, log, paths, forecast, series)

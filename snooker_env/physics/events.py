@@ -1,24 +1,26 @@
-"""What can happen in a shot, and how can it end? Kinds of events in the order in which simultaneous ones are taken, and the end of a
-run."""
+"""What can happen in a shot, and how can it end? Kinds of events, in the order in which simultaneous ones are handled, and status codes."""
 
 from enum import IntEnum
 
 
 class EventKind(IntEnum):
-    """What happened. In the log of events ``i`` is the ball; ``j`` the other ball (i < j), nose, jaw or pocket, or -1.
+    """The kind of an event in the log of a shot.
 
-    ========= ====================================================================================================
-    BALL_BALL Balls i and j struck each other.
-    CUSHION   Ball i struck nose j.
-    JAW       Ball i struck jaw j.
-    POT       Ball i was lost in pocket j.
-    ROLL      Ball i stopped sliding; it rolls from now on.
-    STOP      Ball i stopped; it may still spin on the spot.
-    DROP      Ball i flies over the edge of pocket j towards a jaw: a POT or a RETURN follows. A ball with no jaw on its
-              way is potted at once.
-    RETURN    Ball i comes back on to the bed, over the edge of pocket j.
-    BEND      The nap turned rolling ball i: the next piece of its path begins. Only with ``Physics.nap``.
-    ========= ====================================================================================================
+    In a logged event, ``i`` is the ball; ``j`` is the other ball (i < j), the nose, the jaw or the pocket, or -1. Simultaneous events are
+    handled in the order of their numbers.
+
+    ========= ====== =============================================================================================
+    BALL_BALL 0      Balls i and j struck each other.
+    CUSHION   1      Ball i struck nose j.
+    JAW       2      Ball i struck jaw j.
+    POT       3      Ball i was potted in pocket j.
+    ROLL      4      Ball i stopped sliding; it rolls from now on.
+    STOP      5      Ball i stopped; it may still spin on the spot.
+    DROP      6      Ball i flies over the edge of pocket j towards a jaw: a POT or a RETURN follows. A ball with no jaw
+                     in its way is potted at once.
+    RETURN    7      Ball i came back on to the bed, over the edge of pocket j.
+    BEND      8      The nap turned rolling ball i: the next piece of its path begins. Only with ``Physics.nap``.
+    ========= ====== =============================================================================================
 
     Examples
     --------
@@ -43,8 +45,8 @@ class Status(IntEnum):
 
     ================= =====================================================
     OK                All balls came to rest.
-    TOO_MANY_EVENTS   More events than were allowed.
-    LOG_FULL          The log was too short; the run is to be made again.
+    TOO_MANY_EVENTS   There were more events than allowed.
+    LOG_FULL          The log was too short; run the shot again with more.
     IMPACT_UNSOLVED   An impact did not end.
     ================= =====================================================
     """
@@ -55,12 +57,12 @@ class Status(IntEnum):
     IMPACT_UNSOLVED = 3
 
 
-# The same as plain integers: kernels compare them with what lies in integer arrays.
+# The same as plain integers, because kernels compare them with numbers in integer arrays.
 BALL_BALL, CUSHION, JAW, POT, ROLL, STOP, DROP, RETURN, BEND = (int(kind) for kind in EventKind)
 OK, TOO_MANY_EVENTS, LOG_FULL, IMPACT_UNSOLVED = (int(status) for status in Status)
 
 NONE = len(EventKind)
-"""Nothing happens any more: later than every kind."""
+"""No event; its number is higher than that of every kind."""
 
 LOG_KIND, LOG_I, LOG_J = range(3)
 """Columns of the event log."""

@@ -1,10 +1,10 @@
-"""How do bodies part that meet inside a shot? As the impact says; or by a hop, if they close so slowly that they would never part.
+"""How do bodies separate after a meeting inside a shot? As the impact model says; if they approach very slowly, by a small hop.
 
-Lasting contact. A spin may hold a ball against another one, or against a cushion. The cloth takes up each bounce, so the ball would
-bounce ever faster and lower, without end. Therefore no impact leaves a pair parting slower than ``PART``. If the pair closes faster than
-that, its restitution is raised as far as this takes. If it closes more slowly, the impact is without friction, and takes the energy that
-is missing from the spin of the balls, as the rubbing would that it stands for. A lasting contact is then a row of hops of about a
-micrometre, a millisecond each; energy never rises.
+Lasting contact. A spin can press a ball against another ball or against a cushion. The cloth damps each bounce, so the ball would bounce
+more and more often, without end. Therefore no impact leaves a pair separating at less than ``PART``. If the pair approaches faster than
+that, its restitution is raised as far as needed. If it approaches more slowly, the impact has no friction and takes the missing energy
+from the spin of the balls, as the rubbing that it replaces would. A lasting contact is then a series of hops of about a micrometre and
+a millisecond each. Energy never rises.
 """
 
 from math import sqrt
@@ -13,14 +13,15 @@ from .._jit import inlined, kernel
 from .impact.contact import collide_balls, collide_cushion, cushion_restitution
 from .parameters import P_E_B, P_E_J, P_R
 
-PART = 2e-3  # m/s; below what a shot can show: a ball at this speed rolls 16 micrometres
+PART = 2e-3  # m/s; too slow to matter in a shot: a ball at this speed rolls 16 micrometres
 
 
 @kernel
 def _hop(closing, spin_energy):
-    """A slow contact: the parting speed it gets and the factor left on the spins that pay for it.
+    """A slow contact: the speed at which the bodies separate [m/s], and the factor on the spins, whose energy is used for it.
 
-    Energies per unit mass of the moving mass of the contact: closing^2 / 2 before, parting^2 / 2 after.
+    Energies are per unit of the contact's reduced mass: closing^2 / 2 before, parting^2 / 2 after. ``spin_energy``: energy that the spins
+    can give, in the same unit [m^2/s^2].
     """
     closing = max(closing, 0.0)
     missing = min(0.5 * (PART * PART - closing * closing), 0.5 * spin_energy)
@@ -31,7 +32,7 @@ def _hop(closing, spin_energy):
 
 @kernel
 def _spin_energy(w, R):
-    """(1/5) R^2 w^2, per unit mass."""
+    """Energy of a spin per unit mass, (1/5) R^2 w^2 [m^2/s^2]."""
     return 0.2 * R * R * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
 
 
@@ -42,10 +43,10 @@ def _scaled(w, k):
 
 @inlined
 def meet(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps, series):
-    """Ball-ball impact inside a shot: ``collide_balls`` or, below ``PART``, a hop; the vertical velocity is dropped (as the paper does)."""
+    """Ball-ball impact inside a shot: ``collide_balls`` or, below ``PART``, a hop. The vertical velocity is dropped, as in the paper."""
     closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
     if closing <= PART:
-        # two equal balls: the contact's moving mass is M/2, so the spin energy counts double
+        # two equal balls: the reduced mass is M/2, so the spin energy counts double
         parting, k = _hop(closing, 2.0 * (_spin_energy(w1, phys[P_R]) + _spin_energy(w2, phys[P_R])))
         dv = 0.5 * (closing + parting)
         return (v1[0] - dv * nx, v1[1] - dv * ny), _scaled(w1, k), (v2[0] + dv * nx, v2[1] + dv * ny), _scaled(w2, k), True

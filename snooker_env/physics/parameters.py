@@ -1,4 +1,4 @@
-"""Which world is simulated? ``Physics``: every constant with its source, validated, and packed to one float64 vector for the kernels.
+"""Which constants does a simulation use? ``Physics``: each with its source, validated, and packed to one float64 vector for the kernels.
 
 Sources: [MJP14] Mathavan, Jackson & Parkin, Sports Eng. (2014); [MJP10] the same authors, Proc. IMechE C 224 (2010);
 [Marlow] The Physics of Pocket Billiards (1994), as fitted by Alciatore (TP A.14); [TP A.30, A.31] Alciatore, technical proofs.
@@ -18,19 +18,21 @@ MARLOW = (9.951e-3, 0.108, 1.088)
 """Marlow's law of ball-ball friction, mu(s) = a + b exp(-c s), s the slip speed in m/s."""
 
 FASTEST = 1000.0
-"""No ball of a shot and no cue may be given a velocity with a component beyond this [m/s]; the hardest strokes reach some 15 m/s.
-Measured: all invariants of a shot hold to 10,000 m/s; at 100,000 m/s rounding (1e-16 of the speed) is above what counts as rest, and
-shots do not end."""
+"""The largest component of a ball's velocity, and the largest speed of a cue, that a shot accepts [m/s]; the hardest strokes reach about
+15 m/s. Measured: all invariants of a shot hold to 10,000 m/s. At 100,000 m/s the rounding (1e-16 of the speed) exceeds the speed that
+counts as rest, and shots do not end."""
 MOST_SPIN = 1e5
-"""No ball of a shot may be given a spin with a component beyond this [rad/s]: what a strike at ``FASTEST`` can give a ball of snooker's
-size. Measured: shots are right to 1e6 rad/s and do not end at 1e7."""
+"""The largest component of a ball's spin that a shot accepts [rad/s]: what a strike at ``FASTEST`` can give a snooker ball. Measured: shots
+are right to 1e6 rad/s and do not end at 1e7."""
 FASTEST_IMPACT, MOST_SPIN_IMPACT = 1e6, 1e9
-"""The same for one impact alone, whose outcome scales with its speeds (up to the laws that name a speed) and is right far beyond."""
+"""The same limits for one impact alone. Its outcome scales with its speeds (except for the laws that contain a speed), so it is right far
+beyond those of a shot."""
 _LEAST_DECELERATION, _MOST_DECELERATION = 1e-6, 1e6
 _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
-"""Bounds of ``e_c_power``: the rebound goes as no higher power of e than 1.25 (tests/physics/test_cushion_law.py), so it never falls."""
+"""Bounds of ``e_c_knee`` (from below) and ``e_c_power`` (from above). The rebound varies with at most the power 1.25 of e
+(tests/physics/test_cushion_law.py), so with a power up to 0.8 it never falls with the speed."""
 
-# Places in the packed vector. They are indices, not tunables: freezing them into a kernel is safe.
+# Places in the packed vector. They are indices, not tunable constants: freezing them into a kernel is safe.
 (
     P_R, P_M, P_G, P_MU_S, P_MU_R, P_SPIN, P_E_B, P_MU_BB_LEAST, P_MU_BB_EXTRA, P_MU_BB_FADE, P_E_C, P_E_KNEE, P_E_POWER, P_MU_C, P_SIN,
     P_E_J, P_NAP,
@@ -39,57 +41,58 @@ _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
 
 @dataclass(frozen=True, kw_only=True)
 class Physics:
-    """The constants and laws of one world (SI units). ``Physics()`` is the ``"paper"`` preset; see ``preset``.
+    """The physical constants and laws of a simulation, in SI units.
+
+    ``Physics()`` is the preset "paper"; see ``preset``. An instance cannot be changed; ``dataclasses.replace`` makes a changed copy.
 
     Parameters
     ----------
     R : float
-        Ball radius [m], of all balls, in [0.001, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3].
+        Radius of all balls [m], in [0.001, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3].
     M : float
-        Ball mass [kg], of all balls, > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal.
+        Mass of all balls [kg], > 0 [MJP14 2.4.3]. No velocity depends on it, because the balls are equal.
     g : float
-        Gravity [m/s^2], > 0.
+        Acceleration of gravity [m/s^2], > 0.
     mu_s : float
-        Sliding friction ball-cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
+        Coefficient of sliding friction between ball and cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
     mu_r : float
-        Rolling resistance, deceleration over g, in [0, 1] (measured deceleration 0.124 to 0.126 m/s^2, that is 0.0127 g).
+        Rolling resistance: deceleration over g, in [0, 1]. Measured: 0.124 to 0.126 m/s^2, that is 0.0127 g.
     spin_decel : float
-        Decay of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21]. With 0 nothing ends such a
-        spin: a shot ends when no ball moves across the table, and what spin is left then stays.
+        Angular deceleration of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21]. With 0 nothing
+        ends such a spin: a shot ends when no ball moves across the table, and the remaining spin stays.
     nap : float
-        Acceleration of a rolling ball along +y [m/s^2] by the cloth's nap, which runs from baulk to the black end; 0 for none,
-        else below mu_r g in size, so that a ball at rest stays there. Not measured; 0.001 is the most that the range of mu_r
-        allows (``python -m benchmarks.nap``).
+        Acceleration of a rolling ball along +y by the cloth's nap, which runs from baulk to the black end [m/s^2]. 0: no nap; else its
+        size must be below mu_r g, so that a ball at rest stays there. Not measured; 0.001 is the most that the range of mu_r allows
+        (``python -m benchmarks.nap``).
     e_b : float
-        Energetic restitution ball-ball, in [0, 1] [MJP14 2.4.2].
+        Energetic coefficient of restitution between balls, in [0, 1] [MJP14 2.4.2].
     mu_bb : float, "marlow" or (float, float, float)
-        Ball-ball friction: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) for mu(s) = a + b exp(-c s), s in m/s.
+        Coefficient of friction between balls: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) of the law
+        mu(s) = a + b exp(-c s), with the slip speed s in m/s.
     e_c : float
-        Energetic restitution ball-cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
+        Energetic coefficient of restitution between ball and cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
     e_c_knee : float
-        Speed straight into the cushion [m/s] above which its restitution falls, >= 0, and >= 0.001 where e_c_power > 0.
+        Speed straight into the cushion above which its restitution falls [m/s], >= 0, and >= 0.001 where e_c_power > 0.
     e_c_power : float
-        Exponent of that fall, in [0, 0.8]: e(v) = e_c for v <= e_c_knee, e_c (v / e_c_knee)^(-e_c_power) above; 0: constant. So v
-        e(v) rises with v in every world, and for mu_c, mu_s and sin_theta up to 0.5 so does the rebound of a rolling or a stunned
-        ball. A power of 1/4 is that of an impact that loses its energy by yielding (Johnson, Contact Mechanics, 1985, 11.5);
-        rubber may differ.
+        Exponent of that fall, in [0, 0.8]; 0: none. e(v) = e_c for v <= e_c_knee, and e_c (v / e_c_knee)^(-e_c_power) above. So v e(v)
+        always rises with v; for mu_c, mu_s and sin_theta up to 0.5 the rebound of a rolling or a stunned ball rises too. An impact that
+        loses its energy by yielding has the power 1/4 (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
     e_j : float, optional
-        Energetic restitution ball-jaw, the same at every speed, in [0, 1]; None: the same as e_c, so without the fall with speed
-        that a rail has. There is no measurement. A rail loses energy because its rubber deforms; at a jaw the rubber is cut thin
-        over wood.
+        Energetic coefficient of restitution between ball and jaw, the same at every speed, in [0, 1]. None: e_c, without the fall with
+        speed that a rail has. Not measured. A rail loses energy because its rubber deforms; at a jaw the rubber is cut thin over wood.
     mu_c : float
-        Sliding friction ball-cushion, in [0, 1] [MJP10].
+        Coefficient of sliding friction between ball and cushion, in [0, 1] [MJP10].
     sin_theta : float
-        Height of the nose above the ball's centre over R, in [0, 0.95]; nose height 7R/5 gives 0.4 [MJP10].
+        Height of the nose above the ball's centre over R, in [0, 0.95]; a nose height of 7R/5 gives 0.4 [MJP10].
     end_mass_ratio : float
-        Ball mass over the cue's effective end mass, for squirt, >= 0 [TP A.31].
+        Ball mass over the effective end mass of the cue, >= 0; it determines the squirt [TP A.31].
     max_offset : float
-        Tip offset over R beyond which the tip slips (miscue), in (0, 1) [TP A.30].
+        Tip offset over R beyond which the tip slips (miscue), in (0, 0.999] [TP A.30].
 
     Raises
     ------
     ValueError
-        On anything outside these ranges; the message names the field, its value and what is allowed.
+        For a value outside these ranges; the message names the field, its value and what is allowed.
 
     Examples
     --------
@@ -125,7 +128,7 @@ class Physics:
         for field in ("R", "M"):
             value = getattr(self, field)
             if isinstance(value, (list, tuple, np.ndarray)) and np.shape(value)[:1] > (1,):
-                raise refuse(f"physics.{field}", value, "must be one number: all balls of a shot are equal (docs/limits.md)")
+                raise refuse(f"physics.{field}", value, "must be one number: all balls of a shot are equal (docs/physics/limits.md)")
         for field, (low, high) in low_high.items():
             open_low = field in ("M", "g", "max_offset")
             object.__setattr__(self, field, number(f"physics.{field}", getattr(self, field), low, high, open_low=open_low))
@@ -140,22 +143,26 @@ class Physics:
 
     @classmethod
     def preset(cls, name: PhysicsName = "paper", **fields: Any) -> "Physics":
-        """A named world, with any field replaced.
+        """The constants of a preset, with any field replaced.
 
-        ``"paper"``: the constants of [MJP14] and [MJP10]. ``"match"``: measured snooker, that is e_b 0.94, Marlow's mu_bb(s) and a
-        cushion whose restitution falls as v^-0.31 above 2.17 m/s: fitted to the rebounds of Fig. 7a of [MJP10], 19 speeds from 0.26 to
-        3.40 m/s (``python -m benchmarks.fit_cushion``). Beyond 3.4 m/s the law is extrapolated: the 95 % interval of the power is 0.21
-        to 0.46, that of e 0.70 to 0.80 at 5 m/s, 0.60 to 0.75 at 7 and 0.51 to 0.69 at 10, if it is a power law there.
+        ``"paper"``: the constants of [MJP14] and [MJP10].
+
+        ``"match"``: measured snooker, that is e_b 0.94, Marlow's mu_bb(s), and a cushion whose restitution falls as v^-0.31 above
+        2.17 m/s. That law is fitted to the rebounds of Fig. 7a of [MJP10], 19 speeds from 0.26 to 3.40 m/s
+        (``python -m benchmarks.fit_cushion``); the 95 % interval of the power is 0.21 to 0.46. Beyond 3.4 m/s it is extrapolated. If the
+        power law holds there, the 95 % intervals of e are 0.70 to 0.80 at 5 m/s, 0.60 to 0.75 at 7 m/s and 0.51 to 0.69 at 10 m/s.
 
         Parameters
         ----------
         name : {"paper", "match"}
+            The preset.
         **fields
             Fields of ``Physics`` to replace.
 
         Returns
         -------
         Physics
+            The constants.
 
         Raises
         ------
@@ -172,16 +179,17 @@ class Physics:
 
     @classmethod
     def of(cls, physics: "PhysicsLike" = None) -> "Physics":
-        """What users may pass as ``physics``.
+        """The constants that an argument ``physics`` stands for.
 
         Parameters
         ----------
         physics : None, str, dict or Physics
-            None is "paper"; a str is a preset's name; a dict replaces fields of the preset that its key "preset" names, else of "paper".
+            None is "paper"; a str is the name of a preset; a dict replaces fields of the preset that its key "preset" names, or of "paper".
 
         Returns
         -------
         Physics
+            The constants; a ``Physics`` is returned as it is.
 
         Raises
         ------
@@ -211,7 +219,7 @@ class Physics:
         return cls(**{**base, **fields})
 
     def check_stopping(self) -> None:
-        """Check that balls in this world come to rest, and not in no time.
+        """Check that balls with these constants come to rest after a finite time that is not zero.
 
         Returns
         -------
@@ -220,7 +228,12 @@ class Physics:
         Raises
         ------
         ValueError
-            If they would not.
+            If friction is too small or too large; the message names the constant.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> sn.Physics().check_stopping()
         """
         for name in ("mu_s", "mu_r"):
             if not _LEAST_DECELERATION <= getattr(self, name) * self.g <= _MOST_DECELERATION:
@@ -236,7 +249,7 @@ class Physics:
 
     @property
     def friction_law(self) -> tuple[float, float, float]:
-        """(a, b, c) of mu_bb(s) = a + b exp(-c s); b = 0 for a constant."""
+        """The numbers (a, b, c) of mu_bb(s) = a + b exp(-c s), s in m/s; b = 0 for a constant."""
         if isinstance(self.mu_bb, str):
             return MARLOW
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
@@ -247,7 +260,13 @@ class Physics:
         Returns
         -------
         float64 (17,)
-            Places ``P_*`` of this module.
+            The constants at the places ``P_*`` of this module, in SI units.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> sn.Physics().pack().shape
+        (17,)
         """
         return np.array([
             self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law,
@@ -256,7 +275,7 @@ class Physics:
 
 
 PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None
-"""What users may pass as ``physics``, see ``Physics.of``."""
+"""The type of an argument ``physics``, see ``Physics.of``."""
 
 
 def _mu_bb(value: Any) -> float | Literal["marlow"] | tuple[float, float, float]:

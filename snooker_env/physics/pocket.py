@@ -1,24 +1,25 @@
-"""What becomes of a ball that goes over the edge of a pocket? It flies, falls, may strike a jaw or the edge, and is lost or comes back.
+"""What becomes of a ball that crosses the edge of a pocket? It flies, falls, may strike a jaw or the edge, and is lost or comes back.
 
 A slow ball is lost where its centre crosses the edge. A fast one flies on, may meet the jaw beyond before it has fallen, and may bounce
-back on to the bed. Most balls have no jaw on their way and count as lost at the edge at once; the others are followed here.
+back on to the bed. Most balls have no jaw in their way and are lost at the edge at once; the others are followed here.
 
-World frame; z is the drop of the centre below the height at which it rolls [m], u its rate [m/s]. In flight no cloth acts.
+Table frame; z is the drop of the centre below its height on the bed [m], u its rate [m/s]. In flight there is no friction with the cloth.
 
 * Gravity: du/dt = g.
 * The slate's edge is a sharp circle, the pocket's fall. A sphere whose centre is d inside it touches it where d^2 + (R - z)^2 = R^2; the
-  normal runs from the edge to the centre. Restitution ``EDGE``, no friction: below ``SOFT`` the ball stays on the edge and tips over it.
+  normal points from the edge to the centre. Restitution ``EDGE``, no friction. Below ``SOFT`` the ball stays on the edge and tips over it.
 * A jaw's nose is an arc at the height (1 + sin_theta) R. A ball that has dropped by z touches it at the angle phi above its equator,
-  sin(phi) = sin_theta + z/R. Nothing presses the ball from below, so this is the impact of a free sphere with a fixed body, in closed form:
-  p = (1 + e_j) times the closing speed; friction min(mu_c p, 2/7 of the slip) against the slip at the contact. The nose is above the
-  centre and drives the ball down.
-* The ball is lost in three cases: no jaw's arc is ahead, and its line leaves the fall on the side away from where it came in; it is
-  below the noses, at z = (1 - sin_theta) R, where the edge, too, pushes it inwards; or it touches the throat behind a jaw's arc.
+  sin(phi) = sin_theta + z/R. Nothing supports the ball from below, so this is the impact of a free sphere with a fixed body, in closed
+  form: p = (1 + e_j) times the closing speed; friction min(mu_c p, 2/7 of the slip), opposite to the slip at the contact. The nose is
+  above the centre and drives the ball down.
+* The ball is lost in three cases. No jaw's arc is ahead, and its line leaves the fall on the far side, seen from where it came in. Or it
+  is below the noses, at z = (1 - sin_theta) R, where the edge pushes it inwards too. Or it touches the throat behind a jaw's arc.
 
-Balls meet each other in the plane, whatever their drop. ``SLOW``, ``SOFT`` and ``STEP`` are for snooker's balls under gravity.
+Balls meet each other in the plane, whatever their drop. ``SLOW``, ``SOFT`` and ``STEP`` are chosen for snooker balls and normal gravity.
 
-A ball that clears the edge flies to the first jaw in closed form. One that touches the edge has none: it is followed in steps of ``STEP``,
-each a parabola, with the impacts on the edge at its end. Oracle: a compliant ball in three dimensions (``tests/oracles/pocket_3d.py``).
+A ball that clears the edge flies to the first jaw in closed form. For one that touches the edge there is no closed form: it is followed in
+steps of ``STEP``, each a parabola, with the impacts on the edge at its end. Oracle: a compliant ball in three dimensions
+(``tests/oracles/pocket_3d.py``).
 """
 
 from math import inf, sqrt
@@ -32,21 +33,21 @@ JAW, LOST, BACK = range(3)
 EDGE = 0.5
 """Restitution of a ball on the slate's edge (a billiard ball dropped on a covered slate rises to about a quarter of its height)."""
 SLOW = 0.4
-"""A ball slower than this [m/s] is counted as lost at the edge: it tips in before it could come back."""
+"""A ball slower than this is lost at the edge [m/s]: it tips in before it could come back."""
 SOFT = 0.05
-"""Closing speed [m/s] below which it bounces neither there nor on a jaw, but stays in touch."""
+"""Closing speed below which the ball does not bounce on the edge or on a jaw, but stays in contact [m/s]."""
 STRIDE, STEP = 4e-4, 4e-4
-"""A step is as long as the ball takes for this distance [m], and at most this long [s]. Measured: a quarter of both changes no window of a
-pocket (``benchmarks.pockets``) by more than 1.1 mm of its width, most by 0.3 mm."""
+"""Distance that the ball moves in a step [m], and the longest step [s]. Measured: with a quarter of both no window of a pocket
+(``benchmarks.pockets``) changes by more than 1.1 mm of its width, and most change by at most 0.3 mm."""
 SHORTEST = 1e-9
-"""No leg is shorter [s]: a jaw may be met right at the edge."""
+"""The shortest leg [s]; the ball can meet a jaw right at the edge."""
 _MOST_STEPS = 10_000
-"""A ball that stays in the mouth for so many steps, some seconds, counts as lost: it is wedged in a throat narrower than a ball."""
+"""A ball that stays in the mouth for so many steps, a few seconds, is lost: it is wedged in a throat narrower than a ball."""
 
 
 @kernel
 def _first_arc(x, y, vx, vy, jaws, R):
-    """On a straight line ahead: when does the ball meet the arc of a jaw [s], and which? inf and -1 if none."""
+    """The first jaw arc on a straight line ahead: time until the ball meets it [s], and its index; (inf, -1) if there is none."""
     speed2 = vx * vx + vy * vy
     best, jaw = inf, -1
     for k in range(jaws.shape[0]):
@@ -65,10 +66,11 @@ def _first_arc(x, y, vx, vy, jaws, R):
 
 @kernel
 def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
-    """A ball crosses the edge at (x, y): when does it fly into a jaw [s], and which? inf: never. -1: it may, but touches the edge before.
+    """A ball crosses the edge at (x, y) [m]: time until it flies into a jaw [s], and the jaw. inf: never. -1: it may, but touches the edge.
 
-    Whether the sphere clears the edge is asked at the end of the way. Over a circle the depth grows ever more slowly, while a falling
-    sphere needs it to grow almost evenly (at sqrt(g R)): what clears it at the end has cleared it before, but for a graze near that speed.
+    Whether the sphere clears the edge is tested at the end of the path. Over a circle the depth grows more and more slowly, while a falling
+    sphere needs it to grow almost linearly (at sqrt(g R)). So a ball that clears the edge at the end has cleared it before, except for a
+    graze near that speed.
     """
     R, g = phys[P_R], phys[P_G]
     if vx * vx + vy * vy < SLOW * SLOW:
@@ -87,7 +89,7 @@ def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
 
 @kernel
 def _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket):
-    """Does a straight line from (x, y) leave the fall on the side away from where the ball came in, seen from the centre?"""
+    """Whether a straight line from (x, y) leaves the fall on the side away from where the ball came in, seen from the centre."""
     dx, dy = x - falls[pocket, FALL_X], y - falls[pocket, FALL_Y]
     speed2, along = vx * vx + vy * vy, dx * vx + dy * vy
     inside = falls[pocket, FALL_RADIUS] * falls[pocket, FALL_RADIUS] - dx * dx - dy * dy
@@ -99,10 +101,10 @@ def _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket):
 
 @kernel
 def jaw_gap(x, y, z, jaws, k, R, sin_theta):
-    """How far a sphere at (x, y), z low is from the nose of jaw k in the plane [m], the unit vector to it, sin(phi), the part of it.
+    """A sphere at (x, y) with drop z: its distance from the nose of jaw k in the plane [m], the unit vector to it, sin(phi), and the part.
 
-    Beyond its ends (part 1, else 0) an arc goes on straight along its tangents: on one side into the throat, on the other as the nose. A
-    ball above the nose's height meets it as a wall: none flies over a cushion.
+    Past its ends (part 1, else 0) the arc is continued straight along its tangents: on one side into the throat, on the other as the nose.
+    For a ball above the nose's height the nose is a wall: no ball flies over a cushion.
     """
     dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
     cos_half = jaws[k, JAW_COS]
@@ -119,7 +121,8 @@ def jaw_gap(x, y, z, jaws, k, R, sin_theta):
             return 1.0, 0.0, 0.0, 0.0, 0
         s = sin_half if aside > 0.0 else -sin_half
         nx, ny = cos_half * ux - s * uy, cos_half * uy + s * ux
-    # the nose is where a ball on the bed is R from the table's arc; one that has dropped is held as far off, so that it comes back free
+    # A ball on the bed touches the nose at the distance R from the table's arc. A dropped ball has the same distance, so that it comes
+    # back without an overlap.
     sin_phi = min(1.0, max(0.0, sin_theta + z / R))
     high = min(sin_phi, sin_theta)
     return far - jaws[k, JAW_RADIUS] - R * (1.0 - sqrt(1.0 - sin_theta * sin_theta) + sqrt(1.0 - high * high)), -nx, -ny, sin_phi, part
@@ -127,9 +130,9 @@ def jaw_gap(x, y, z, jaws, k, R, sin_theta):
 
 @kernel
 def strike_jaw(vx, vy, u, w, nx, ny, sin_phi, phys):
-    """Impact of a free ball with a nose; (nx, ny) points to it in the plane -> vx, vy, u, w.
+    """Impact of a free ball with a nose; (nx, ny) is the unit vector to it in the plane -> vx, vy, u [m/s], w [rad/s].
 
-    A ball that falls away from the nose faster than it moves towards it is let pass: the nose does not pull.
+    A ball that falls away from the nose faster than it moves towards it keeps its velocity: the nose does not pull.
     """
     cos_phi, R = sqrt(1.0 - sin_phi * sin_phi), phys[P_R]
     x, y, z = nx * cos_phi, ny * cos_phi, sin_phi  # from the centre to the contact, z up
@@ -152,21 +155,21 @@ def strike_jaw(vx, vy, u, w, nx, ny, sin_phi, phys):
 
 @kernel
 def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
-    """One leg of a flight over the fall of ``pocket``, until something happens to the ball.
+    """One leg of a flight over the fall of ``pocket``, up to the next event.
 
-    (in_x, in_y): where it came in, seen from the pocket's centre. Returns how the leg ends (``JAW``, ``LOST``, ``BACK``), the jaw, the time
-    it takes [s], and x, y, z, vx, vy, u then (before the impact with the jaw; on the bed for ``BACK``).
+    (in_x, in_y): where the ball came in, relative to the pocket's centre [m]. Returns how the leg ends (``JAW``, ``LOST``, ``BACK``), the
+    jaw, the duration [s], and x, y, z [m], vx, vy, u [m/s] at its end (before the impact with the jaw; on the bed for ``BACK``).
     """
     R, sin_theta, g = phys[P_R], phys[P_SIN], phys[P_G]
-    if z == 0.0 and u == 0.0:  # just over the edge: if it clears it, on to the first jaw
+    if z == 0.0 and u == 0.0:  # just over the edge: a ball that clears it goes on to the first jaw
         t, jaw = ahead(x, y, vx, vy, falls, pocket, jaws, phys)
         if 0.0 <= t < inf:
             return JAW, jaw, t, x + vx * t, y + vy * t, 0.5 * g * t * t, vx, vy, g * t
     elif _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket) and _first_arc(x, y, vx, vy, jaws, R)[0] == inf:
-        return LOST, -1, STEP, x + vx * STEP, y + vy * STEP, z, vx, vy, u  # nothing is in its way any more; the edge only helps
+        return LOST, -1, STEP, x + vx * STEP, y + vy * STEP, z, vx, vy, u  # nothing is in its way, and the edge only pushes it inwards
     first, last = jaws.shape[0], 0  # the jaws of this pocket
     for k in range(jaws.shape[0]):
-        # from the middle of the arc, which is no further from its ends than their chord: a straight facing is an arc of a huge circle
+        # measured from the middle of the arc (a straight facing is an arc of a very large circle, whose centre is far away)
         dx = jaws[k, JAW_X] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UX] - falls[pocket, FALL_X]
         dy = jaws[k, JAW_Y] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UY] - falls[pocket, FALL_Y]
         reach = jaws[k, JAW_RADIUS] * sqrt(2.0 * (1.0 - jaws[k, JAW_COS])) + 4.0 * R + falls[pocket, FALL_RADIUS]
@@ -183,7 +186,7 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
         far = sqrt(dx * dx + dy * dy)
         depth, high = falls[pocket, FALL_RADIUS] - far, R - z
         reach2 = depth * depth + high * high
-        if depth > 0.0 and reach2 < R * R:  # in touch with the edge
+        if depth > 0.0 and reach2 < R * R:  # in contact with the edge
             reach = sqrt(reach2)
             ex, ey, ez = -dx / far * depth / reach, -dy / far * depth / reach, high / reach
             closing = u * ez - vx * ex - vy * ey
@@ -204,7 +207,7 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
                     jaw, deepest, hard = k, gap, closing
                     px, py, pz = nx * cos_phi, ny * cos_phi, sin_phi
         if hard > SOFT:
-            back = min(0.9 * h, -deepest * sqrt(1.0 - pz * pz) / hard)  # they met so long ago
+            back = min(0.9 * h, -deepest * sqrt(1.0 - pz * pz) / hard)  # time since the contact
             return JAW, jaw, T - back, x - vx * back, y - vy * back, z - (u - 0.5 * g * back) * back, vx, vy, u - g * back
         vx, vy, u = vx - hard * px, vy - hard * py, u + hard * pz  # it stays on the jaw
         if depth < 0.0 and dx * vx + dy * vy > 0.0 and not touches:

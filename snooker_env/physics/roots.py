@@ -1,8 +1,8 @@
-"""When does a polynomial first fall through zero? The earliest downward crossing of a quadratic or quartic in [0, T], nothing missed.
+"""When does a polynomial first fall through zero? The earliest downward crossing of a quadratic or quartic in [0, T], none missed.
 
-A quartic on an interval is cut at the roots of its derivative, that at the roots of its own (a quadratic): on each piece it is
-monotone, so the first piece that starts above zero and ends at or below it holds exactly the first crossing, found by Newton kept
-inside the bracket. A crossing of even order that only touches zero from above is no crossing.
+The interval is cut at the roots of the quartic's derivative, which are found between the roots of its second derivative (a quadratic). On
+each piece the quartic is monotone, so the first piece that starts above zero and ends at or below it holds exactly the first crossing.
+Newton's method, kept inside the bracket, finds it. A root of even order, where the polynomial only touches zero from above, is no crossing.
 """
 
 from math import inf, sqrt
@@ -27,9 +27,9 @@ def _quadratic_roots(a, b, c):
 
 @kernel
 def quadratic_crossing(c0, c1, c2, T):
-    """The time in [0, T] at which c0 + c1 x + c2 x^2 falls through zero, or inf. At most one exists."""
+    """The time in [0, T] at which c0 + c1 x + c2 x^2 falls through zero, or inf. There is at most one."""
     if c0 <= 0.0 and c1 <= 0.0 and c2 <= 0.0:
-        return inf  # below from the start: there is nothing to fall through
+        return inf  # not above zero at any time
     low, high = _quadratic_roots(c2, c1, c0)
     for x in (low, high):
         if 0.0 <= x <= T and c1 + 2.0 * c2 * x < 0.0:

@@ -1,80 +1,65 @@
 """What bounds the balls? A ``Table``: straight noses, jaw arcs and the falls of the pockets, checked, as arrays for the kernels.
 
-World frame as in ``geometry``, which says where everything lies. What is behind the arcs needs no shape: the throat goes on straight,
-and a ball that touches it there is lost (``pocket.py``).
+Table frame as in ``geometry``, where the places and sizes are. Behind the arcs no shape is needed: the throat goes on straight, and a
+ball that touches it there is lost (``pocket.py``).
 """
 
 from dataclasses import dataclass, field
-from math import hypot, inf, sqrt
+from math import hypot, inf
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from .._check import array, choice, number, refuse, refuse_what
-from .._jit import entry
 from .._types import Batches, FlagRows, Flags, Floats, TableName, Vectors
 from ..geometry import PRESETS, Bed, Pocket, parts
 from .bounds import bounds_of, deepest, narrowest
-from .columns import (
-    FALL_RADIUS,
-    FALL_X,
-    FALL_Y,
-    JAW_COS,
-    JAW_RADIUS,
-    JAW_UX,
-    JAW_UY,
-    JAW_X,
-    JAW_Y,
-    NOSE_AXIS,
-    NOSE_HIGH,
-    NOSE_LEVEL,
-    NOSE_LOW,
-    NOSE_SIDE,
-)
+from .columns import JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
+from .placement import IN_JAW, IN_NOSE, OFF, OVER_POCKET, OVERLAP_ALLOWED, SOUND, first_fault
 from .shapes import check_fit, check_shapes
 
 MOUTH = 0.012
-"""How far past the line of the noses [m] a ball may lie still, unless a table's pockets let it lie deeper: just so far between the jaw and
-the fall of a middle pocket of snooker."""
+"""How far past the line of the noses a ball can lie at rest [m], unless the pockets of a table let it lie deeper. This is the depth between
+the jaw and the fall of a middle pocket of snooker."""
 PLAY = 1e-3
-"""Facing noses must be at least this much [m] further apart than a ball is wide."""
-OVERLAP_ALLOWED = 1e-6
-"""Input positions may overlap a ball or cushion by this much [m]: layouts printed to a micrometre. They count as touching."""
+"""Facing noses must be at least this much further apart than a ball is wide [m]."""
 SAME_BALL = 1e-9
-"""A ball's radius may differ by this much [m] from the one that a table is made for."""
+"""A ball's radius may differ by this much from the one that a table is made for [m]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A table's shape: one with a name, ``Table.preset("match")``, a rectangular one, ``Table.rectangular``, or any from the arrays below.
+    """The shape of a table: straight noses, jaw arcs and falls.
 
-    A preset is the one object of its name, also after pickling and copying; a table of your own stays what it is whatever it is called.
+    ``Table.preset("match")`` is a table with a name, ``Table.rectangular`` makes a rectangular one, and the constructor makes any table
+    from arrays. There is one object for each preset, also after pickling and copying. Arrays are copied and read-only.
 
     Parameters
     ----------
     name : str
-        What it is called in messages.
-    noses : float64 (k, 5)
-        Straight noses: axis (0: x, 1: y), side (+-1), level [m], and the range lo, hi [m] along the other axis. The ball touches where
-        side * coordinate = level - R.
-    jaws : float64 (k, 6)
-        Jaw arcs: centre x, y, radius [m], unit vector to the arc's middle, cosine of its half angle.
-    falls : float64 (k, 3)
-        Falls: centre x, y, radius [m] of the slate's edge; a ball whose centre crosses it begins to drop. Index = pocket.
+        Name of the table in messages.
+    noses : array_like, float (k, 5)
+        Straight noses: axis (0: x, 1: y), side (-1 or 1), level [m], and the range lo, hi [m] along the other axis. A ball touches the
+        nose where side * coordinate = level - R.
+    jaws : array_like, float (m, 6)
+        Jaw arcs: x and y of the centre [m], radius [m], unit vector from the centre to the middle of the arc, cosine of half its angle.
+    falls : array_like, float (p, 3)
+        Falls: x and y of the centre and radius of the slate's edge [m]. A ball whose centre crosses the edge begins to drop. The index of
+        a fall is its pocket.
     ball_radius : float, optional
-        The ball [m] that it is made for, which ``physics.R`` must then be; None: any ball.
+        Radius of the balls that the table is made for [m], in [0.001, 1]; ``physics.R`` must equal it. None: any ball.
     pockets : tuple of str
-        The names of its pockets, one a fall, or ().
+        Names of the pockets, one for each fall, or ().
 
     Attributes
     ----------
     bounds : float64 (2, 2)
-        Between which lines [m] the balls lie: of x and of y the levels of the outermost noses, infinite where there is none.
+        Lowest and highest x, lowest and highest y of the outermost noses [m]; infinite where there is no nose.
 
     Raises
     ------
     ValueError
-        If an array has another shape, or holds a nose, jaw or fall that makes no sense.
+        If an array has the wrong shape, or a nose, jaw or fall is not valid.
 
     Examples
     --------
@@ -128,6 +113,7 @@ class Table:
         Returns
         -------
         Table
+            The same object at every call.
 
         Raises
         ------
@@ -152,25 +138,27 @@ class Table:
         Parameters
         ----------
         length, width : float
-            Between facing noses [m], in (0, 100]: ``length`` along y, ``width`` along x. The origin is in the middle.
+            Distance between facing noses [m], in (0, 100]: ``length`` along y, ``width`` along x. The origin is in the middle.
         pockets : {6, 4, 0}
-            Four corners and the middles of the sides along y, corners only, or none. They are numbered anticlockwise from (-x, -y);
+            6: four corners and the middles of the sides along y; 4: the corners; 0: none. They are numbered anticlockwise from (-x, -y);
             ``Table.pockets`` has their names.
         corner, middle : Pocket, optional
-            Their shapes: ``Pocket.corner(...)``, ``Pocket.middle(...)``. None: those of snooker's match table.
+            Shapes of the pockets: ``Pocket.corner(...)``, ``Pocket.middle(...)``. None: those of snooker's match table.
         ball_radius : float, optional
-            The ball [m] that it is made for, in [0.001, 1]: shots with another ``physics.R`` are refused. None: any ball.
+            Radius of the balls that the table is made for [m], in [0.001, 1]; a shot with another ``physics.R`` raises ValueError. None:
+            any ball.
         name : str
-            What it is called in messages.
+            Name of the table in messages.
 
         Returns
         -------
         Table
+            A new table.
 
         Raises
         ------
         ValueError
-            Where sizes do not fit together: jaws that overlap along a rail, a pocket narrower than the ball.
+            If a size is out of range, or the sizes do not fit together: jaws that overlap along a rail, a pocket narrower than the ball.
 
         Examples
         --------
@@ -198,21 +186,28 @@ class Table:
 
     @classmethod
     def of(cls, table: "TableLike") -> "Table":
-        """What users may pass as ``table``.
+        """The table that an argument ``table`` stands for.
 
         Parameters
         ----------
         table : str, Table or None
-            A preset's name, a table, or None: unbounded cloth.
+            Name of a preset, a table, or None for unbounded cloth.
 
         Returns
         -------
         Table
+            The table; a ``Table`` is returned as it is.
 
         Raises
         ------
         ValueError
             For anything else.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> sn.Table.of(None).name
+        'unbounded'
         """
         if table is None:
             return UNBOUNDED
@@ -224,18 +219,14 @@ class Table:
 
     @property
     def is_preset(self) -> bool:
-        """Is this the preset of its name, and no table of somebody's own that is called so?"""
+        """Whether this is a preset, and not another table with the name of one."""
         return _PRESETS.get(self.name) is self
 
     @property
     def ball(self) -> dict[str, float]:
-        """Fields of ``Physics`` for the balls that it is made for, as in ``Physics.preset("match", **table.ball)``; {} for any ball.
+        """Fields of ``Physics`` for the balls that the table is made for, for ``Physics.preset("match", **table.ball)``.
 
-        A preset knows R, M and sin_theta (the height of its noses), a table of your own R.
-
-        Returns
-        -------
-        dict of str to float
+        A preset has R [m], M [kg] and sin_theta (the height of its noses), a table of your own has R, and a table for any ball nothing.
         """
         if self.is_preset:
             return dict(PRESETS[self.name].ball)
@@ -249,31 +240,38 @@ class Table:
         return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
 
     def _reach(self, R):
-        """(2, 2) the bounds, wider by as much as a ball of radius R may lie past them in a pocket's mouth; kept for each radius."""
+        """The bounds (2, 2), widened by how far a ball of radius R can lie past them in the mouth of a pocket. Kept for each radius."""
         if R not in self._reaches:
             past = max(MOUTH, deepest(self.jaws, self.falls, self.bounds, R))
             self._reaches[R] = self.bounds + np.array([-past, past])
         return self._reaches[R]
 
     def unfit(self, positions: Floats, R: float) -> list[int]:
-        """Which layouts are not sound here.
+        """The layouts that are not sound on this table.
 
         Parameters
         ----------
         positions : float64 (b, n, 2)
-            Places [m]; all balls are on the table.
+            Centres of the balls [m]; all balls are on the table.
         R : float
             Radius of the balls [m].
 
         Returns
         -------
         list of int
-            Their indices, in order.
+            Indices of the layouts in which a ball is off the table, in a cushion, jaw or other ball, or over a pocket; in order.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import snooker_env as sn
+        >>> sn.Table.preset("match").unfit(np.array([[(0.0, 0.0)], [(2.0, 0.0)]]), 0.02625)
+        [1]
         """
         here, found, first = np.ones(positions.shape[:2], bool), [], 0
         while True:
-            k, _, fault, _ = _first_fault(positions[first:], here[first:], self._reach(R), self.noses, self.jaws, self.falls, float(R))
-            if fault == _SOUND:
+            k, _, fault, _ = first_fault(positions[first:], here[first:], self._reach(R), self.noses, self.jaws, self.falls, float(R))
+            if fault == SOUND:
                 return found
             first += k + 1
             found.append(first - 1)
@@ -284,13 +282,13 @@ class Table:
         Parameters
         ----------
         positions : array_like, float (n, 2) or (b, n, 2)
-            Places [m] of one layout, or of b.
+            Centres of the balls of one layout, or of b layouts [m].
         R : float
             Radius of the balls [m].
         field : str
-            What messages call the positions.
+            Name of the positions in messages.
         on_table : array_like, bool (n,) or (b, n), optional
-            Balls that do not count are False.
+            False for the balls to leave out; None: all are on the table.
 
         Returns
         -------
@@ -299,7 +297,15 @@ class Table:
         Raises
         ------
         ValueError
-            That says which ball of which layout is wrong, and why.
+            If a layout is not sound, or the table is made for other balls; the message names the layout, the ball and the reason.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> sn.Table.preset("match").check([(2.0, 0.0)], 0.02625)
+        Traceback (most recent call last):
+        ...
+        ValueError: positions[0] = (2.0, 0.0): must be on the table, |x| <= 0.86275, |y| <= 1.75825 away from pockets
         """
         own = self.ball_radius
         if own is not None and abs(R - own) > SAME_BALL:
@@ -312,33 +318,33 @@ class Table:
         places = positions if many else positions[None]
         here = np.ones(places.shape[:2], bool) if on_table is None else np.array(on_table, np.bool_, order="C", ndmin=2)
         width, *pair = self._narrowest
-        if width - 2 * R < PLAY:  # it would bounce between them without end in no time
+        if width - 2 * R < PLAY:  # it would bounce between them infinitely often in a finite time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
             raise refuse_what("table.noses", f"{pair[0]} and {pair[1]}", what)
-        k, i, fault, j = _first_fault(places, here, self._reach(R), self.noses, self.jaws, self.falls, float(R))
-        if fault == _SOUND:
+        k, i, fault, j = first_fault(places, here, self._reach(R), self.noses, self.jaws, self.falls, float(R))
+        if fault == SOUND:
             return
         field = f"{field}[{k}]" if many else field
         place = f"{field}[{i}]", (float(places[k, i, 0]), float(places[k, i, 1]))
-        if fault == _OFF:
+        if fault == OFF:
             ranges = [_range(name, low + R, high - R) for name, (low, high) in zip("xy", self.bounds.tolist(), strict=True)]
             raise refuse(*place, f"must be on the table, {', '.join(filter(None, ranges))} away from pockets")
-        if fault == _IN_NOSE:
+        if fault == IN_NOSE:
             axis, side, level = self.noses[j, [NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL]]
             raise refuse(*place, f"overlaps the cushion at {'xy'[int(axis)]} = {side * level:g}")
-        if fault == _OVER_POCKET:
+        if fault == OVER_POCKET:
             raise refuse(*place, "is over a pocket")
-        if fault == _IN_JAW:
+        if fault == IN_JAW:
             raise refuse(*place, f"overlaps jaw {j} at ({self.jaws[j, JAW_X]:.4f}, {self.jaws[j, JAW_Y]:.4f})")
         depth = 2 * R - float(hypot(*(places[k, i] - places[k, j])))
         raise refuse_what(field, f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
 
 
-TableLike: TypeAlias = Table | TableName | None  # what users may pass as ``table``
+TableLike: TypeAlias = Table | TableName | None  # the type of an argument ``table``
 
 
 def _again(name, noses, jaws, falls, ball_radius, pockets):
-    """A table of one's own as it was: what pickling and copying call."""
+    """A table that is no preset; pickling and copying call it."""
     return Table(name, noses, jaws, falls, ball_radius=ball_radius, pockets=pockets)
 
 
@@ -347,48 +353,10 @@ def _quoted(name):
 
 
 def _range(name: str, low: float, high: float) -> str | None:
-    """A range in words; None of one without ends."""
+    """A range as text; None for an infinite one."""
     if low == -inf and high == inf:
         return None
     return f"|{name}| <= {high:.6g}" if low == -high else f"{low:.6g} <= {name} <= {high:.6g}"
-
-
-_SOUND, _OFF, _IN_NOSE, _OVER_POCKET, _IN_JAW, _IN_BALL = range(6)
-
-
-@entry
-def _first_fault(positions, on_table, reach, noses, jaws, falls, R):
-    """The first unsound place of positions (b, n, 2): table, ball, what is wrong, and with which nose, fall, jaw or ball."""
-    for k in range(positions.shape[0]):
-        for i in range(positions.shape[1]):
-            if not on_table[k, i]:
-                continue
-            x, y = positions[k, i, 0], positions[k, i, 1]
-            if not (reach[0, 0] < x < reach[0, 1] and reach[1, 0] < y < reach[1, 1]):
-                return k, i, _OFF, -1
-            for j in range(noses.shape[0]):
-                along, across = (y, x) if noses[j, NOSE_AXIS] == 0.0 else (x, y)
-                if (
-                    noses[j, NOSE_LOW] <= along <= noses[j, NOSE_HIGH]
-                    and noses[j, NOSE_LEVEL] - R - noses[j, NOSE_SIDE] * across < -OVERLAP_ALLOWED
-                ):
-                    return k, i, _IN_NOSE, j
-            for j in range(falls.shape[0]):
-                dx, dy = x - falls[j, FALL_X], y - falls[j, FALL_Y]
-                if dx * dx + dy * dy < falls[j, FALL_RADIUS] * falls[j, FALL_RADIUS]:
-                    return k, i, _OVER_POCKET, j
-            for j in range(jaws.shape[0]):
-                dx, dy = x - jaws[j, JAW_X], y - jaws[j, JAW_Y]
-                d2, least = dx * dx + dy * dy, jaws[j, JAW_RADIUS] + R - OVERLAP_ALLOWED
-                if d2 < least * least and dx * jaws[j, JAW_UX] + dy * jaws[j, JAW_UY] >= jaws[j, JAW_COS] * sqrt(d2):
-                    return k, i, _IN_JAW, j
-        least = 2.0 * R - OVERLAP_ALLOWED
-        for i in range(positions.shape[1]):
-            for j in range(i + 1, positions.shape[1]):
-                dx, dy = positions[k, j, 0] - positions[k, i, 0], positions[k, j, 1] - positions[k, i, 1]
-                if dx * dx + dy * dy < least * least and on_table[k, i] and on_table[k, j]:
-                    return k, i, _IN_BALL, j
-    return -1, -1, _SOUND, -1
 
 
 def _preset(name):

@@ -1,8 +1,12 @@
-"""Planning: many strokes played on copies of positions, by the rules, under given noise samples, and the geometry that finds strokes.
+"""Planning: play many strokes on copies of positions, under given noise samples, and find strokes by geometry.
 
-A planner asks three questions. Which strokes are there (``pots``, ``action_masks``, ``obstructions``, ``clear_paths``)? What is each one
-as an action (``as_actions``, ``actions_of``, ``pot_aim``)? What does it lead to (``Planner.play``; ``Planner.stops`` also says where each
-ball stopped)? What is left is valued by the caller, or by a rule of thumb (``prospects_of``).
+A planner works in three steps:
+
+1. Find strokes: ``pots``, ``action_masks``, ``obstructions``, ``clear_paths``.
+2. Turn them into actions: ``as_actions``, ``actions_of``, ``pot_aim``.
+3. Play them: ``Planner.play`` returns points and afterstates; ``Planner.stops`` also returns where each ball stopped.
+
+The caller assigns a value to each afterstate. ``prospects_of`` is a rule of thumb for that.
 
 >>> import snooker_env as sn
 >>> from snooker_env.planning import Planner, Position, pots

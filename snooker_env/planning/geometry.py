@@ -1,6 +1,6 @@
-"""Which strokes does the geometry offer, and what is in the way? Direct pots, balls beside a path, clear paths, of many positions at once.
+"""Which strokes does the geometry offer, and what is in the way? Direct pots, balls beside a path and clear paths.
 
-Straight lines only: no throw, no spin, no cushion. ``pot_aim`` corrects a line for what a ball does.
+The geometry is that of straight lines: no throw, no spin and no cushions. ``pot_aim`` corrects the aim for throw, swerve and spin.
 """
 
 from collections.abc import Sequence
@@ -23,20 +23,30 @@ from .positions import Positions, PositionsLike, rows_of
 
 
 class Pots(NamedTuple):
-    """The widest direct pots of m positions, widest first; rows without so many end with -1 and 0.
+    """The direct pots of m positions, widest tolerance first, as returned by ``pots``.
+
+    Each position has ``most`` columns. Where a position has fewer pots, the remaining columns hold -1 in ``ball`` and ``pocket`` and 0
+    in the other arrays.
 
     Attributes
     ----------
-    ball : int64 (m, most)
-        The ball to pot, -1 where there is none.
-    pocket : int64 (m, most)
-        Index of ``snooker_env.POCKETS``, -1 where there is none.
-    ghost : float64 (m, most, 2)
-        Where the cue ball's centre must meet the ball [m].
-    cut : float64 (m, most)
-        Angle between the cue ball's path and the object ball's [rad].
-    tolerance : float64 (m, most)
-        How far the aim may err, about [rad] (``snooker_env.game.pots``).
+    ball : numpy.ndarray
+        int64 (m, most). Id of the ball to pot; -1 for no pot.
+    pocket : numpy.ndarray
+        int64 (m, most). Index into ``snooker_env.POCKETS``; -1 for no pot.
+    ghost : numpy.ndarray
+        float64 (m, most, 2). Centre of the cue ball [m] at the moment in which it touches the object ball (the ghost ball).
+    cut : numpy.ndarray
+        float64 (m, most). Cut angle [rad]: the angle between the paths of the cue ball and of the object ball, 0 for a straight pot.
+    tolerance : numpy.ndarray
+        float64 (m, most). Approximate largest error of the aim [rad] with which the ball is still potted.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, pots
+    >>> found = pots(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), most=1)
+    >>> found.ghost[0, 0].round(4).tolist(), found.cut[0, 0].round(3).item()
+    ([-0.0495, 1.443], 1.265)
     """
 
     ball: NDArray[np.int64]
@@ -47,14 +57,21 @@ class Pots(NamedTuple):
 
 
 class Paths(NamedTuple):
-    """Whether the cue ball has a clear straight path in each of m positions.
+    """Whether the cue ball has a clear straight path in each of m positions, as returned by ``clear_paths``.
 
     Attributes
     ----------
-    any_part : bool (m,)
-        To some part of a ball on.
-    full_ball : bool (m,)
-        To the full face of a ball on.
+    any_part : numpy.ndarray
+        bool (m,). True if a straight path leads to some part of a ball on.
+    full_ball : numpy.ndarray
+        bool (m,). True if a straight path leads to the full face of a ball on.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, clear_paths
+    >>> paths = clear_paths(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)))
+    >>> paths.any_part.tolist(), paths.full_ball.tolist()
+    ([True], [True])
     """
 
     any_part: NDArray[np.bool_]
@@ -73,17 +90,24 @@ def _pots(positions, on_table, game, ball, pocket, ghost, cut, tolerance):
 
 
 def pots(positions: PositionsLike, most: int = POTS) -> Pots:
-    """The direct pots of balls on that straight lines offer, no other ball in the way.
+    """Find the direct pots of balls on: straight paths to a pocket with no other ball in the way.
 
     Parameters
     ----------
-    positions : whatever ``Positions.of`` takes
-    most : int
-        How many of each position at most; the default is what ``action="discrete"`` chooses from.
+    positions : PositionsLike
+        The m positions: anything that ``Positions.of`` accepts.
+    most : int, optional
+        Largest number of pots for each position, in [1, 126]; default 4, the number that ``action="discrete"`` chooses from.
 
     Returns
     -------
     Pots
+        Arrays with shape (m, most), widest tolerance first.
+
+    Raises
+    ------
+    ValueError
+        If ``positions`` holds no positions or ``most`` is out of range.
 
     Examples
     --------
@@ -115,27 +139,28 @@ def _obstructions(positions, on_table, rows, starts, ends, reach, out):
 def obstructions(
     positions: PositionsLike, rows: Integers, starts: Vectors, ends: Vectors, *, ignore: Sequence[int] = ()
 ) -> NDArray[np.bool_]:
-    """Which balls are in the way of a ball that runs straight from one place to another: their centres are nearer than 2 R to its path.
+    """Find the balls in the way of a ball that runs straight: those whose centres are nearer than 2 R to its path.
 
     Parameters
     ----------
-    positions : whatever ``Positions.of`` takes
-    rows : array_like, int (n,)
-        On which position each path lies.
-    starts, ends : array_like, float (n, 2)
-        The path of the ball's centre [m].
-    ignore : array_like, int, (j,) or (n, j)
-        Balls that do not count: the one that runs, and the one it is sent at.
+    positions : PositionsLike
+        The m positions: anything that ``Positions.of`` accepts.
+    rows : array_like
+        int (n,). Row of ``positions`` for each path, in [0, m).
+    starts, ends : array_like
+        float (n, 2). First and last point of the path of the running ball's centre [m].
+    ignore : array_like, optional
+        int (j,) or (n, j). Ids of balls that do not count, usually the running ball and its target; default none.
 
     Returns
     -------
-    bool (n, 22)
-        No True in a row: the path is clear.
+    numpy.ndarray
+        bool (n, 22). True for each ball in the way; a row without True is a clear path.
 
     Raises
     ------
     ValueError
-        If a row is out of range or an array has another shape.
+        If a row or an id is out of range, or if an array has the wrong shape.
 
     Examples
     --------
@@ -168,16 +193,23 @@ def _clear_paths(positions, on_table, game, any_part, full_ball):
 
 
 def clear_paths(positions: PositionsLike) -> Paths:
-    """Whether the cue ball, rolling straight from where it lies, can reach a ball on before any other.
+    """Determine whether the cue ball can roll straight from where it lies to a ball on without touching another ball first.
 
     Parameters
     ----------
-    positions : whatever ``Positions.of`` takes
+    positions : PositionsLike
+        The m positions: anything that ``Positions.of`` accepts.
 
     Returns
     -------
     Paths
-        By the two tests of the miss rule (``snooker_env.game.paths``).
+        Two bool arrays (m,), for the two tests of the foul-and-miss rule (``snooker_env.game.paths``). False where the cue ball is off
+        the table.
+
+    Raises
+    ------
+    ValueError
+        If ``positions`` holds no positions.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What would strokes lead to? ``Planner`` plays them on copies of positions, under given noise samples, with the rules, on all cores."""
+"""What would strokes lead to? ``Planner`` plays them on copies of positions, under given noise samples, by the rules, on all cores."""
 
 import copy
 import threading
@@ -26,18 +26,25 @@ from .stops import Stops, WatchedVisits
 
 
 class Outcomes(NamedTuple):
-    """What n strokes led to.
+    """What n strokes led to, as returned by ``Planner.play``.
 
     Attributes
     ----------
-    points : float64 (n,)
-        Points scored; 0 for a miss or a foul.
-    goes_on : bool (n,)
-        Whether the visit goes on.
+    points : numpy.ndarray
+        float64 (n,). Points scored; 0 for a miss or a foul.
+    goes_on : numpy.ndarray
+        bool (n,). True if the visit continues after the stroke.
     afterstates : Positions
-        n rows: where the balls came to rest, colours respotted, and what is on next.
-    observations : float32 (n, 121)
-        The flat observations of the afterstates, as ``Snooker-v0`` shows them in a visit.
+        n rows: the balls at rest, with colours respotted, and the ball on for the next stroke.
+    observations : numpy.ndarray
+        float32 (n, 121). The flat observation of each afterstate, as ``Snooker-v0`` returns it with ``task="visit"``.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Planner, Position
+    >>> outcomes = Planner({"action": "discrete"}).play(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0], [67])
+    >>> outcomes.points.tolist(), outcomes.goes_on.tolist(), outcomes.afterstates.over.tolist()
+    ([7.0], [False], [True])
     """
 
     points: NDArray[np.float64]
@@ -47,26 +54,28 @@ class Outcomes(NamedTuple):
 
 
 class Planner:
-    """Plays strokes on copies of positions, as the environment would: same physics, same rules, the same errors for the same keys.
+    """Plays strokes on copies of positions exactly as the environment would: same physics, same rules, same errors for the same keys.
 
-    Every stroke is judged as one of a *visit* (``task="visit"``): the visit ends with the first miss, foul or clearance. For an
-    environment that plays whole frames this says what a stroke scores and leaves while its player scores; penalties, free balls,
-    the foul-and-miss rule and the other player are not planned.
+    Each stroke is judged as a stroke of a *visit* (``task="visit"``): the visit ends with the first miss, foul or clearance. With an
+    environment that plays whole frames, a planner therefore covers what the player scores and leaves within the current visit. It does
+    not cover penalties, free balls, the foul-and-miss rule or the opponent.
 
     Parameters
     ----------
-    env_or_options : environment, Options or dict
-        An environment, of one table or many, wrapped or not, a match too; or its options, as ``Options`` or as the keyword arguments of
-        ``gymnasium.make("Snooker-v0", ...)``. They say how actions are read, the noise, the physics, the table and the fidelity.
+    env_or_options : Env, VectorEnv, AECEnv, Options or dict
+        An environment of this package (one table or many, wrapped or not, or a match), an ``Options``, or the keyword arguments of
+        ``gymnasium.make("Snooker-v0", ...)`` as a dict. They define the action format, the noise, the physics, the table and the
+        fidelity.
     noise : str, dict or Noise, optional
-        Execution noise to plan with in place of its own; "none": strokes come out as intended.
+        Execution noise for planning in place of the environment's own. "none" plays all strokes as intended. Default: the noise of
+        ``env_or_options``.
     threads : int, optional
-        How many to use; all processors by default. Results do not depend on it.
+        Number of threads, in [1, 1024]; default one for each available processor. Results do not depend on it.
 
     Raises
     ------
     ValueError
-        If an argument is none of these.
+        If an argument has the wrong type or is out of range.
 
     Examples
     --------
@@ -76,7 +85,7 @@ class Planner:
     >>> _ = env.reset(seed=0)
     >>> planner = sn.planning.Planner(env)
     >>> choices = np.flatnonzero(env.action_masks())[:3]
-    >>> keys = np.arange(20, dtype=np.uint64)  # each choice meets the same 20 noise samples
+    >>> keys = np.arange(20, dtype=np.uint64)  # each choice is played with the same 20 noise samples
     >>> outcomes = planner.play(env, np.zeros(60, int), np.repeat(choices, 20), np.tile(keys, 3))
     >>> outcomes.points.reshape(3, 20).mean(axis=1).shape, planner.shots
     ((3,), 60)
@@ -87,7 +96,7 @@ class Planner:
     ):
         rules = _rules_of(env_or_options)
         errors = rules.noise if noise is None else Noise.of(noise)
-        self._rules = replace(rules, noise=errors, reward=REWARDS[0], opponent=None)
+        self._rules = replace(rules, noise=errors, reward=REWARDS[0], opponent=None, one_stroke=False)
         self._threads = Threads(min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024))
         self._visits, self._watched = Visits(self._rules, 0), WatchedVisits(self._rules, 0)
         self._lock = threading.Lock()
@@ -95,37 +104,37 @@ class Planner:
 
     @property
     def shots(self) -> int:
-        """Strokes played so far."""
+        """Number of strokes played so far, an int."""
         return self._shots
 
     @property
     def threads(self) -> int:
-        """How many threads play."""
+        """Number of threads that play strokes, an int."""
         return self._threads.threads
 
     @property
     def noise(self) -> Noise:
-        """The execution noise that strokes are played with."""
+        """The execution noise, a ``Noise``."""
         return self._rules.noise
 
     @property
     def physics(self) -> Physics:
-        """The world that strokes are played in."""
+        """The physical constants, a ``Physics``."""
         return self._rules.physics
 
     @property
     def table(self) -> Table:
-        """The table that strokes are played on."""
+        """The table, a ``Table``."""
         return self._rules.table
 
     @property
     def action_space(self) -> Any:
-        """The space that rows of actions are from."""
+        """The ``gymnasium.Space`` of one action."""
         return self._rules.actions.space
 
     @property
     def discrete(self) -> bool:
-        """Whether actions are choices (``action="discrete"``)."""
+        """Whether actions are integers (``action="discrete"``), a bool."""
         return self._rules.actions.size == 1
 
     def play(
@@ -135,32 +144,42 @@ class Planner:
 
         Parameters
         ----------
-        positions : whatever ``Positions.of`` takes
-            They are left as they are.
-        rows : array_like, int (n,)
-            Which position each stroke is played on.
-        actions : array_like, float (n, k) or int (n,)
-            Rows of the box action space, or choices with ``action="discrete"``.
-        keys : array_like, int (n,) or (n, 2), in [0, 2**64)
-            The noise sample of each stroke: the key of its random stream, or key and counter as a state holds them under "stream". The
-            same key gives the same errors of execution, whatever the stroke (common random numbers). Without noise it may be left out.
+        positions : PositionsLike
+            The m positions: anything that ``Positions.of`` accepts. They are not changed.
+        rows : array_like
+            int (n,). Row of ``positions`` for each stroke, in [0, m).
+        actions : array_like
+            float (n, k): actions of the box action space; or int (n,): choices, with ``action="discrete"``.
+        keys : array_like, optional
+            int (n,) or (n, 2), in [0, 2**64). The noise sample of each stroke: the key of its random stream, or key and counter as a saved
+            state holds them under "stream". Equal keys give equal execution errors for every stroke (common random numbers). Required
+            unless the planner has no noise.
 
         Returns
         -------
         Outcomes
-            points, goes_on, afterstates, observations.
+            ``points``, ``goes_on``, ``afterstates`` and ``observations``, with n rows each.
 
         Raises
         ------
         ValueError
-            If a row is out of range, an action is not in the action space, an array has another shape, or a position that is played
-            is not sound or has no stroke left.
+            If a row is out of range, an action is not in the action space, an array has the wrong shape, or a position is invalid or has
+            no stroke left to play.
         SimulationError
             If a shot cannot be computed.
 
         Notes
         -----
-        May be called from several threads at once. A stroke costs about 20 us; below a few dozen strokes a call the checks count too.
+        Several threads may call this method at once. A stroke costs about 20 us; in calls with fewer than a few dozen strokes the input
+        checks are a noticeable part of the cost.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Planner, Position
+        >>> planner = Planner({"action": "discrete", "noise": "club"})
+        >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+        >>> planner.play(position, [0, 0, 0], [67, 67, 67], keys=[1, 2, 3]).points.shape
+        (3,)
         """
         after, out = self._strokes(copy.copy(self._visits), positions, rows, actions, keys)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
@@ -168,21 +187,30 @@ class Planner:
     def stops(
         self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers, keys: Integers | Sequence[Integers] | None = None
     ) -> Stops:
-        """Play n strokes as ``play`` does, and keep where each ball stopped.
+        """Play n strokes as ``play`` does, and return where each ball stopped.
 
         Parameters
         ----------
-        positions, rows, actions, keys
-            As of ``play``.
+        positions : PositionsLike
+            The m positions, see ``play``.
+        rows : array_like
+            int (n,). Row of ``positions`` for each stroke.
+        actions : array_like
+            float (n, k) or int (n,), see ``play``.
+        keys : array_like, optional
+            int (n,) or (n, 2), the noise samples, see ``play``.
 
         Returns
         -------
         Stops
+            Arrays with n rows each.
 
         Raises
         ------
-        ValueError, SimulationError
-            As ``play``.
+        ValueError
+            For the same reasons as ``play``.
+        SimulationError
+            If a shot cannot be computed.
 
         Examples
         --------
@@ -201,14 +229,14 @@ class Planner:
         self, visits: Visits, positions: PositionsLike, rows: Integers, actions: Vectors | Integers,
         keys: Integers | Sequence[Integers] | None,
     ) -> tuple[Positions, StepOutput]:  # fmt: skip
-        """Check and play strokes on fresh ``visits``, each on a copy of its position: the afterstates, and what a step returns of them."""
+        """Check the arguments and play the strokes on fresh ``visits``. Returns the afterstates and the output of the step."""
         at = Positions.of(positions)
         which = rows_of(at, rows)
         n = len(which)
         rows_of_actions = self._rules.actions.check_many(actions, n)
         streams = _streams(keys, n, self.noise.silent)
         check_played(at, which, self.table, self.physics.R)
-        after = at[which]  # the one place that knows how visits are played: each row becomes its afterstate
+        after = at[which]  # a visit is played in place: each row becomes its afterstate
         visits.n, visits.positions, visits.on_table, visits.game, visits.streams = n, after.positions, after.on_table, after.game, streams
         out = visits.output()
         visits.step(rows_of_actions, np.zeros(n, np.bool_), out, self._threads)
@@ -217,50 +245,93 @@ class Planner:
         return after, out
 
     def as_actions(self, positions: PositionsLike, rows: Integers, choices: Integers) -> NDArray[np.float32]:
-        """``snooker_env.planning.as_actions`` in this planner's world.
+        """Convert choices of ``action="discrete"`` to box actions, with this planner's physics and fidelity.
 
         Parameters
         ----------
-        positions : whatever ``Positions.of`` takes
-        rows, choices : array_like, int (n,)
+        positions : PositionsLike
+            The m positions: anything that ``Positions.of`` accepts.
+        rows : array_like
+            int (n,). Row of ``positions`` for each choice, in [0, m).
+        choices : array_like
+            int (n,). Choices, in [0, 540).
 
         Returns
         -------
-        float32 (n, 4)
-            Actions of ``aim="absolute"``.
+        numpy.ndarray
+            float32 (n, 4). Actions of ``aim="absolute"``.
+
+        Raises
+        ------
+        ValueError
+            If a row or a choice is out of range, or if the planner itself reads actions with another ``aim``.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Planner, Position
+        >>> planner = Planner({"noise": "none"})
+        >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+        >>> planner.play(position, [0], planner.as_actions(position, [0], [67])).points.tolist()
+        [7.0]
         """
         if isinstance(self._rules.actions, Actions) and self._rules.actions.aim != "absolute":
-            raise refuse("aim", self._rules.actions.aim, 'must be "absolute": what comes out would be read otherwise by this planner')
+            raise refuse("aim", self._rules.actions.aim, 'must be "absolute": this planner would read the result differently')
         return strokes.solved_choices(Positions.of(positions), rows, choices, (self.physics, self._rules.fidelity))
 
     def pot_aim(
         self, positions: PositionsLike, rows: Integers, balls: Integers, targets: Vectors, speeds: Scalars, *, side: Scalars = 0.0,
         top: Scalars = 0.0, elevation: Scalars = 0.0, ghosts: Vectors | None = None,
     ) -> NDArray[np.float64]:  # fmt: skip
-        """``snooker_env.planning.pot_aim`` in this planner's world.
+        """Solve the direction in which the cue ball must leave to pot a ball, with this planner's physics and fidelity.
 
         Parameters
         ----------
-        positions, rows, balls, targets, speeds, side, top, elevation, ghosts
-            As there.
+        positions : PositionsLike
+            The m positions: anything that ``Positions.of`` accepts.
+        rows : array_like
+            int (n,). Row of ``positions`` for each ball, in [0, m).
+        balls : array_like
+            int (n,). Id of the object ball, in [1, 21].
+        targets : array_like
+            float (n, 2). Point to which the ball is to be sent [m].
+        speeds : array_like or float
+            float, scalar or (n,). Cue speeds [m/s], above 0.
+        side, top : array_like or float, optional
+            float, scalar or (n,). Tip offsets over R, to the right and up; default 0.
+        elevation : array_like or float, optional
+            float, scalar or (n,). Elevation of the cue [rad]; default 0.
+        ghosts : array_like, optional
+            float (n, 2). Ghost-ball centres of the straight line [m], see ``snooker_env.planning.pot_aim``.
 
         Returns
         -------
-        float64 (n,)
-            Directions of the cue ball [rad].
+        numpy.ndarray
+            float64 (n,). Directions of the cue ball [rad], anticlockwise from +x.
+
+        Raises
+        ------
+        ValueError
+            If a number is out of range, a ball is off the table, or an array has the wrong shape.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Planner, Position
+        >>> position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)])
+        >>> float(Planner({}).pot_aim(position, [0], [1], [(0.8, 0.8)], 2.3)[0].round(3))
+        0.785
         """
-        world = (self.physics, self._rules.fidelity)
-        return strokes.solved_aims(Positions.of(positions), rows, balls, targets, speeds, side, top, elevation, ghosts, world)
+        dynamics = (self.physics, self._rules.fidelity)
+        return strokes.solved_aims(Positions.of(positions), rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_lock"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state, _lock=threading.Lock())  # which belongs to one process
+        self.__dict__.update(state, _lock=threading.Lock())  # a lock belongs to one process
 
 
 def _rules_of(source: Any) -> Rules:
-    """How an environment plays, or one of these options."""
+    """The ``Rules`` of an environment or of its options."""
     if isinstance(source, Mapping):
         source = options_of(None, source)
     options = source if isinstance(source, Options) else getattr(bare(source), "options", None)
@@ -278,7 +349,7 @@ def _streams(keys: Integers | Sequence[Integers] | None, n: int, silent: bool) -
             return streams
         raise refuse("keys", None, f"must be given with execution noise: {n} integers in [0, 2**64), a noise sample for each stroke")
     allowed = f"must be {n} integers in [0, 2**64), a noise sample for each stroke"
-    given = keys if isinstance(keys, np.ndarray) else np.array(keys, object)  # NumPy makes floats of a list of large and small integers
+    given = keys if isinstance(keys, np.ndarray) else np.array(keys, object)  # NumPy converts a list of large and small integers to floats
     if given.dtype == object and all(isinstance(k, int | np.integer) and 0 <= k < 2**64 for k in given.flat):
         given = given.astype(np.uint64)
     if given.shape not in ((n,), (n, 2)):

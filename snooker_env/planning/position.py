@@ -1,4 +1,4 @@
-"""How does one write down a position? ``Position``: the balls by name and what is on, checked; and the arrays that it stands for."""
+"""How is a position written down? ``Position``: the balls by name and the ball on, validated; and the arrays for the kernels."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import InitVar, asdict, dataclass
@@ -29,38 +29,38 @@ from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
 
 ON = tuple(ball.name.lower() for ball in BallOn)
-"""What may be on, in words."""
+"""The names of all values of "on"."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Position:
-    """The balls on a table in the middle of a visit, in words. It is checked when it is made, and never changes.
+    """The balls on a table in the middle of a visit, by name. A ``Position`` is validated when it is made, and it is immutable.
 
     Parameters
     ----------
     cue : (float, float), optional
-        The cue ball's centre [m]: origin at the table's centre, +x to the yellow side, +y to the black end. May be left out with
-        ``in_hand``: then it lies at the free place of the D nearest to its usual place for the break.
-    reds : sequence of (float, float)
-        Up to 15 places [m]. They get the ids 1, 2, ... in this order.
+        Centre of the cue ball [m]. The origin is the table's centre, +x points to the yellow side and +y to the black end. It may be
+        left out with ``in_hand=True``: then the cue ball lies at the free place of the D nearest to its usual place for the break-off.
+    reds : sequence of (float, float), optional
+        Up to 15 centres [m]. The reds get the ids 1, 2, ... in this order. Default: none.
     yellow, green, brown, blue, pink, black : (float, float), optional
-        Places [m]. A ball that is left out is off the table.
+        Centres [m]. A ball that is left out is off the table.
     on : str, optional
-        What must be struck first: "red", "any_colour" (a red was just potted), or a colour. Left out: red while there is one, else the
-        lowest colour.
-    in_hand : bool
-        Whether the cue ball may be placed in the D before the stroke.
-    points : int
-        Points of the visit so far.
-    over : bool
-        Whether the visit has ended: then anything may be on, and the cue ball may be missing.
-    table : str, Table or None
-        The table that the balls must fit on; it is not kept. None: unbounded cloth.
+        What must be struck first: "red", "any_colour" (a red was just potted), or the name of a colour. Default: "red" while there is a
+        red, else the lowest colour.
+    in_hand : bool, optional
+        Whether the cue ball may be placed in the D before the stroke; default False.
+    points : int, optional
+        Points of the visit so far, in [0, 155]; default 0.
+    over : bool, optional
+        Whether the visit has ended; default False. After its end anything may be on, and the cue ball may be missing.
+    table : str, Table or None, optional
+        The table that the balls must fit on; it is not stored. None stands for unbounded cloth. Default: "match".
 
     Raises
     ------
     ValueError
-        If a ball is off the table, in a cushion or over a pocket, if two balls overlap, or if what is on cannot be.
+        If a ball is off the table, in a cushion or over a pocket, if two balls overlap, or if the ball on contradicts the balls.
 
     Examples
     --------
@@ -123,33 +123,56 @@ class Position:
         return positions, on_table
 
     def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
-        """The position as ``Positions`` holds it.
+        """Return the position as the arrays that ``Positions`` holds.
 
         Returns
         -------
-        positions : float64 (22, 2)
-            Centres [m]; 0 for a ball off the table.
-        on_table : bool (22,)
-        game : int64 (5,)
-            What is on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit is over, strokes (0).
+        positions : numpy.ndarray
+            float64 (22, 2). Centres [m]; 0 for a ball off the table.
+        on_table : numpy.ndarray
+            bool (22,). Which balls are on the table.
+        game : numpy.ndarray
+            int64 (5,). The ball on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit is over, strokes (0).
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Position
+        >>> positions, on_table, game = Position(cue=(0.0, 0.2), black=(0.0, 1.4605)).arrays()
+        >>> positions[0].tolist(), on_table.nonzero()[0].tolist(), game.tolist()
+        ([0.0, 0.2], [0, 21], [7, 0, 0, 0, 0])
         """
         game = np.array([BallOn[str(self.on).upper()], self.in_hand, self.points, self.over, 0], np.int64)
         return *self._layout(), game
 
     @classmethod
     def of_arrays(cls, positions: Vectors, on_table: Flags, game: Integers) -> "Position":
-        """The position in words that these arrays of one table stand for. Reds are numbered anew.
+        """Make a ``Position`` from the arrays of one table. Reds are numbered anew.
 
         Parameters
         ----------
-        positions : array_like, float (22, 2)
-        on_table : array_like, bool (22,)
-        game : array_like, int (5,)
-            As ``arrays`` gives them.
+        positions : array_like
+            float (22, 2). Centres [m].
+        on_table : array_like
+            bool (22,). Which balls are on the table.
+        game : array_like
+            int (5,). As returned by ``arrays``.
 
         Returns
         -------
         Position
+            The same position by names.
+
+        Raises
+        ------
+        ValueError
+            If the balls overlap or the ball on contradicts them.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Position
+        >>> position = Position(cue=(0.0, 0.2), black=(0.0, 1.4605))
+        >>> Position.of_arrays(*position.arrays()) == position
+        True
         """
         places, there = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
@@ -159,11 +182,18 @@ class Position:
         return cls(**named, reds=reds, on=on, in_hand=bool(in_hand), points=points, over=bool(over), table=None)
 
     def to_dict(self) -> dict[str, Any]:
-        """The position as JSON types, without the balls off the table; ``Position(**...)`` makes it again.
+        """Return the position as JSON types, without the balls off the table.
 
         Returns
         -------
         dict
+            Fields and their values; ``Position(**fields)`` makes the position again.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Position
+        >>> Position(cue=(0.0, 0.2), black=(0.0, 1.4605)).to_dict()
+        {'cue': [0.0, 0.2], 'reds': [], 'black': [0.0, 1.4605], 'on': 'black', 'in_hand': False, 'points': 0, 'over': False}
         """
         kept = asdict(self) | {"reds": [list(place) for place in self.reds]}
         for name in ("cue", *COLOUR_NAMES):
@@ -172,23 +202,24 @@ class Position:
 
     @classmethod
     def from_dict(cls, given: Mapping[str, Any], *, table: TableLike = "match") -> "Position":
-        """The position that ``to_dict`` has described.
+        """Make the position that a dict of ``to_dict`` describes.
 
         Parameters
         ----------
         given : dict
-            Fields of ``Position`` as JSON types. A ball that is left out, or None, is off the table.
-        table : str, Table or None
-            As of ``Position``.
+            Fields of ``Position`` as JSON types. A ball that is left out or None is off the table.
+        table : str, Table or None, optional
+            The table that the balls must fit on, see ``Position``; default "match".
 
         Returns
         -------
         Position
+            The validated position.
 
         Raises
         ------
         ValueError
-            For an unknown key, and as ``Position``.
+            For an unknown key, and for the same reasons as ``Position``.
 
         Examples
         --------
@@ -196,17 +227,17 @@ class Position:
         >>> Position.from_dict({"cue": [0.0, 0.0], "black": [0.0, 1.4605]}).on
         'black'
         """
-        from . import position_file  # which needs this module
+        from . import position_file  # here: it imports this module
 
         return position_file.of_dict(given, table)
 
     def save(self, path: str | Path) -> None:
-        """Write the position to a file, as small JSON: that of ``to_dict``.
+        """Write the position to a file as JSON, see ``to_dict``.
 
         Parameters
         ----------
         path : str or Path
-            An old file of that name is replaced, at once and whole.
+            The file. An existing file is replaced in one step, so that it is never half written.
 
         Returns
         -------
@@ -215,7 +246,17 @@ class Position:
         Raises
         ------
         OSError
-            If it cannot be written.
+            If the file cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> from snooker_env.planning import Position
+        >>> file = Path(tempfile.mkdtemp()) / "position.json"
+        >>> Position(cue=(0.0, 0.2), black=(0.0, 1.4605)).save(file)
+        >>> Position.load(file).cue
+        (0.0, 0.2)
         """
         from . import position_file
 
@@ -223,24 +264,36 @@ class Position:
 
     @classmethod
     def load(cls, path: str | Path, *, table: TableLike = "match") -> "Position":
-        """Read a position from a file of ``save``.
+        """Read a position from a file that ``save`` wrote, or that was written manually.
 
         Parameters
         ----------
         path : str or Path
-        table : str, Table or None
-            The table that the balls must fit on, as of ``Position``.
+            The file of JSON.
+        table : str, Table or None, optional
+            The table that the balls must fit on, see ``Position``; default "match".
 
         Returns
         -------
         Position
+            The validated position.
 
         Raises
         ------
         ValueError
-            If the file does not hold the JSON of a position: the message names the key that is unknown, or the ball that is wrong.
+            If the file does not hold the JSON of a position. The message names the unknown key or the ball that is wrong.
         OSError
-            If it cannot be read.
+            If the file cannot be read.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> from snooker_env.planning import Position
+        >>> file = Path(tempfile.mkdtemp()) / "position.json"
+        >>> _ = file.write_text('{"cue": [0.0, 0.2], "black": [0.0, 1.4605]}')
+        >>> Position.load(file).on
+        'black'
         """
         from . import position_file
 
@@ -260,12 +313,12 @@ def _named(on: Any, balls: int) -> str:
 
 
 def _name(ball: int) -> str:
-    """How ``Position`` calls a ball."""
+    """The name of a ball as a field of ``Position``."""
     return "cue" if ball == CUE else f"reds[{ball - 1}]" if ball <= N_REDS else COLOUR_NAMES[ball - N_REDS - 1]
 
 
 def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], table: Table) -> None:
-    """Raise ValueError, by the ball's name, unless the balls fit on the table."""
+    """Raise ValueError, naming the ball, unless the balls fit on the table."""
     for ball in np.flatnonzero(on_table).tolist():
         try:
             table.check(positions[ball : ball + 1], BALL_RADIUS, _name(ball))
@@ -282,7 +335,7 @@ def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], t
 
 
 def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue: str, balls: str) -> None:
-    """Raise ValueError unless there is a stroke to play. ``on``, ``cue``, ``balls``: how the fields are called.
+    """Raise ValueError unless there is a stroke to play. ``on``, ``cue``, ``balls``: names of the fields for the message.
 
     The rules are those of a saved state (``tasks.states.checked``).
     """

@@ -1,4 +1,4 @@
-"""How is a position kept in a file? As small JSON: written whole or not at all, and read without guessing at anything."""
+"""How is a position kept in a file? As a small JSON object, replaced in one step, and read with strict checks."""
 
 import json
 from collections.abc import Mapping
@@ -16,13 +16,13 @@ NAMES = tuple(f.name for f in fields(Position))
 
 
 def of_dict(given: Any, table: TableLike, field: str = "position") -> Position:
-    """The position of a dict of JSON types. ValueError, naming the key, for whatever does not belong there."""
+    """The position of a dict of JSON types. ValueError names any key that is not allowed."""
     if not isinstance(given, Mapping):
         raise refuse_what(field, f"a {type(given).__name__}", f"must be a dict with keys of {', '.join(NAMES)}")
     for key in given:
         choice(f"key of {field}", key, NAMES)
     for key, value in given.items():
-        if any(isinstance(x, bool) for place in _places(value) for x in place):  # numpy reads them as 0 and 1
+        if any(isinstance(x, bool) for place in _places(value) for x in place):  # NumPy converts them to 0 and 1
             raise refuse(key, value, "must be two real numbers" + (" for each ball" if key == "reds" else ""))
     return Position(**given, table=table)
 

@@ -1,4 +1,4 @@
-"""Which positions are strokes tried on? ``Positions``: arrays with a row for each, taken from environments, states or words."""
+"""Which positions are strokes tried on? ``Positions``: arrays with one row for each, taken from environments, states or ``Position``."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias, overload
@@ -30,22 +30,22 @@ def _balls_on(on_table, game, out):
 class Positions:
     """m positions, each in the middle of a visit, as arrays.
 
-    ``positions[3]`` is one ``Position`` in words; any other index of NumPy's (a slice, a mask, a list of rows) gives ``Positions``: of a
-    slice a view, else copies.
+    ``positions[3]`` is one ``Position``. Any other NumPy index (a slice, a mask, a list of rows) gives ``Positions``: a view for a
+    slice, else a copy.
 
     Parameters
     ----------
-    positions : array_like, float (m, 22, 2)
-        Centres of the balls [m], by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 the colours.
-    on_table : array_like, bool (m, 22)
-        Which balls are on the table.
-    game : array_like, int (m, 5)
-        What is on (a ``BallOn``), whether the cue ball is in hand, points of the visit, whether it is over, strokes of it so far.
+    positions : array_like
+        float (m, 22, 2). Centres of the balls [m], by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow to black.
+    on_table : array_like
+        bool (m, 22). Which balls are on the table.
+    game : array_like
+        int (m, 5). The ball on (a ``BallOn``), whether the cue ball is in hand, points of the visit, whether it is over, strokes so far.
 
     Raises
     ------
     ValueError
-        If an array has another shape or type, or a number is not finite. Whether balls overlap is checked when a position is played.
+        If an array has the wrong shape or type, or a number is not finite. Overlapping balls are found when a position is played.
 
     Examples
     --------
@@ -70,24 +70,33 @@ class Positions:
 
     @classmethod
     def of(cls, source: "PositionsLike") -> "Positions":
-        """Positions of whatever holds some; copies, but for ``Positions``, which come back as they are.
+        """Collect the positions that an object holds, as a copy; a ``Positions`` is returned as it is.
 
         Parameters
         ----------
-        source : environment, Positions, Position, dict, or a sequence of the last two
-            An environment of one table or many, wrapped or not, gives where it stands now, a visit that has ended too; one that plays a
-            whole frame or a match gives the stroke to come as one of a visit. A dict is a state of ``get_state()`` of a visit, or a
-            ``Position.to_dict()``.
+        source : Env, VectorEnv, AECEnv, Positions, Position, dict, or sequence of Position and dict
+            An environment, of one table or many, wrapped or not, gives its current tables, also those whose visit has ended. In an
+            environment that plays whole frames or matches, the next stroke is treated as one of a visit. A dict is a state of a visit
+            from ``get_state()``, or the result of ``Position.to_dict()``.
 
         Returns
         -------
         Positions
-            With a row for each table, position or state.
+            One row for each table, position or state.
 
         Raises
         ------
         ValueError
-            If it holds no positions, or if the striker of a frame has a free ball, which no visit knows.
+            If the object holds no positions, or if the striker of a frame has a free ball, which visits do not have.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> env = sn.SnookerEnv()
+        >>> _ = env.reset(seed=1)
+        >>> at = sn.Positions.of(env)
+        >>> len(at), bool((at.positions[0] == env.positions).all())
+        (1, True)
         """
         if isinstance(source, Positions):
             return source
@@ -120,54 +129,71 @@ class Positions:
             return Position.of_arrays(self.positions[rows], self.on_table[rows], self.game[rows])
         taken = object.__new__(Positions)
         for name in self.__slots__:
-            setattr(taken, name, np.ascontiguousarray(getattr(self, name)[rows]))  # what the kernels are compiled for
+            setattr(taken, name, np.ascontiguousarray(getattr(self, name)[rows]))  # the kernels are compiled for contiguous arrays
         return taken
 
     def __repr__(self) -> str:
         return f"Positions({len(self)} rows)"
 
     def copy(self) -> "Positions":
-        """The same in arrays of their own.
+        """Return a copy with arrays of its own.
 
         Returns
         -------
         Positions
+            The copy.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Position, Positions
+        >>> at = Positions.of(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)))
+        >>> at.copy().positions is at.positions
+        False
         """
         return Positions(self.positions.copy(), self.on_table.copy(), self.game.copy())
 
     @property
     def ball_on(self) -> NDArray[np.int64]:
-        """What is on: (m,), a ``BallOn`` each; a view."""
+        """What must be struck first, int64 (m,): a ``BallOn`` for each row; a view."""
         return self.game[:, BALL_ON]
 
     @property
     def in_hand(self) -> NDArray[np.bool_]:
-        """Whether the cue ball is in hand: (m,)."""
+        """Whether the cue ball is in hand, bool (m,)."""
         return self.game[:, IN_HAND] != 0
 
     @property
     def points(self) -> NDArray[np.int64]:
-        """Points of each visit so far: (m,); a view."""
+        """Points of each visit so far, int64 (m,); a view."""
         return self.game[:, POINTS]
 
     @property
     def over(self) -> NDArray[np.bool_]:
-        """Whether the visit has ended: (m,)."""
+        """Whether the visit has ended, bool (m,)."""
         return self.game[:, OVER] != 0
 
     @property
     def balls_on(self) -> NDArray[np.bool_]:
-        """Which balls may be struck first: (m, 22)."""
+        """Which balls may be struck first, bool (m, 22)."""
         out = np.empty((len(self), N_BALLS), np.bool_)
         _balls_on(self.on_table, self.game, out)
         return out
 
     def observations(self) -> NDArray[np.float32]:
-        """The flat observation of each position, as ``Snooker-v0`` shows it in a visit.
+        """Return the flat observation of each position, as ``Snooker-v0`` returns it with ``task="visit"``.
 
         Returns
         -------
-        float32 (m, 121)
+        numpy.ndarray
+            float32 (m, 121).
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> env = sn.SnookerEnv()
+        >>> observation, _ = env.reset(seed=1)
+        >>> bool((sn.Positions.of(env).observations()[0] == observation).all())
+        True
         """
         out = np.empty((len(self), SIZE), np.float32)
         observe(np.arange(len(self)), self.positions, self.on_table, self.game, out)
@@ -175,14 +201,14 @@ class Positions:
 
 
 def _floats(field: str, values: Any, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """``_check.array`` without a copy of what is sound already."""
+    """``_check.array``, but without a copy of an array that is valid already."""
     a = np.asarray(values)
     sound = a.dtype == np.float64 and a.ndim == len(shape) and a.shape[1:] == shape[1:] and a.flags.c_contiguous and np.isfinite(a).all()
     return a if sound and not isinstance(values, np.ma.MaskedArray) else array(field, values, shape)
 
 
 def _arrays(one: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
-    """Of a ``Position`` or a state."""
+    """The three arrays of a ``Position`` or a state."""
     if isinstance(one, Position):
         return one.arrays()
     names = ("positions", "on_table", "ball_on", "in_hand", "points", "over")
@@ -195,28 +221,28 @@ def _arrays(one: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[n
 
 
 def bare(env: Any) -> Any:
-    """The environment of this package below all wrappers, of Gymnasium, PettingZoo or Stable-Baselines3."""
+    """The environment of this package inside all wrappers of Gymnasium, PettingZoo or Stable-Baselines3."""
     env = getattr(env, "unwrapped", env)
     inner = getattr(env, "tables", None)
-    return env if inner is None or isinstance(inner, Tables) else inner  # SnookerVecEnv has an environment of many tables
+    return env if inner is None or isinstance(inner, Tables) else inner  # SnookerVecEnv holds a SnookerVectorEnv
 
 
 def _of_tables(tables: Tables) -> Positions:
-    """Of an environment's tables; the stroke to come in a frame as one of a visit."""
+    """The positions of an environment's tables; in a frame the next stroke is treated as one of a visit."""
     game = tables.game[:, :VISIT_COLUMNS].copy()
     game[:, STEPS] = 0
     if tables.game.shape[1] > FREE_BALL and (free := tables.game[:, FREE_BALL] != 0).any():
         field = f"free ball on table {int(np.argmax(free))}"
-        raise refuse(field, True, "must be False: a planned stroke is judged as one of a visit, which knows no free ball")
+        raise refuse(field, True, "must be False: a planned stroke is judged as one of a visit, which has no free ball")
     return Positions(tables.positions.copy(), tables.on_table.copy(), game)
 
 
 PositionsLike: TypeAlias = Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
-"""What users may pass as ``positions``, see ``Positions.of``."""
+"""The types that arguments called ``positions`` accept, see ``Positions.of``."""
 
 
 def rows_of(at: Positions, rows: Integers, n: int | None = None) -> NDArray[np.int64]:
-    """``rows`` as an int64 array (n,); ValueError unless each is a row of the positions."""
+    """``rows`` as an int64 array (n,). ValueError unless each is a row of the positions."""
     a = np.asarray(rows)
     if a.size == 0:
         a = a.astype(np.int64)
@@ -231,7 +257,7 @@ def rows_of(at: Positions, rows: Integers, n: int | None = None) -> NDArray[np.i
 
 
 def check_played(at: Positions, rows: NDArray[np.int64], table: Table, radius: float) -> None:
-    """Raise ValueError unless every position named in ``rows`` (n,) is sound on the table and has a stroke to play."""
+    """Raise ValueError unless every position named in ``rows`` (n,) is valid on the table and has a stroke to play."""
     used = np.unique(rows)
     some = at if len(used) == len(at) else at[used]
     on, there = some.ball_on, some.on_table
@@ -247,13 +273,13 @@ def check_played(at: Positions, rows: NDArray[np.int64], table: Table, radius: f
     try:
         table.check(some.positions, radius, "positions", there)
     except ValueError:
-        for k in used.tolist():  # by its own row
+        for k in used.tolist():  # for a message that names the row
             table.check(at.positions[k], radius, f"positions[{k}]", at.on_table[k])
         raise
 
 
 def _refuse_row(at: Positions, k: int) -> None:
-    """Say why there is no stroke to play from position k."""
+    """Raise the ValueError that says why there is no stroke to play from position k."""
     at_k = f"positions[{k}]"
     if at.over[k]:
         raise refuse(f"{at_k}.over", True, "must be False: the visit has ended, there is no stroke to play")

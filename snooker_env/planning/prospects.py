@@ -1,4 +1,4 @@
-"""What does a position promise? The chances of its pots, and the points that they and what follows bring, by a rule of thumb."""
+"""How good is a position? The chances of its pots, and the points to expect of them and of what follows, by a rule of thumb."""
 
 from concurrent.futures import ThreadPoolExecutor
 from math import erf, exp, radians, sqrt
@@ -18,24 +18,27 @@ from .positions import Positions
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
 
 WORTH_A_THREAD = 128
-"""Fewest positions that are worth a thread of their own."""
+"""Smallest number of positions for which another thread is worth its cost."""
 
 FOLLOWS = 25.0
-"""Points that a pot is worth beside its own: what the rest of the visit brings, or less where less is left on the table."""
+"""Points to expect after a made pot from the rest of the visit; fewer if fewer points are left on the table."""
 SECOND, THIRD = 0.15, 0.05
-"""What the second and the third best pot of a position add: they leave a choice of where to go next."""
+"""Shares of the second and third best pot that count: they leave a choice of where to play next."""
 FAR = 0.1
-"""How much less likely a pot is for each metre that the balls have to run."""
+"""Decay of the chance of a pot per metre of both balls' paths [1/m]."""
 RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, FAR)
+"""Constants of ``prospects_of`` for a player with execution errors: points of the rest of the visit, shares of the second and third
+best pot, decay of the chance with distance [1/m].
+"""
 SURE = (1e4, 1e-3, 0.0, 0.0)
-"""The same for a player without execution errors: all that is left follows."""
+"""Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left."""
 
 
 @entry(what="the value of positions", seconds=1)
 def _prospects(positions, on_table, ball_on, spread, constants, values, chances):
-    """For n tables: ``values`` (n,) of the positions, by the rule of thumb, and ``chances`` (n, most) to make each of the widest pots.
+    """Kernel of ``prospects_of``: fills ``values`` (n,) and ``chances`` (n, most).
 
-    ``spread`` [rad] as ``spread_of`` gives it, ``constants`` as ``RULE_OF_THUMB``.
+    ``spread`` [rad] is the result of ``spread_of``; ``constants`` as ``RULE_OF_THUMB``.
     """
     found = np.empty((16, POT_COLUMNS))
     follows, second, third, far = constants
@@ -44,7 +47,7 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
         values[k] = 0.0
         p, on = positions[k], balls_on_kernel(ball_on[k], bits(on_table[k]))
         many = find_pots(p, on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
-        left = 7.0 if ball_on[k] == _ANY_COLOUR else 0.0  # points: a black for each red, and after a red that was potted
+        left = 7.0 if ball_on[k] == _ANY_COLOUR else 0.0  # points: a black with each red, and one after a red just potted
         for i in range(1, N_BALLS):
             if on_table[k, i]:
                 left += 8.0 if VALUES[i] == 1 else VALUES[i]
@@ -68,17 +71,24 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
 
 
 def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
-    """Standard deviation of the cue ball's direction, tip errors included; at least 1e-5.
+    """Return the standard deviation of the cue ball's direction, tip errors included; at least 1e-5 rad.
 
     Parameters
     ----------
     noise : Noise
-    physics : None, str, dict or Physics
+        The execution noise.
+    physics : str, dict, Physics or None, optional
+        Physical constants, as ``Physics.of`` takes them; they determine the squirt of a tip error. Default None: the preset "paper".
 
     Returns
     -------
     float
-        [rad]
+        Standard deviation [rad].
+
+    Raises
+    ------
+    ValueError
+        If ``physics`` is invalid.
 
     Examples
     --------
@@ -93,29 +103,31 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
 def prospects_of(
     at: Positions, spread: float, constants: tuple[float, float, float, float] = RULE_OF_THUMB, most: int = POTS, threads: int = 1
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """What positions promise to a player whose aim errs by ``spread``, by a rule of thumb.
+    """Estimate the value of positions and the chances of their pots by a rule of thumb.
 
-    A pot's chance is that of an error of the direction within its tolerance, less for long runs of the balls; its worth that chance times
-    its points and what may follow. A position is worth its best pot and a little of the second and the third.
+    The chance of a pot is the probability that a normal error of the aim stays within the pot's tolerance, reduced for long paths. The
+    value of a pot is its chance times its points plus what may follow. The value of a position is that of its best pot, plus a small
+    share of the second and the third.
 
     Parameters
     ----------
     at : Positions
+        The n positions.
     spread : float
-        As ``spread_of`` gives it [rad].
-    constants : (float, float, float, float)
-        ``RULE_OF_THUMB``, or ``SURE`` for a player without errors.
-    most : int
-        How many chances.
-    threads : int
-        Any number of them gives the same.
+        Standard deviation of the cue ball's direction [rad], as returned by ``spread_of``.
+    constants : tuple of float, optional
+        Four constants: ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
+    most : int, optional
+        Number of chances for each position; default 4.
+    threads : int, optional
+        Largest number of threads; default 1. Results do not depend on it.
 
     Returns
     -------
-    values : float64 (n,)
-        Worth of the positions [points].
-    chances : float64 (n, most)
-        To make each of the widest pots, in the order of ``pots``.
+    values : numpy.ndarray
+        float64 (n,). Values of the positions [points].
+    chances : numpy.ndarray
+        float64 (n, most). Chance of each of the widest pots, in the order of ``pots``; 0 where there is none.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Where did every ball stop? ``Stops``: what strokes led to before colours were respotted, and what the referee saw of them."""
+"""Where did every ball stop? ``Stops``: the balls at rest before colours are respotted, and what the referee says of the stroke."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -15,24 +15,31 @@ from .positions import Positions
 
 
 class Stops(NamedTuple):
-    """What n strokes led to, ball by ball.
+    """Where n strokes left each ball, as returned by ``Planner.stops``.
 
     Attributes
     ----------
-    places : float64 (n, 22, 2)
-        Centres at rest [m], before colours were respotted; of a potted ball where it fell.
-    potted : int64 (n, 22)
-        The pocket of each ball, an index of ``snooker_env.POCKETS``; -1 if it was not potted by this stroke.
-    first : int64 (n,)
-        The ball struck first, by id (the lowest of several at once); -1 if none was.
-    points : float64 (n,)
-        Points scored; 0 for a miss or a foul.
-    penalty : int64 (n,)
-        Points that a foul costs, 0 for a fair stroke.
-    goes_on : bool (n,)
-        Whether the visit goes on.
+    places : numpy.ndarray
+        float64 (n, 22, 2). Centres at rest [m], before colours are respotted; for a potted ball the point where it fell.
+    potted : numpy.ndarray
+        int64 (n, 22). Pocket of each ball, an index into ``snooker_env.POCKETS``; -1 if this stroke did not pot it.
+    first : numpy.ndarray
+        int64 (n,). Id of the ball struck first (the lowest id if several were struck at once); -1 if none was.
+    points : numpy.ndarray
+        float64 (n,). Points scored; 0 for a miss or a foul.
+    penalty : numpy.ndarray
+        int64 (n,). Penalty points of a foul; 0 for a fair stroke.
+    goes_on : numpy.ndarray
+        bool (n,). True if the visit continues after the stroke.
     afterstates : Positions
-        n rows: colours respotted, and what is on next.
+        n rows: colours respotted, and the ball on for the next stroke.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Planner, Position
+    >>> stops = Planner({"action": "discrete"}).stops(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0], [67])
+    >>> stops.places.shape, stops.points.tolist(), stops.penalty.tolist()
+    ((1, 22, 2), [7.0], [0])
     """
 
     places: NDArray[np.float64]
@@ -45,13 +52,13 @@ class Stops(NamedTuple):
 
 
 class WatchedVisits(Visits):
-    """Visits that keep where the balls of each table's last stroke stopped: ``places`` (n, 22, 2) and ``potted`` (n, 22)."""
+    """Visits that record where the balls of each table's last stroke stopped: ``places`` (n, 22, 2) and ``potted`` (n, 22)."""
 
     places: Floats
     potted: Ints
 
     def output(self, *, last: bool = False, given: Mapping[str, Any] | None = None) -> StepOutput:
-        """As ``Tables.output``, and room for what is kept."""
+        """As ``Tables.output``; also allocates ``places`` and ``potted``."""
         self.places, self.potted = np.zeros((self.n, N_BALLS, 2)), np.zeros((self.n, N_BALLS), np.int64)
         return super().output(last=last, given=given)
 

@@ -1,6 +1,6 @@
-"""What is a stroke as an action? Choices of ``action="discrete"`` and plain aims as rows of the box action space, and the aim solver.
+"""How does a stroke become an action? Choices of ``action="discrete"`` and plain aims as rows of the box action space, and the aim solver.
 
-Every row has the four numbers of ``aim="absolute"`` without elevation or placement: cue speed, side, top, direction.
+Each row has the four numbers of ``aim="absolute"`` without elevation and placement: cue speed, side, top, direction.
 """
 
 from math import pi
@@ -26,25 +26,33 @@ from ..tasks.discrete_actions import POTS, SIZE, chosen, masks
 from ..tasks.pot_aim import solved_aim
 from .positions import Positions, PositionsLike, rows_of
 
-World = tuple[Physics, tuple[int, int]]
-"""Physics, and a fidelity as ``parse_fidelity`` gives it."""
+Dynamics = tuple[Physics, tuple[int, int]]
+"""Physical constants, and a fidelity as ``parse_fidelity`` returns it."""
 
 
-def world_of(physics: PhysicsLike, fidelity: Fidelity) -> World:
-    """What users say of a world, checked."""
+def dynamics_of(physics: PhysicsLike, fidelity: Fidelity) -> Dynamics:
+    """The physics and fidelity that a caller gave, checked."""
     return Physics.of(physics), parse_fidelity(fidelity)
 
 
 def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
-    """Which choices of ``action="discrete"`` there are.
+    """Return which choices of ``action="discrete"`` are available in each position.
 
     Parameters
     ----------
-    positions : whatever ``Positions.of`` takes
+    positions : PositionsLike
+        The m positions: anything that ``Positions.of`` accepts.
 
     Returns
     -------
-    bool (m, 540)
+    numpy.ndarray
+        bool (m, 540). True for each available choice. A position without a direct pot offers the strokes of the first pot, which then
+        mean full hits on the nearest ball on.
+
+    Raises
+    ------
+    ValueError
+        If ``positions`` holds no positions.
 
     Examples
     --------
@@ -59,20 +67,21 @@ def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
 
 
 def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars = 0.0) -> NDArray[np.float32]:
-    """Actions of ``aim="absolute"``.
+    """Convert speeds and aims to actions of ``aim="absolute"``.
 
     Parameters
     ----------
-    speeds : array_like, float (n,)
-        Cue speeds [m/s], 0.2 to 7.
-    aims : array_like, float (n,)
-        Directions in which the cue ball leaves [rad], anticlockwise from +x.
-    side, top : array_like, float, scalar or (n,)
-        Tip offsets over R, + right and + up, within the disc of radius 0.5.
+    speeds : array_like
+        float (n,). Cue speeds [m/s], in [0.2, 7].
+    aims : array_like
+        float (n,). Directions in which the cue ball leaves [rad], anticlockwise from +x.
+    side, top : array_like or float, optional
+        float, scalar or (n,). Tip offsets over R, to the right and up, each in [-0.5, 0.5]; default 0.
 
     Returns
     -------
-    float32 (n, 4)
+    numpy.ndarray
+        float32 (n, 4). Actions in [-1, 1].
 
     Raises
     ------
@@ -115,27 +124,30 @@ def _as_actions(positions, on_table, game, rows, picks, phys, end_mass_ratio, fi
 def as_actions(
     positions: PositionsLike, rows: Integers, choices: Integers, *, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
 ) -> NDArray[np.float32]:
-    """Choices of ``action="discrete"`` as actions of ``aim="absolute"``: the same strokes, to the rounding of float32.
+    """Convert choices of ``action="discrete"`` to actions of ``aim="absolute"``: the same strokes, up to the rounding of float32.
 
     Parameters
     ----------
-    positions : whatever ``Positions.of`` takes
-    rows : array_like, int (n,)
-        On which position each choice is made.
-    choices : array_like, int (n,)
-        In [0, 540).
-    physics : None, str, dict or Physics
-        The world in which the aims are solved, "paper" if it is None.
-    fidelity : str
+    positions : PositionsLike
+        The m positions: anything that ``Positions.of`` accepts.
+    rows : array_like
+        int (n,). Row of ``positions`` for each choice, in [0, m).
+    choices : array_like
+        int (n,). Choices, in [0, 540).
+    physics : str, dict, Physics or None, optional
+        Physical constants with which the aims are solved; default None: the preset "paper".
+    fidelity : str, optional
+        "fast", "standard" (default), "reference" or "euler:N": how impacts are solved.
 
     Returns
     -------
-    float32 (n, 4)
+    numpy.ndarray
+        float32 (n, 4). Actions in [-1, 1].
 
     Raises
     ------
     ValueError
-        If a row or a choice is out of range.
+        If a row or a choice is out of range, or if ``physics`` or ``fidelity`` is invalid.
 
     Examples
     --------
@@ -143,15 +155,15 @@ def as_actions(
     >>> as_actions(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), [0], [67]).shape
     (1, 4)
     """
-    return solved_choices(Positions.of(positions), rows, choices, world_of(physics, fidelity))
+    return solved_choices(Positions.of(positions), rows, choices, dynamics_of(physics, fidelity))
 
 
-def solved_choices(at: Positions, rows: Integers, choices: Integers, world: World) -> NDArray[np.float32]:
-    """``as_actions`` in a world that was checked."""
+def solved_choices(at: Positions, rows: Integers, choices: Integers, dynamics: Dynamics) -> NDArray[np.float32]:
+    """``as_actions`` with checked physics and fidelity."""
     which = rows_of(at, rows)
     picks = _integers("choices", choices, len(which), 0, SIZE - 1)
     out = np.empty((len(which), 4), np.float32)
-    physics, (code, n_steps) = world
+    physics, (code, n_steps) = dynamics
     _as_actions(at.positions, at.on_table, at.game, which, picks, physics.pack(), physics.end_mass_ratio, code, n_steps, out)
     return out
 
@@ -181,40 +193,44 @@ def pot_aim(
     physics: PhysicsLike = None,
     fidelity: Fidelity = "standard",
 ) -> NDArray[np.float64]:
-    """In which direction the cue ball must leave to send a ball to a point: throw, swerve and the ball's own curve included.
+    """Solve the direction in which the cue ball must leave to send a ball to a point, with throw, swerve and the ball's own curve.
 
-    The cue ball and that ball alone are played on unbounded cloth until the ball rolls, and the direction is corrected in secant steps
-    until the ball passes the point by less than 1e-6 rad (``snooker_env.tasks.pot_aim``). Where no direction does (a stroke too soft to
-    arrive, a cut too thin) the best one tried is returned.
+    Only the cue ball and that ball are simulated, on unbounded cloth, until the ball rolls. Secant steps correct the direction until the
+    ball passes the point by less than 1e-6 rad (``snooker_env.tasks.pot_aim``). If no direction succeeds (the stroke is too soft to
+    arrive or the cut too thin), the best direction tried is returned.
 
     Parameters
     ----------
-    positions : whatever ``Positions.of`` takes
-    rows : array_like, int (n,)
-        On which position each ball lies.
-    balls : array_like, int (n,)
-        The ball to send, by id, 1 to 21.
-    targets : array_like, float (n, 2)
-        Where to send it [m]; the aim points of pockets are ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
-    speeds : array_like, float, scalar or (n,)
-        Cue speeds [m/s], above 0.
-    side, top, elevation : array_like, float, scalar or (n,)
-        Tip offsets over R and elevation of the cue [rad].
-    ghosts : array_like, float (n, 2), optional
-        Where the straight line has the cue ball meet the ball [m]; left out: 2 R behind it as seen from the target.
-    physics : None, str, dict or Physics
-        "paper" if it is None.
-    fidelity : str
+    positions : PositionsLike
+        The m positions: anything that ``Positions.of`` accepts.
+    rows : array_like
+        int (n,). Row of ``positions`` for each ball, in [0, m).
+    balls : array_like
+        int (n,). Id of the ball to send, in [1, 21].
+    targets : array_like
+        float (n, 2). Where to send it [m]; the aim points of the pockets are ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
+    speeds : array_like or float
+        float, scalar or (n,). Cue speeds [m/s], at least 0.
+    side, top : array_like or float, optional
+        float, scalar or (n,). Tip offsets over R, to the right and up, within the miscue limit of the physics; default 0.
+    elevation : array_like or float, optional
+        float, scalar or (n,). Elevation of the cue [rad], at least 0; default 0.
+    ghosts : array_like, optional
+        float (n, 2). Ghost-ball centres of the straight line [m]; default: 2 R behind the ball as seen from the target.
+    physics : str, dict, Physics or None, optional
+        Physical constants; default None: the preset "paper".
+    fidelity : str, optional
+        "fast", "standard" (default), "reference" or "euler:N": how impacts are solved.
 
     Returns
     -------
-    float64 (n,)
-        Directions [rad], anticlockwise from +x, as ``actions_of`` takes them.
+    numpy.ndarray
+        float64 (n,). Directions [rad], anticlockwise from +x, as ``actions_of`` takes them.
 
     Raises
     ------
     ValueError
-        If a row or ball is out of range, a ball is off the table, or an array has another shape.
+        If a number is out of range, a ball is off the table, or an array has the wrong shape.
 
     Examples
     --------
@@ -225,17 +241,17 @@ def pot_aim(
     """
     at = Positions.of(positions)
     return solved_aims(
-        at, rows, balls, targets, speeds, side, top, elevation, ghosts, world_of(physics, fidelity)
+        at, rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics_of(physics, fidelity)
     )  # fmt: skip
 
 
 def solved_aims(
     at: Positions, rows: Integers, balls: Integers, targets: Vectors, speeds: Scalars, side: Scalars, top: Scalars,
-    elevation: Scalars, ghosts: Vectors | None, world: World,
+    elevation: Scalars, ghosts: Vectors | None, dynamics: Dynamics,
 ) -> NDArray[np.float64]:  # fmt: skip
-    """``pot_aim`` in a world that was checked."""
+    """``pot_aim`` with checked physics and fidelity."""
     which = rows_of(at, rows)
-    n, (physics, (code, n_steps)) = len(which), world
+    n, (physics, (code, n_steps)) = len(which), dynamics
     ids, to = _integers("balls", balls, n, 1, N_BALLS - 1), array("targets", targets, (n, 2))
     there = at.on_table[which, ids] & at.on_table[which, 0]
     if not there.all():
@@ -260,7 +276,7 @@ def solved_aims(
 
 
 def _integers(field: str, values: Any, n: int, low: int, high: int) -> NDArray[np.int64]:
-    """An int64 array (n,), each number in [low, high]."""
+    """An int64 array (n,) with each number in [low, high]."""
     a = np.asarray(values)
     if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
         raise refuse_what(field, f"{a.dtype} array of shape {a.shape}", f"must be integers of shape ({n},)")

@@ -1,1 +1,1 @@
-"""A page to play on and to ask, and the text protocol below it: ``python -m snooker_env.play``; ``docs/protocol.md`` says all of it."""
+"""A page to play snooker, with an advisor, and its HTTP protocol: ``python -m snooker_env.play``; see docs/play/protocol.md."""

@@ -11,34 +11,34 @@ from .._check import refuse_what
 from ..tasks.noise import LEVELS
 
 MOST_FILE = 1_000_000
-"""Bytes of a position's file."""
+"""Largest size of a position's file [bytes]."""
 
 
 def _arguments(argv: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m snooker_env.play",
-        description="Play snooker in the browser: against yourself or an agent, from any position, with an advisor. Programs can play, "
-        "too: docs/protocol.md. The server listens on 127.0.0.1 alone, and only answers who knows the address that it prints.",
+        description="Play snooker in the browser: against yourself or an agent, from any position, with an advisor. Programs can play "
+        "too, by the protocol in the documentation. The server listens on 127.0.0.1 only, and requires the address that it prints.",
     )
-    parser.add_argument("--port", type=int, default=0, help="port to listen on (default: any that is free)")
+    parser.add_argument("--port", type=int, default=0, help="port to listen on (default: any free port)")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
     parser.add_argument(
         "--agent", action="append", default=[], metavar="NAME",
-        help="an agent that may be chosen on the page: a name of snooker_env.advice, a model's .zip, or MODULE:CLASS; the first one sits "
-        "down against you; may be given more than once",
+        help="an agent that can be chosen on the page: a name of snooker_env.advice, a model's .zip, or MODULE:CLASS; the first one is "
+        "your opponent; may be given more than once",
     )  # fmt: skip
     parser.add_argument("--trust", action="store_true", help="let code in an --agent's model file run")
     parser.add_argument(
-        "--noise", choices=list(LEVELS), default="professional", help="errors of execution of the agent (default: %(default)s)"
+        "--noise", choices=list(LEVELS), default="professional", help="execution errors of the agent (default: %(default)s)"
     )
     parser.add_argument("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
     parser.add_argument("--layout", default="break_off", help="how the table is dealt (default: %(default)s)")
-    parser.add_argument("--seed", type=int, default=None, help="of all random numbers (default: another each time)")
+    parser.add_argument("--seed", type=int, default=None, help="seed of all random numbers (default: a new one each time)")
     return parser.parse_args(argv)
 
 
 def service_of(given: argparse.Namespace) -> Any:
-    """The game that the command line asks for: a ``Service``. ValueError or OSError for what cannot be."""
+    """The game for the command line's arguments: a ``Service``. ValueError or OSError if something is invalid."""
     import numpy as np
 
     from ..advice import player_of
@@ -64,7 +64,7 @@ def service_of(given: argparse.Namespace) -> Any:
 
 
 def warm_up(service: Any) -> None:
-    """Have everything compiled that a stroke and a question need, so that nobody waits for it in the middle of a game."""
+    """Compile everything that a stroke and a question need, so that nobody waits for it in the middle of a game."""
     from ..advice import CueStroke
     from . import questions
     from .report import report
@@ -74,7 +74,7 @@ def warm_up(service: Any) -> None:
             stroke = CueStroke(speed=2.0, aim=1.0)
             questions.scatter(session, stroke, noise="professional", samples=16, seed=0)
             service.seats.stroke("lookahead", session)
-    with service.looking():
+    with service.reading():
         report(service)
 
 
@@ -97,16 +97,17 @@ def main(argv: list[str] | None = None) -> int:
     Parameters
     ----------
     argv : list of str, optional
-        The command line; None: that of the process.
+        The command line; default: that of the process.
 
     Returns
     -------
     int
-        0, or 2 if something on the command line cannot be.
+        0, or 2 if the command line is invalid.
     """
     given = _arguments(argv)
     from .server import PlayServer
 
+    print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
     try:
         service = service_of(given)
         server = PlayServer(service, given.port)
@@ -115,7 +116,10 @@ def main(argv: list[str] | None = None) -> int:
         print(f"snooker_env.play: {error}", file=sys.stderr)
         return 2
     try:
-        print(f"Snooker is played at\n\n    {server.address}\n\nPrograms play at its api/ (docs/protocol.md). Ctrl-C ends it.", flush=True)
+        print(
+            f"Snooker is played at\n\n    {server.address}\n\nPrograms play at its api/ (docs/play/protocol.md). Ctrl-C ends it.",
+            flush=True,
+        )
         if not given.no_browser:
             webbrowser.open(server.address)
         server.serve_forever(poll_interval=0.2)

@@ -1,4 +1,4 @@
-"""Which ways to the pockets are open, and what is in the way of the others? Straight lines to each pocket for every ball that is on."""
+"""Which paths to the pockets are open, and what blocks the others? Straight lines to each pocket for every ball on."""
 
 from dataclasses import dataclass
 from math import acos, atan2, degrees, erf, hypot, radians, sqrt
@@ -14,32 +14,33 @@ from ..planning.positions import Positions
 from ..tasks.noise import LEVELS
 
 MOST = 126
-"""Lines from 21 balls to 6 pockets."""
+"""Largest number of lines: from 21 balls to 6 pockets."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Line:
-    """From the cue ball through a ball to a pocket.
+    """A straight line from the cue ball through a ball to a pocket.
 
     Attributes
     ----------
     ball, pocket : int
+        Id of the ball, index of the pocket.
     open : bool
         Whether the ball can be potted straight, by the geometry of straight lines.
     blocked_by : tuple of str
-        Names of the balls that are in the way: of the ball on its way to the pocket, or of the cue ball on its way to the ball.
+        Names of the balls in the way of the ball to the pocket, or of the cue ball to the ball.
     why : str
-        What else is wrong with a line that is not open: "cut too thin", "pocket too narrow from there"; else "".
+        Any other reason why the line is not open: "cut too thin", "pocket too narrow from there"; else "".
     cut : float
-        Angle between the cue ball's way and the ball's [rad].
+        Angle between the paths of the cue ball and of the ball [rad].
     to_ball, to_pocket : float
-        How far the cue ball runs to the contact, and the ball to the pocket [m].
+        Distances of the cue ball to the contact, and of the ball to the pocket [m].
     aim : float
-        Direction of the cue ball's way, without throw or swerve [rad].
+        Direction of the cue ball's path, without throw and swerve [rad].
     tolerance : float
-        By how much the aim may err [rad]; 0 unless it is open.
-    chance : float, or None
-        About how often a player with the seat's noise keeps within the tolerance; None without noise.
+        Largest error of the aim [rad]; 0 unless the line is open.
+    chance : float or None
+        Approximate probability that a player with the seat's noise keeps within the tolerance; None without noise.
     """
 
     ball: int
@@ -55,7 +56,7 @@ class Line:
     chance: float | None
 
     def to_dict(self) -> dict[str, Any]:
-        """As JSON types; lengths in metres, angles in radians."""
+        """The line as JSON types; lengths in metres, angles in radians."""
         return {
             "ball": NAMES[self.ball], "pocket": POCKETS[self.pocket], "open": self.open, "blocked_by": list(self.blocked_by),
             "why": self.why, "cut": self.cut, "to_ball": self.to_ball, "to_pocket": self.to_pocket, "aim": self.aim,
@@ -77,9 +78,9 @@ class Line:
 
 
 def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
-    """All lines to pockets for the balls of the mask ``on``, ball by ball; ``positions``: the same table, on it being on what is.
+    """All lines to pockets for the balls in the mask ``on``, ball by ball. ``positions``: the same table, once for each ball on.
 
-    With a free ball there are two: what is on stands in the one, the colours in the other.
+    With a free ball there are two positions: one with the ball on, one with the colours on.
     """
     errors = LEVELS[noise]
     sigma = 0.0 if errors.silent else radians(errors.direction_deg())

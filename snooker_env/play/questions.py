@@ -1,4 +1,4 @@
-"""What would be played, and where would the balls stop? Questions about the stroke to come, answered on copies of the table."""
+"""What would be played, and where would the balls stop? Questions about the next stroke, answered on copies of the table."""
 
 from typing import Any
 
@@ -19,12 +19,12 @@ from .session import Session
 from .wishes import ball_named, pocket_named
 
 MOST_SAMPLES = 2000
-"""Of one question: 40 ms of shots."""
+"""Largest number of samples in one question: 40 ms of computing."""
 MOST_SUGGESTIONS = 10
 
 
 def aim_at(session: Session, given: Any, stroke: CueStroke) -> float:
-    """The direction in which the cue ball must leave to pot a ball, throw and swerve included; ``given``: {"pot": [ball, pocket]}."""
+    """The direction in which the cue ball must leave to pot a ball, with throw and swerve; ``given``: {"pot": [ball, pocket]}."""
     pair = given.get("pot") if isinstance(given, dict) and set(given) == {"pot"} else None
     if not isinstance(pair, list) or len(pair) != 2:
         raise refuse("aim_at", given, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
@@ -37,7 +37,7 @@ def aim_at(session: Session, given: Any, stroke: CueStroke) -> float:
 
 
 def exact(session: Session, stroke: CueStroke) -> Shot:
-    """The stroke as it runs without errors of execution."""
+    """The stroke without execution errors."""
     twin = session.twin()
     twin.noise = ["none", "none"]
     played = twin.play(stroke).played
@@ -46,7 +46,7 @@ def exact(session: Session, stroke: CueStroke) -> Shot:
 
 
 def paths(shot: Shot) -> dict[str, Any]:
-    """Where the balls of a shot run: lines through places [m], rounded to a tenth of a millimetre, and the ball that is struck first."""
+    """The paths of a shot's balls: points [m], rounded to a tenth of a millimetre; and the ball struck first, the pots and the duration."""
     events = shot.events
     hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
     lines = ball_paths(shot, range(len(shot.positions)), step=0.04)
@@ -59,7 +59,7 @@ def paths(shot: Shot) -> dict[str, Any]:
 
 
 def scatter(session: Session, stroke: CueStroke, *, noise: NoiseName, samples: int, seed: int) -> dict[str, Any]:
-    """Where cue ball and object ball stop when the stroke is played many times with a player's errors; and its path without them."""
+    """Where cue ball and object ball stop when the stroke is played many times with execution errors; and its paths without them."""
     shot = exact(session, stroke)
     found = destinations(session.planned(), stroke, noise=noise, samples=samples, seed=seed)
     return paths(shot) | {
@@ -69,7 +69,7 @@ def scatter(session: Session, stroke: CueStroke, *, noise: NoiseName, samples: i
 
 
 def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int) -> list[dict[str, Any]]:
-    """The agent's best strokes, ranked, in words and data, each with its path without errors."""
+    """The agent's best strokes, ranked, in words and data, each with its paths without errors."""
     choice("agent", agent, seats.agents)
     advice = advise(session.planned(), agent=seats.player(agent), noise=noise, n=n, samples=samples, seed=seed)
     out = []
@@ -82,7 +82,7 @@ def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName,
 
 
 def _named(one: Suggestion) -> dict[str, Any]:
-    """Ball and pocket of a suggestion by their names; None where there is none."""
+    """Ball and pocket of a suggestion by name; None where there is none."""
     return {
         "ball": NAMES[one.ball] if one.ball >= 0 else None, "pocket": POCKETS[one.pocket] if one.pocket >= 0 else None,
         "first": NAMES[one.first] if one.first >= 0 else None,

@@ -1,4 +1,4 @@
-"""What stands on the table, and what may be done? The game as JSON types: for the page, for a program, and as a text for a blind player."""
+"""What is on the table, and what may be done? The game as JSON types for the page and for programs, and as plain text."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ from .words import freedom, on_words, table_text
 
 
 def scene(service: Service) -> dict[str, Any]:
-    """What never changes: the table as it is drawn, limits of strokes, who may play."""
+    """The constant part: the table as it is drawn, limits of strokes, available players."""
     rules = service.session.rules_with("none")
     return {
         "scene": scene_data(rules.table), "R": rules.physics.R, "spin_decel": rules.physics.spin_decel,
@@ -34,7 +34,7 @@ def scene(service: Service) -> dict[str, Any]:
 
 
 def report(service: Service) -> dict[str, Any]:
-    """The game as it stands now."""
+    """The current state of the game."""
     session, seats = service.session, service.seats
     frame, tables = session.frame, session.tables
     labels = (seats.label(0), seats.label(1))
@@ -78,7 +78,7 @@ def _lines(session, frame: Frame, on: int) -> list[Line]:
 
 
 def _asked(service: Service, frame: Frame, labels: tuple[str, str]) -> str:
-    """What is waited for, in a sentence."""
+    """What the game waits for, in a sentence."""
     who = labels[frame.striker]
     yours = "Your stroke" if who == "You" else f"{who}'s stroke"
     if frame.phase == "over":
@@ -92,12 +92,12 @@ def _asked(service: Service, frame: Frame, labels: tuple[str, str]) -> str:
         miss = " and a miss" if frame.miss_called else ""
         return f"Foul{miss} by {labels[1 - frame.striker]}: {'choose' if who == 'You' else f'{who} chooses'}."
     what = on_words(frame.ball_on, frame.free_ball)
-    hand = "; the cue ball is in hand" if frame.in_hand else ""
-    return f"{yours}: {what} {'are' if frame.free_ball else 'is'} on{hand}."
+    placing = "; the cue ball is in hand" if frame.in_hand else ""
+    return f"{yours}: {what} {'are' if frame.free_ball else 'is'} on{placing}."
 
 
 def _facts(service: Service, frame: Frame, labels, hidden: bool, places) -> list[str]:
-    """What there is to say before the balls."""
+    """The sentences before the list of balls."""
     session = service.session
     said = [last_words(session.acts[session.at - 1], labels), _asked(service, frame, labels)]
     said.append(f"Score: {labels[0]} {frame.scores[0]}, {labels[1]} {frame.scores[1]}; break {frame.break_points}.")

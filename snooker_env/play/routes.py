@@ -1,7 +1,7 @@
-"""What may be asked of the server, and what is the answer? Each route of the protocol: its fields, checked, and what it does.
+"""Which requests does the server answer, and how? Each route of the protocol: its fields, checked, and its action.
 
-A handler gets the fields of one request as plain JSON types and gives JSON types back; a ValueError says what was wrong with a field.
-``docs/protocol.md`` documents every route.
+A handler takes the fields of one request as plain JSON types and returns JSON types. A ValueError names an invalid field.
+``docs/play/protocol.md`` describes every route.
 """
 
 import re
@@ -25,20 +25,20 @@ from .session import Act, Session
 from .wishes import colour_named, place_of_request, stroke_in
 
 STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")
-"""Fields that say what a stroke is."""
+"""Fields that define a stroke."""
 Handler = Callable[[Service, dict[str, Any]], Any]
 
 
 @dataclass(frozen=True)
 class Route:
-    """One thing that may be asked.
+    """One route.
 
     Attributes
     ----------
     handler : callable
         ``handler(service, fields)``: JSON types, or a ``str``: an HTML page.
     fields : tuple of str
-        Those that a request may have.
+        The fields that a request may have.
     """
 
     handler: Handler
@@ -48,12 +48,12 @@ class Route:
 def _state(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     if "after" in given:
         service.wait(integer("after", given["after"], 0, MOST), number("wait", given.get("wait", 0.0), 0.0, 60.0))
-    with service.looking():
+    with service.reading():
         return report(service)
 
 
 def _strokes(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    with service.looking() as session:
+    with service.reading() as session:
         first = integer("from", given.get("from", 0), 0, MOST)
         return {"revision": service.revision, "strokes": [_encoded(service, session.acts[k]) for k in session.strokes[first:]]}
 
@@ -63,8 +63,8 @@ def _encoded(service: Service, act: Act) -> dict[str, Any]:
     return encoded_stroke(act.played, (service.seats.label(0), service.seats.label(1)))
 
 
-def _asked(session: Session, given: dict[str, Any]) -> CueStroke:
-    """The stroke asked for, its aim solved if it is given by a pot; the cue ball is placed first."""
+def stroke_asked(session: Session, given: dict[str, Any]) -> CueStroke:
+    """The stroke in a request, with its aim solved if it is given by a pot; the cue ball is placed first."""
     if "place" in given:
         session.place(*place_of_request("place", given["place"]))
     if "aim_at" not in given:
@@ -82,13 +82,13 @@ def _stroke(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     nominated = colour_named("nominate", given["nominate"]) if "nominate" in given else AUTO
     act = stroke = None
     with service.acting(_revision(given)) as session:
-        twin = session.twin()  # whatever is wrong shows there first, so that a request that is refused has changed nothing
+        twin = session.twin()  # errors occur on the copy first, so that a refused request has changed nothing
         if "choice" in given:
             if strikes and given["choice"] != "play":
                 raise refuse("choice", given["choice"], 'must be "play" in a request that holds a stroke too')
             twin.choose(given["choice"])
         if strikes:
-            stroke = _asked(twin, given)
+            stroke = stroke_asked(twin, given)
             twin.check_stroke(nominated)
         if "choice" in given:
             session.choose(given["choice"])
@@ -96,14 +96,14 @@ def _stroke(service: Service, given: dict[str, Any]) -> dict[str, Any]:
             if "place" in given:
                 session.place(*given["place"])
             act = session.play(stroke, nominated=nominated)
-    with service.looking():
+    with service.reading():
         return {"stroke": None if act is None else _encoded(service, act), "state": report(service)}
 
 
 def _place(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     with service.acting() as session:
         place = session.place(*place_of_request("place", given.get("place")))
-    with service.looking():
+    with service.reading():
         return {"place": list(place), "state": report(service)}
 
 
@@ -134,7 +134,7 @@ def _put(service: Service, given: dict[str, Any], check: bool) -> dict[str, Any]
 
 
 def position_of(given: Any) -> Position:
-    """A ``Position`` from what JSON holds; ValueError for anything else, by the name of the ball or field."""
+    """A ``Position`` from JSON types; ValueError, with the name of the ball or field, if it is invalid."""
     names = tuple(Position.__dataclass_fields__)
     if not isinstance(given, dict):
         raise refuse("position", given, 'must be an object: {"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}')
@@ -147,7 +147,7 @@ def position_of(given: Any) -> Position:
 
 
 def _undo(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    """Back to where a person had to do something; with ``all`` False one act alone."""
+    """Undo until a person has a stroke or decision to make."""
     return _moved(service, Session.undo)
 
 
@@ -203,7 +203,7 @@ def _concede(service: Service, given: dict[str, Any]) -> dict[str, Any]:
 
 
 def _save(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    with service.looking() as session:
+    with service.reading() as session:
         return session.save()
 
 
@@ -224,11 +224,11 @@ def _advise(service: Service, given: dict[str, Any]) -> dict[str, Any]:
 def _destinations(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     noise, samples, seed = _errors(given, 500, "professional")
     with service.asking(_revision(given)) as session:
-        return questions.scatter(session, _asked(session, given), noise=noise, samples=samples, seed=seed)
+        return questions.scatter(session, stroke_asked(session, given), noise=noise, samples=samples, seed=seed)
 
 
 def _revision(given: dict[str, Any]) -> int | None:
-    """Of the table that a question is about; None: of the one that there is."""
+    """The revision that a request is about; None for the current one."""
     return integer("revision", given["revision"], 0, MOST) if "revision" in given else None
 
 
@@ -249,7 +249,7 @@ def _replay_page(service: Service, given: dict[str, Any]) -> str:
 
 
 def _replay_of(service: Service) -> Replay:
-    with service.looking() as session:
+    with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
         labels = (service.seats.label(0), service.seats.label(1))
     if not strokes:
@@ -258,7 +258,7 @@ def _replay_of(service: Service) -> Replay:
 
 
 def _scene(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    with service.looking():
+    with service.reading():
         return scene(service)
 
 
@@ -277,14 +277,14 @@ POST: dict[str, Route] = {
 
 
 def parts_of(error: ValueError) -> dict[str, Any]:
-    """The error of a field, as ``_check.refuse`` words it, in its parts."""
+    """The parts of an error message that ``_check.refuse`` made."""
     text = str(error)
     at = re.match(r"(?P<field>[\w\[\]., ]+?) = (?P<value>.*?): (?P<message>(must|overlaps|lies|ball).*)\Z", text, re.DOTALL)
     return at.groupdict() if at else {"field": None, "value": None, "message": text}
 
 
 def answer(service: Service, route: Route, given: dict[str, Any]) -> Any:
-    """What a route answers; ValueError for a field that it does not have, or that is wrong."""
+    """The answer of a route; ValueError for an unknown or invalid field."""
     for name in given:
         if name not in route.fields:
             raise refuse("field", name, f"must be one of {list(route.fields)}" if route.fields else "must be left out: there are no fields")

@@ -1,7 +1,7 @@
-"""Who sits at the table? Persons, and agents by name: those that came with the package, and those named when the page was started.
+"""Who sits at the table? Persons, and agents by name: those in the package, and those named when the page was started.
 
-An agent is asked for one stroke at a time, on a copy of the table, without errors of execution: those are drawn when the stroke is
-played. After a foul of the other every agent plays the table as it lies; it names no colour and takes no free ball for another ball.
+An agent is asked for one stroke at a time, on a copy of the table, without execution errors, which are drawn when the stroke is played.
+After a foul of the opponent every agent plays the table as it lies. Agents nominate no colour and do not use a free ball.
 """
 
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from .session import Session
 
 PERSON = "person"
 TRAINED = "ppo_foresight"
-"""The pre-trained agent that is offered where the repository has it; it is loaded when it is first asked."""
+"""The pre-trained agent that is offered if the repository has it. It is loaded at its first stroke."""
 
 
 class Seats:
@@ -23,11 +23,11 @@ class Seats:
     Parameters
     ----------
     agents : mapping of str to a player of ``snooker_env.advice``
-        By name: those that may be chosen besides the built-in ones.
+        Agents that may be chosen besides the built-in ones, by name.
     """
 
     who: list[str]
-    """``PERSON`` or an agent's name, of each seat."""
+    """``PERSON`` or the name of an agent, for each seat."""
 
     def __init__(self, agents: Mapping[str, Any]):
         offered = [*BUILT_IN, *(name for name in names() if name == TRAINED)]
@@ -36,7 +36,7 @@ class Seats:
 
     @property
     def names(self) -> list[str]:
-        """Who may sit down: persons and agents."""
+        """The players that may sit down: "person" and the agents."""
         return [PERSON, *self._players]
 
     @property
@@ -45,30 +45,30 @@ class Seats:
         return list(self._players)
 
     def sit(self, who: list[str]) -> None:
-        """Give both seats away; ValueError for an unknown name."""
+        """Assign both seats; ValueError for an unknown name."""
         if not isinstance(who, list) or len(who) != 2:
             raise refuse("players", who, "must be two names")
         self.who = [choice(f"players[{k}]", name, self.names) for k, name in enumerate(who)]
 
     def is_agent(self, seat: int) -> bool:
-        """Does an agent sit there?"""
+        """Whether an agent has this seat."""
         return self.who[seat] != PERSON
 
     def label(self, seat: int) -> str:
-        """How a player is called."""
+        """The player's name on the page."""
         if self.is_agent(seat):
             name = self.who[seat].replace("_", " ")  # as the page lists it
             return name if self.who[0] != self.who[1] else f"{name} {seat + 1}"
         return "You" if self.is_agent(1 - seat) else f"Player {seat + 1}"
 
     def player(self, name: str) -> Any:
-        """The player of ``snooker_env.advice`` of that name."""
+        """The player of ``snooker_env.advice`` with this name."""
         choice("agent", name, self.agents)
         if self._players[name] is None:
             self._players[name] = player_of(name)
         return self._players[name]
 
     def stroke(self, name: str, session: Session) -> CueStroke:
-        """What an agent plays at the table as it stands, and where it puts a cue ball in hand. ``session`` is left as it is."""
+        """The stroke that an agent plays on the current table, with a place for a cue ball in hand. ``session`` is not changed."""
         noise, seed = session.noise[session.frame.striker], len(session.acts)
         return stroke_of(self.player(name), session.planned(), noise=noise, seed=seed)

@@ -1,8 +1,8 @@
-"""How does the game answer a browser or a program? One small HTTP server on this machine's own address, for those who know its token.
+"""How does the game answer a browser or a program? A small HTTP server on this machine's own address, for those who have its token.
 
 Every request is checked before anything is done: the token in its path, in constant time; ``Host``, so that no other name leads here;
-``Origin`` and ``Sec-Fetch-Site``, so that no other page asks; method, path, length, type and form of what it carries. Requests have a limit
-on their head, their body, their time and their number at once. Whatever is wrong is answered by one JSON error.
+``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method, path, length, type and form of the body. Requests are
+limited in head, body, time and number. Every error is answered by one JSON object.
 """
 
 import hmac
@@ -31,17 +31,18 @@ FILES = {
         for name in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js")
     },
 }  # fmt: skip
-"""What is served besides the protocol: path -> file of ``WEB`` and its type. Nothing else is ever read."""
+"""Files that are served besides the protocol: path -> file in ``WEB`` and its type. No other file is ever read."""
 MOST_HEAD = 16_384
 MOST_BODY = 65_536
-"""Bytes of a request's head and body; a saved game has about 3,000."""
+"""Largest head and body of a request [bytes]; a saved game has about 3,000."""
 MOST_AT_ONCE = 32
+"""Largest number of connections; a browser keeps six."""
 _FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
 FULL = (
     b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\nContent-Length: %d\r\n\r\n" % len(_FULL)
     + _FULL
 )
-"""Connections; a browser keeps six."""
+"""The answer to further connections."""
 IDLE, REQUEST = 20.0, 10.0
 """How long a connection may wait for its next request, and a request for its end [s]."""
 HEADERS = {
@@ -53,7 +54,7 @@ HEADERS = {
 
 
 class RefusedError(Exception):
-    """A request that is not answered; its status and what the JSON error says."""
+    """A request that is refused, with its status and the JSON error."""
 
     def __init__(self, status: int, message: str, field: str | None = None, value: Any = None):
         super().__init__(message)
@@ -61,7 +62,7 @@ class RefusedError(Exception):
 
 
 class TimedReader:
-    """A connection as ``http.server`` reads it, with an end: no more bytes in a head, no longer than ``REQUEST`` from its first byte."""
+    """A connection for ``http.server`` with limits: bytes in a head, and ``REQUEST`` seconds from the first byte of a request."""
 
     def __init__(self, connection: socket.socket):
         self._socket, self._held = connection, b""
@@ -69,7 +70,7 @@ class TimedReader:
         self._left = 0
 
     def expect(self) -> None:
-        """A new request may begin."""
+        """Allow a new request to begin."""
         self._until, self._left = 0.0, MOST_HEAD
 
     def readline(self, limit: int = -1) -> bytes:
@@ -114,13 +115,13 @@ class PlayHandler(BaseHTTPRequestHandler):
     server_version, sys_version = "snooker_env", ""
 
     def setup(self) -> None:
-        """Read with limits."""
+        """Install the limited reader."""
         super().setup()
         self.connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.rfile: Any = TimedReader(self.connection)
 
     def handle_one_request(self) -> None:
-        """One request, its head within the limits."""
+        """Handle one request, its head within the limits."""
         self.rfile.expect()
         self.path, self.command, self.requestline, self.request_version, self.close_connection = "", "", "", "HTTP/1.1", True
         try:
@@ -132,22 +133,22 @@ class PlayHandler(BaseHTTPRequestHandler):
             self.close_connection = True
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Nothing: a path holds the token."""
+        """Log nothing: a path holds the token."""
 
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
-        """What ``http.server`` itself finds wrong, as one JSON error."""
+        """Answer an error that ``http.server`` itself finds, as one JSON error."""
         self.close_connection = True
         self._refuse(RefusedError(405 if code == 501 else code, message or "not a request that can be answered"))
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("do_"):  # any method: it is refused by the same checks, after the token
+        if name.startswith("do_"):  # any method: the same checks refuse it, after the token
             return self._serve
         raise AttributeError(name)
 
     # one request ------------------------------------------------------------------------------------------------------------
 
     def finish(self) -> None:
-        """Read what is left of a request that was refused: a connection closed on unread bytes would take the answer with it."""
+        """Read the rest of a refused request: closing a connection with unread bytes would lose the answer."""
         with suppress(OSError):
             self.connection.shutdown(socket.SHUT_WR)
             self.connection.settimeout(0.2)
@@ -178,7 +179,7 @@ class PlayHandler(BaseHTTPRequestHandler):
             self._refuse(RefusedError(500, f"this stroke cannot be computed: {error}"))
 
     def _checked(self) -> tuple[str, dict[str, Any]]:
-        """The path behind the token and the query, of a request that may be answered."""
+        """The path after the token and the query, of a valid request."""
         head = self.headers
         host = head.get_all("Host") or []
         if len(host) != 1 or host[0].lower() not in self.server.hosts:
@@ -193,7 +194,7 @@ class PlayHandler(BaseHTTPRequestHandler):
             raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
         parts = urlsplit(self.path)
         token, _, name = parts.path.removeprefix("/").partition("/")
-        name = re.sub("^/+(?=api/)", "", name)  # the printed address ends with "/", and so "/api/state" is often put behind it
+        name = re.sub("^/+(?=api/)", "", name)  # the printed address ends with "/", and clients often append "/api/state"
         if not parts.path.startswith("/") or not hmac.compare_digest(token.encode(), self.server.token.encode()):
             raise self._last(403, "the address must hold the token that was printed when the server started")
         if self.command not in ("GET", "POST"):
@@ -224,7 +225,7 @@ class PlayHandler(BaseHTTPRequestHandler):
     def _body(self) -> dict[str, Any]:
         length = self.headers.get_all("Content-Length") or []
         if not length or length == ["0"]:  # as ``curl -X POST`` sends it
-            self.close_connection = self.close_connection or not length  # there might be a body whose end nobody knows
+            self.close_connection = self.close_connection or not length  # there might be a body without a known end
             return {}
         if len(length) != 1 or not re.fullmatch(r"\d{1,12}", length[0]):
             raise self._last(411, "must be one number of bytes", "Content-Length", ", ".join(length))
@@ -239,7 +240,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         return parsed(raw)
 
     def _last(self, status: int, message: str, field: str | None = None, value: Any = None, **headers: str) -> RefusedError:
-        """A refusal after which the connection is closed: what follows on it may not have been read."""
+        """A refusal that closes the connection, because the rest of the request may not have been read."""
         self.close_connection = True
         refused = RefusedError(status, message, field, value)
         refused.headers = headers  # type: ignore[attr-defined]
@@ -271,7 +272,7 @@ class PlayHandler(BaseHTTPRequestHandler):
 
 
 def parsed(raw: bytes) -> dict[str, Any]:
-    """The JSON object in a body; RefusedError for anything else, NaN, Infinity and a name that comes twice among it."""
+    """The JSON object in a body; RefusedError for anything else, including NaN, Infinity and repeated names."""
     try:
         found = json.loads(raw.decode("utf-8"), parse_constant=_no_number, object_pairs_hook=_once) if raw else {}
     except (ValueError, RecursionError) as error:
@@ -298,8 +299,9 @@ class PlayServer(ThreadingHTTPServer):
     Parameters
     ----------
     service : Service
+        The game.
     port : int
-        0: any that is free.
+        The port; 0 for any that is free.
     """
 
     daemon_threads = True
@@ -313,11 +315,11 @@ class PlayServer(ThreadingHTTPServer):
 
     @property
     def address(self) -> str:
-        """Of the page; the protocol is at its ``api/``."""
+        """Address of the page; the protocol is at its ``api/``."""
         return f"http://127.0.0.1:{self.server_port}/{self.token}/"
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection in a thread of its own, unless there are too many."""
+        """Serve a connection in its own thread, unless there are too many."""
         if not self._free.acquire(blocking=False):
             with suppress(OSError):
                 request.settimeout(1.0)
@@ -327,13 +329,13 @@ class PlayServer(ThreadingHTTPServer):
         super().process_request(request, client_address)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Serve it, and make room."""
+        """Serve a connection, then free its place."""
         try:
             super().process_request_thread(request, client_address)
         finally:
             self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """A connection that was cut is no fault of this program; anything else is, and is told."""
+        """Report errors, except for connections that were cut."""
         if not isinstance(sys.exc_info()[1], OSError):
             super().handle_error(request, client_address)

@@ -1,7 +1,7 @@
-"""How do a page, a program and thinking agents share one game? Behind one lock: each act is whole, and agents think on copies.
+"""How do a page, a program and thinking agents share one game? Behind one lock: each act is atomic, and agents think on copies.
 
-A number, the revision, grows with everything that changes; who waits for a change names the one that he knows. The agent's thread is told
-when it is its turn, and what it has thought out is dropped if the game has moved on meanwhile.
+A number, the revision, grows with every change; a request that waits for a change names the last revision it has seen. The agent's thread
+is notified when it is its turn, and its stroke is dropped if the game has changed in the meantime.
 """
 
 import threading
@@ -19,11 +19,11 @@ LONGEST_WAIT = 25.0
 
 
 class BusyError(RuntimeError):
-    """Too much is being computed already; to be asked again a little later."""
+    """Too many questions are being computed; the client should try again later."""
 
 
 class StaleError(RuntimeError):
-    """A question about a table that is no longer so."""
+    """A question about a table that has changed since."""
 
 
 class Service:
@@ -32,13 +32,15 @@ class Service:
     Parameters
     ----------
     session : Session
+        The game.
     seats : Seats
+        The players.
     """
 
     paused: bool
-    """Whether an agent whose turn it is waits to be told to go on: after an undo, a load, a position set up, and between two agents."""
+    """Whether an agent whose turn it is waits for ``go_on``: after an undo, a load or a position set up, and between two agents."""
     trouble: str
-    """Why the last agent that was asked did not play, or ""."""
+    """Why the last agent did not play, or ""."""
 
     def __init__(self, session: Session, seats: Seats):
         self.session, self.seats = session, seats
@@ -50,7 +52,7 @@ class Service:
         self._thread.start()
 
     def close(self) -> None:
-        """No agent plays from now on."""
+        """Stop the agents."""
         with self._changed:
             self._closed = True
             self._changed.notify_all()
@@ -58,16 +60,16 @@ class Service:
     # for requests -----------------------------------------------------------------------------------------------------------
 
     @contextmanager
-    def looking(self) -> Iterator[Session]:
-        """The game, while nobody changes it."""
+    def reading(self) -> Iterator[Session]:
+        """The game, for reading: no other thread changes it meanwhile."""
         with self._changed:
             yield self.session
 
     @contextmanager
     def acting(self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False) -> Iterator[Session]:
-        """The game, to change it. ``pause``: an agent whose turn it is then waits; ``any_turn``: also while an agent is to play.
+        """The game, for changing it. ``pause``: an agent whose turn it is then waits; ``any_turn``: allowed also during an agent's turn.
 
-        Raises ValueError if it is an agent's turn, StaleError if that is the revision no longer. What raises inside has changed nothing.
+        Raises ValueError during an agent's turn, StaleError if the revision is out of date. After an error inside, nothing has changed.
         """
         with self._changed:
             if revision not in (None, self.revision):
@@ -80,7 +82,7 @@ class Service:
 
     @contextmanager
     def asking(self, revision: int | None = None) -> Iterator[Session]:
-        """A copy of the game to try strokes on; ``BusyError`` if too many ask at once, ``StaleError`` if that is the revision no longer."""
+        """A copy of the game for trial strokes; ``BusyError`` for too many questions, ``StaleError`` for an old revision."""
         if not self._asking.acquire(timeout=10.0):
             raise BusyError("other questions are being answered")
         try:
@@ -93,7 +95,7 @@ class Service:
             self._asking.release()
 
     def wait(self, revision: int, seconds: float) -> None:
-        """Return when the revision is another one, or when the time is over."""
+        """Return when the revision has changed, or after that time."""
         until = monotonic() + min(seconds, LONGEST_WAIT)
         with self._changed:
             while self.revision == revision and not self._closed and (left := until - monotonic()) > 0:
@@ -103,20 +105,20 @@ class Service:
         """Let the agent play whose turn it is."""
         with self._changed:
             if not self.paused:
-                return  # it thinks already: another page said so first
+                return  # it is thinking already: another page was first
             self.paused, self.trouble = False, ""
             self._moved()
 
     # agents -----------------------------------------------------------------------------------------------------------------
 
     def agent_to_play(self) -> bool:
-        """Is it an agent's turn?"""
+        """Whether it is an agent's turn."""
         frame = self.session.frame
         return frame.phase != "over" and self.seats.is_agent(frame.striker)
 
     @property
     def thinking(self) -> bool:
-        """Is an agent thinking about its stroke, or about to?"""
+        """Whether an agent is thinking about its stroke, or about to."""
         return self.agent_to_play() and not self.paused
 
     def _moved(self):
@@ -140,7 +142,7 @@ class Service:
             trouble = ""
             try:
                 stroke = self.seats.stroke(who, twin)
-            except Exception as error:  # it may be anybody's player: whatever it raises is told, and the game waits
+            except Exception as error:  # a custom player may raise anything: it is reported, and the game waits
                 trouble = f"{who} gave no stroke ({type(error).__name__}: {error})"
             with self._changed:
                 if self.revision != revision or self._closed:
@@ -162,7 +164,7 @@ class Service:
 
 
 def last_words(act: Act, labels: tuple[str, str]) -> str:
-    """What was done last, in a sentence."""
+    """The last act, in a sentence."""
     who = "" if act.player is None else labels[act.player]
     if act.played is not None:
         said = f" ({act.said} nominated)" if act.said else ""

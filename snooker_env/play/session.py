@@ -1,8 +1,8 @@
-"""What is the game on the page? One frame in memory, played by the project's own pipeline, with everything that was done and can be undone.
+"""What is the game on the page? One frame in memory, played by the package's own functions, with a list of acts to undo and redo.
 
-``Session`` knows nobody: it plays the strokes and decisions that it is given, for whoever is the striker, with the noise of that seat.
-``seats.py`` says who sits there, ``service.py`` keeps threads apart. Each act is an ``Act`` in a list; undo and redo move in it. A state
-carries its random numbers, so a stroke that is undone and played again meets the same errors of execution.
+``Session`` plays the strokes and decisions that it is given, for the current striker, with the noise of that seat. ``seats.py`` says who
+sits there, ``service.py`` handles threads. Each act is an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so
+a stroke that is undone and played again meets the same execution errors.
 """
 
 from dataclasses import dataclass, replace
@@ -32,25 +32,25 @@ from ..tasks.tables import Crew
 from .wishes import DECISIONS, action_of
 
 STATE = ("positions", "on_table", "frame", "strokes", "stream")
-"""What a saved game holds of the table."""
+"""Fields of the table in a saved game."""
 
 
 @dataclass(frozen=True, eq=False)
 class Act:
-    """Something that was done.
+    """An act in the game.
 
     Attributes
     ----------
     what : str
         "new", "stroke", "choice", "set_up", "load" or "concede".
     state : dict
-        The table after it, of JSON types.
-    player : int, or None
+        The table after it, as JSON types.
+    player : int or None
         Who did it.
-    played : Played, or None
-        Of a stroke: as it was struck, simulated and judged.
+    played : Played or None
+        For a stroke: as it was struck, simulated and judged.
     said : str
-        Of a choice: which; of a stroke: the colour that was nominated.
+        For a choice: the decision; for a stroke: the colour that was nominated.
     """
 
     what: str
@@ -66,25 +66,25 @@ class Session:
     Parameters
     ----------
     layout : str
-        How the table is dealt: a layout's name.
+        How the table is dealt: the name of a layout.
     seed : int
-        Of all random numbers.
+        Seed of all random numbers.
     """
 
     noise: list[NoiseName]
-    """Errors of execution of each seat: names of ``snooker_env.tasks.LEVELS``."""
+    """Execution errors of each seat: names of ``snooker_env.tasks.LEVELS``."""
     practice: bool
-    """Alone at the table: it always comes back to player 0, and after a foul the balls stay as they lie."""
+    """Alone at the table: the turn always returns to player 0, and after a foul the balls stay as they lie."""
     acts: list[Act]
     at: int
-    """How many of the acts count: those behind were undone."""
+    """Number of acts that count; the following ones were undone."""
 
     def __init__(self, *, layout: str = "break_off", seed: int = 0):
         self._options = Options(
             task="frame", placement=True, decision=True, elevation=True, miss="clear_path", max_strokes=None, layout=layout
         )
         self.noise, self.practice = ["none", "none"], False
-        self._generator = np.random.default_rng(0)  # a state holds one; no stroke draws from it
+        self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
         self._rules: dict[str, Rules] = {}
@@ -95,21 +95,21 @@ class Session:
 
     @property
     def frame(self) -> Frame:
-        """The frame as it stands."""
+        """The current frame."""
         return self.tables.frame(0)
 
     @property
     def state(self) -> dict[str, Any]:
-        """The table as JSON types: what ``STATE`` names."""
+        """The table as JSON types, with the fields ``STATE``."""
         return self.tables.get_state(0)
 
     @property
     def strokes(self) -> list[int]:
-        """Which of the acts are strokes, in order."""
+        """Indices of the acts that are strokes, in order."""
         return [k for k, act in enumerate(self.acts[: self.at]) if act.played is not None]
 
     def nominations(self) -> tuple[int, ...]:
-        """The colours that the striker may name before his stroke: after a red, and as a free ball."""
+        """The colours that the striker may nominate before his stroke: after a red, and as a free ball."""
         frame = self.frame
         if frame.phase != "stroke":
             return ()
@@ -119,7 +119,7 @@ class Session:
         return tuple(i for i in ids_of(frame.on_table) if i > 15 and i != on) if frame.free_ball else ()
 
     def planned(self, *, free_ball: bool = False) -> Positions:
-        """The stroke to come as planning takes it, as one of a visit; with ``free_ball`` every colour is on instead of the ball on."""
+        """The position of the next stroke for planning, as one of a visit; with ``free_ball`` every colour is on instead of the ball on."""
         frame, tables = self.frame, self.tables
         if frame.phase == "over":
             raise refuse("phase", "over", "must not be over: there is no stroke to play")
@@ -127,17 +127,17 @@ class Session:
         return Positions(tables.positions.copy(), tables.on_table.copy(), [[int(on), int(frame.in_hand), frame.break_points, 0, 0]])
 
     def rules_with(self, noise: NoiseName) -> Rules:
-        """How this frame is played by somebody with these errors of execution."""
+        """The rules of this frame for a player with these execution errors."""
         if noise not in self._rules:
             self._rules[noise] = self._options.but(noise=noise).rules
         return self._rules[noise]
 
     def copy_to(self, tables: Frames) -> None:
-        """Put another table into the state of this one."""
+        """Copy the state to another table."""
         tables.set_state(0, self._checked(self.state))
 
     def twin(self) -> "Session":
-        """A session of its own that stands as this one does, for another thread; of its acts it knows the last."""
+        """A copy for another thread; of the acts it holds the last one only."""
         other = object.__new__(Session)
         other.__dict__.update(self.__dict__)
         other._buffers, other.noise = ShotBuffers(1, path=True), list(self.noise)
@@ -149,7 +149,7 @@ class Session:
     # what is done -----------------------------------------------------------------------------------------------------------
 
     def new(self, *, layout: str | None = None, seed: int = 0, breaker: int = 0) -> None:
-        """A new frame; what was done before is forgotten. ValueError for an unknown layout."""
+        """Begin a new frame; earlier acts are forgotten. ValueError for an unknown layout."""
         options = self._options if layout is None else self._options.but(layout=layout)
         integer("seed", seed, 0, 2**63 - 1)
         integer("breaker", breaker, 0, 1)
@@ -161,7 +161,7 @@ class Session:
         self.acts, self.at = [Act("new", self.state)], 1
 
     def check_stroke(self, nominated: int = AUTO) -> None:
-        """ValueError unless a stroke may be played now, and that colour be named."""
+        """Raise ValueError unless a stroke may be played now, and that colour be nominated."""
         frame = self.frame
         if frame.phase != "stroke":
             allowed = 'must be "stroke": choose first (play, play_again or replace)' if frame.phase == "choice" else "must not be over"
@@ -172,7 +172,7 @@ class Session:
             raise refuse("nominate", NAMES[nominated], allowed)
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
-        """The striker's stroke, from where the cue ball lies; ``nominated``: the colour that he names, AUTO: the one first struck."""
+        """Play the striker's stroke from where the cue ball lies; ``nominated``: his colour, or AUTO for the one first struck."""
         self.check_stroke(nominated)
         before, tables = self.state, self.tables
         striker = self.frame.striker
@@ -206,7 +206,7 @@ class Session:
         self._write(replace(frame, striker=0), int(self.tables.game[0, STROKES]))
 
     def choose(self, what: str) -> Act:
-        """The decision after a foul of the other: "play", "play_again", or after a miss "replace"."""
+        """Take the decision after a foul of the opponent: "play", "play_again", or after a miss "replace"."""
         frame = self.frame
         if frame.phase != "choice":
             raise refuse("choice", what, "must be left out: the other player has not just fouled")
@@ -218,7 +218,7 @@ class Session:
         return self._did(Act("choice", self.state, frame.striker, said=what))
 
     def concede(self) -> Act:
-        """The striker gives the frame up."""
+        """End the frame: the striker concedes."""
         frame = self.frame
         if frame.phase == "over":
             raise refuse("phase", frame.phase, "must not be over")
@@ -226,7 +226,7 @@ class Session:
         return self._did(Act("concede", self.state, frame.striker))
 
     def place(self, x: float, y: float) -> tuple[float, float]:
-        """Put the cue ball in hand on the free place of the D nearest to (x, y), and say where that is. It may be moved again."""
+        """Put the cue ball in hand on the free place of the D nearest to (x, y), and return that place. It may be moved again."""
         frame = self.frame
         if not frame.in_hand or frame.phase != "stroke":
             raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
@@ -236,7 +236,7 @@ class Session:
         return px, py
 
     def set_up(self, position: Position, *, scores: tuple[int, int], striker: int, free_ball: bool, check: bool = False) -> None:
-        """Put the balls as a position says. ``check``: only say what is wrong with it. ValueError names the ball or the field."""
+        """Put the balls as in a position. ``check``: only validate it. ValueError names the ball or the field."""
         positions, on_table, _ = position.arrays()
         mask = mask_of_present(on_table) & ~1
         for i in np.flatnonzero(~on_table):
@@ -254,21 +254,21 @@ class Session:
             self._did(Act("set_up", self.state))
 
     def undo(self) -> bool:
-        """Take the last act back, if there is one."""
+        """Undo the last act; returns whether there was one."""
         return self._go(self.at - 1)
 
     def redo(self) -> bool:
-        """Do again what was taken back, if there is something."""
+        """Redo an act that was undone; returns whether there was one."""
         return self._go(self.at + 1)
 
     # files ------------------------------------------------------------------------------------------------------------------
 
     def save(self) -> dict[str, Any]:
-        """The game as it stands, as JSON types."""
+        """The current game as JSON types."""
         return {"format": "snooker-game", "version": 1, "practice": self.practice, "noise": list(self.noise), "state": self.state}
 
     def load(self, saved: Any) -> None:
-        """Take over what ``save`` gave; ValueError says what is wrong with it, and then nothing has changed."""
+        """Restore a result of ``save``. ValueError names what is invalid, and then nothing has changed."""
         fields = ("format", "version", "practice", "noise", "state")
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
             raise refuse_what("saved", "something else", 'must be a saved game, with "format": "snooker-game"')

@@ -1,6 +1,6 @@
-"""Which stroke does a request ask for? Its fields checked, in SI units and names, and as a row of the box action space.
+"""Which stroke does a request contain? Its fields checked, in SI units and names, and as a row of the box action space.
 
-Nothing is repaired on the way: a tip beyond the miscue limit or a speed out of range is refused, and the message says what is allowed.
+Nothing is corrected: a tip beyond the miscue limit or a speed out of range is refused, and the message says what is allowed.
 """
 
 from math import sqrt
@@ -15,13 +15,13 @@ from ..game.balls import COLOUR_NAMES, NAMES, colour
 from ..geometry import BAULK_Y, D_RADIUS, POCKETS
 
 DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0}
-"""The last number of an action, for each choice after a foul."""
+"""Last component of an action for each choice after a foul."""
 
 
 def action_of(stroke: CueStroke, place: tuple[float, float]) -> Floats:
-    """The row of ``Actions("absolute", elevation=True, placement=True, decision=True)`` that means this stroke, in all its digits.
+    """The row of ``Actions("absolute", elevation=True, placement=True, decision=True)`` for this stroke, in full precision.
 
-    ``place``: where the cue ball is to lie if it is in hand, in the D [m].
+    ``place``: where a cue ball in hand is placed in the D [m].
     """
     across = min(1.0, max(-1.0, place[0] / D_RADIUS))
     depth = D_RADIUS * sqrt(max(0.0, 1.0 - across * across))
@@ -30,7 +30,7 @@ def action_of(stroke: CueStroke, place: tuple[float, float]) -> Floats:
 
 
 def stroke_in(given: dict[str, Any], aim: float | None = None) -> CueStroke:
-    """The stroke in a request: "speed", "aim" unless it is given otherwise, "side", "top", "elevation"; ValueError for a wrong number."""
+    """The stroke in a request: "speed", "aim" (unless passed separately), "side", "top", "elevation"; ValueError if invalid."""
     for name in ("speed",) if aim is not None else ("speed", "aim"):
         if name not in given:
             raise refuse(name, None, 'must be given: {"speed": m/s, "aim": rad, "side": 0, "top": 0, "elevation": 0}')
@@ -46,17 +46,17 @@ def place_of_request(field: str, value: Any) -> tuple[float, float]:
 
 
 def ball_named(field: str, value: Any) -> int:
-    """The id of an object ball by its name ("red 3", "blue")."""
+    """Id of the object ball with a name ("red 3", "blue")."""
     return NAMES.index(choice(field, value, NAMES[1:]))
 
 
 def colour_named(field: str, value: Any) -> int:
-    """The id of a colour by its name."""
+    """Id of the colour with a name."""
     return colour(choice(field, value, COLOUR_NAMES))
 
 
 def pocket_named(field: str, value: Any) -> int:
-    """The index of a pocket by its name; "right middle" is "middle right"."""
+    """Index of the pocket with a name; "right middle" is "middle right"."""
     if isinstance(value, str):
         for k, name in enumerate(POCKETS):
             if sorted(value.lower().split()) == sorted(name.split()):

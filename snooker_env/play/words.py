@@ -1,6 +1,6 @@
-"""What does a blind player need to know? The table in plain words: every ball's place, what is on, lines to pockets, scores, what is asked.
+"""How is the table described without a picture? In plain words: balls, ball on, lines to pockets, scores, what is to be done.
 
-Left and right are as seen from the baulk end: right is the yellow's side, +x; the black end is +y.
+Left and right are as seen from the baulk end: right is the yellow side, +x; the black end is +y.
 """
 
 from math import hypot
@@ -19,7 +19,7 @@ _ALONG = (
 
 
 def on_words(ball_on: BallOn, free_ball: bool = False) -> str:
-    """What is on, as one says it."""
+    """The ball on in words."""
     words = ball_on.name.lower().replace("_", " ")
     return f"{words}, and a free ball" if free_ball else words
 
@@ -58,12 +58,12 @@ def table_text(places: dict[int, tuple[float, float]], on: int, lines: list[Line
 
 
 def _how_shut(line):
-    """The line that comes nearest to being open comes first."""
+    """Sorting key: lines that are nearly open come first."""
     return len(line.blocked_by) or 9, line.cut
 
 
 def freedom(places: dict[int, tuple[float, float]]) -> list[str]:
-    """What is about the cue ball: touching balls, balls and cushions that hamper it."""
+    """The surroundings of the cue ball: touching balls, and the nearest ball."""
     if CUE not in places:
         return []
     x, y = places[CUE]

@@ -1,6 +1,6 @@
-"""How a table looks. ``scene`` says what to draw, in metres; ``pygame_view`` draws it as a picture, ``ascii_view`` as text.
+"""Pictures of a table: ``scene`` describes one in metres, ``pygame_view`` draws it as a picture, ``ascii_view`` as text.
 
-``__all__`` is public: what somebody needs who draws tables with a library of his own.
+``__all__`` is public: the geometry and the colours for drawing tables with another library.
 """
 
 from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, outline, scene_data

@@ -1,7 +1,7 @@
 """How is a scene drawn in a terminal? From above in characters, baulk left and black right, as the picture of ``pygame_view``.
 
 A ball is a letter in the cell of its centre: W the white cue ball, r a red, Y G N B P K the colours (N brown and K black, because B is
-blue). Reds that share a cell become their number; the cue ball is never hidden, and a line below names what lies under another ball.
+blue). Reds that share a cell are shown as their number. The cue ball is never hidden; a line below names the balls under another one.
 """
 
 from itertools import pairwise
@@ -15,7 +15,7 @@ from .palette import LETTERS, PALE
 from .scene import Scene
 
 WIDTH = 100
-"""Characters a line unless told."""
+"""Default number of characters a line."""
 
 _LEGEND = "W=cue  r=red (digit: several)  Y=yellow G=green N=brown B=blue P=pink K=black"
 _LINE, _ARC, _SPOT, _PATH, _AIM, _GHOST, _POCKET = "│", "·", "+", ".", "-", "o", "O"
@@ -28,7 +28,7 @@ class _Grid:
         (self.left, self.right), (self.low, self.high) = extent(table).tolist()
         self.columns = columns
         rows = round(columns * (self.right - self.left) / (self.high - self.low) / 2)
-        self.rows = min(max(9, rows), 400) | 1  # odd: blue, brown, pink and black have their own row
+        self.rows = min(max(9, rows), 400) | 1  # odd, so that blue, brown, pink and black have a row of their own
         self.cells = np.full((self.rows, columns), " ")
         self.owner = np.full((self.rows, columns), -1)  # ball id, for colours
 
@@ -47,7 +47,7 @@ class _Grid:
             self.cells[at], self.owner[at] = character, owner
 
     def line(self, points, character, owner=-1):
-        """A polyline, by points closer than the cells."""
+        """A polyline, drawn by points closer than the cells."""
         step = (self.high - self.low) / self.columns / 2
         for a, b in pairwise(points):
             for part in np.linspace(0.0, 1.0, 2 + int(np.hypot(*(b - a)) / step)):
@@ -57,7 +57,7 @@ class _Grid:
 def ansi(scene: Scene, width: int = WIDTH, *, colour: bool = False) -> str:
     """The scene as lines of text ``width`` characters wide (60 to 400), the status and a legend below. No line ends with a line break.
 
-    colour: True adds terminal colour codes (24 bit) around balls and paths; without it there are none.
+    colour: True adds terminal colour codes (24 bit) around balls and paths.
     """
     grid = _Grid(integer("width", width, 60, 400) - 2, scene.table)
     if is_marked(scene.table):
@@ -82,7 +82,7 @@ def ansi(scene: Scene, width: int = WIDTH, *, colour: bool = False) -> str:
 
 
 def _balls(grid, scene):
-    """Put the balls' letters on the grid; returns what could not be shown, e.g. "r under W"."""
+    """Put the balls' letters on the grid; returns the balls that could not be shown, for instance "r under W"."""
     shared = {}
     for ball, point in zip(scene.ids.tolist(), scene.positions, strict=True):
         at = grid.cell(np.clip(point, (grid.left, grid.low), (grid.right, grid.high)))

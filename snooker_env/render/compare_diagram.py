@@ -1,4 +1,4 @@
-"""How are two ways to play a stroke compared? Their diagrams side by side, of the same part of the table."""
+"""How are two ways to play a stroke compared? By their diagrams side by side, of the same part of the table."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -26,33 +26,34 @@ def compare(
     view: View = "shot",
     **options: Any,
 ) -> "tuple[Axes, ...]":
-    """Draw shots side by side, each as ``plot`` does, all of them showing the same part of the table.
+    """Draw shots side by side, each as ``plot`` does, with the same part of the table.
 
     Parameters
     ----------
     shots : sequence of Shot
-        On one table.
+        The shots, all on the same table.
     labels : sequence of str
-        A title for each; left out, there is none.
+        A title for each shot, or () for none.
     axes : sequence of matplotlib.axes.Axes, optional
-        Where to draw each; None: in a figure of their own.
+        Axes for each shot; None makes a new figure.
     cues : sequence of mapping or None, optional
-        How each cue ball was struck, see ``plot``.
+        How each cue ball was struck, as ``cue`` in ``plot``.
     view : "table", "shot" or ((float, float), (float, float))
-        See ``plot``; "shot": as much as all of them need.
+        The part of the table to show, as in ``plot`` [m]; "shot": as much as all shots need.
     **options
-        Others of ``plot``.
+        Other options of ``plot``.
 
     Returns
     -------
     tuple of matplotlib.axes.Axes
+        The axes of the diagrams.
 
     Raises
     ------
     ValueError
-        If there is no shot, if they were played on different tables, or if labels, axes or cues are not one for each.
+        If there is no shot, if they were played on different tables, or if there is not one label, axes or cue for each shot.
     ImportError
-        Without matplotlib.
+        If matplotlib is not installed.
 
     Examples
     --------
@@ -66,7 +67,7 @@ def compare(
     """
     shots = list(shots)
     if not shots:
-        raise refuse("shots", shots, "must hold at least one")
+        raise refuse("shots", shots, "must hold at least one shot")
     for field, given in (("labels", labels), ("axes", axes), ("cues", cues)):
         if given is not None and len(given) not in ({0, len(shots)} if field == "labels" else {len(shots)}):
             raise refuse_what(field, f"{len(given)} of them", f"must be {len(shots)}, one for each shot")

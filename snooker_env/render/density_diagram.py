@@ -1,4 +1,4 @@
-"""Where does a ball stop, how likely? A cloud of points as a heat map on the table, with the areas that hold half and nine tenths of it."""
+"""Where does a ball stop, and how likely? A heat map of final positions, with the areas that hold half and nine tenths of them."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -18,28 +18,65 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 HEAT = (255, 176, 46)
-"""Of the cloud."""
+"""Colour of the map: red, green, blue."""
 CELL = 0.01
-"""The cells of the map [m]."""
-_REACH = 3.0  # how far a point's bell is followed, in bandwidths
+"""Size of the cells of the map [m]."""
+_REACH = 3.0  # a Gaussian kernel is cut off at this many bandwidths
 
 
 def bandwidth_of(points: Floats) -> float:
-    """Scott's rule for points (m, 2): their spread times m^(-1/6), at least 1 cm and at most 15 cm."""
+    """The bandwidth by Scott's rule: the standard deviation of the points times m^(-1/6), at least 1 cm and at most 15 cm.
+
+    Parameters
+    ----------
+    points : float64 (m, 2)
+        Places [m].
+
+    Returns
+    -------
+    float
+        Standard deviation of the Gaussian kernels [m].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.render.diagrams import bandwidth_of
+    >>> round(bandwidth_of(np.array([[0.0, 0.0], [0.2, 0.0], [0.0, 0.2], [0.2, 0.2]])), 4)
+    0.0794
+    """
     spread = float(np.sqrt(points.var(axis=0).mean()))
     return float(np.clip(spread * len(points) ** (-1 / 6), 0.01, 0.15))
 
 
 def density_of(points: Floats, low: Floats, high: Floats, bandwidth: float, cell: float = CELL) -> tuple[Floats, Floats]:
-    """How densely points (m, 2) lie between the corners ``low`` and ``high`` (2,) [m], each spread as a bell of that bandwidth [m].
+    """A kernel density estimate with Gaussian kernels in a rectangle.
+
+    Parameters
+    ----------
+    points : float64 (m, 2)
+        Places [m].
+    low, high : float64 (2,)
+        Two opposite corners of the rectangle [m].
+    bandwidth : float
+        Standard deviation of the kernels [m].
+    cell : float
+        Size of a cell [m]; the cells fill the rectangle exactly, so theirs differs a little.
 
     Returns
     -------
     values : float64 (nx, ny)
-        Per square metre; the bells' tails beyond the corners are folded back, so that the sum times the cell's area is the share of the
-        points that lie within.
+        Density [1/m^2]. The tails of the kernels beyond the corners are folded back, so that the sum times the cell's area is the share of
+        the points that lie inside.
     size : float64 (2,)
-        Of a cell, close to ``cell`` [m].
+        Size of a cell, close to ``cell`` [m].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.render.diagrams import density_of
+    >>> values, size = density_of(np.array([[0.5, 1.0]]), np.zeros(2), np.array([1.0, 2.0]), bandwidth=0.1)
+    >>> round(float(values.sum() * size.prod()), 6)
+    1.0
     """
     n = np.maximum(1, np.round((high - low) / cell).astype(int))
     size = (high - low) / n
@@ -55,7 +92,27 @@ def density_of(points: Floats, low: Floats, high: Floats, bandwidth: float, cell
 
 
 def level_of(values: Floats, share: float) -> float:
-    """The density above which that share of everything lies."""
+    """The density above which a given share of the total lies.
+
+    Parameters
+    ----------
+    values : float64 (nx, ny)
+        Densities, as of ``density_of`` [1/m^2].
+    share : float
+        Share of the total, from 0 to 1.
+
+    Returns
+    -------
+    float
+        The level [1/m^2].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.render.diagrams import level_of
+    >>> level_of(np.array([[4.0, 3.0], [2.0, 1.0]]), 0.6)
+    3.0
+    """
     ranked = np.sort(values.ravel())[::-1]
     return float(ranked[min(np.searchsorted(np.cumsum(ranked), share * ranked.sum()), len(ranked) - 1)])
 
@@ -72,40 +129,43 @@ def density(
     view: View = "table",
     title: str = "",
 ) -> "Axes":
-    """Draw where a ball stops: the density of points, lines around the densest areas that hold given shares of it, and their mean.
+    """Draw the distribution of the places where a ball stops, as a heat map.
+
+    Lines surround the densest areas that hold given shares of the points, and a cross marks their mean.
 
     Parameters
     ----------
     points : array_like, float (m, 2)
-        Where it stopped each time [m], for instance ``snooker_env.advice.destinations(...).cue``. Rows of NaN, times at which it did not,
-        are left out, and the share of the others is written.
+        Final positions [m], for instance ``snooker_env.advice.destinations(...).cue``. Rows of NaN (the ball did not stop on the table)
+        are left out; the share of the others is then written beside the cross.
     ax : matplotlib.axes.Axes, optional
-        Where to draw, on a diagram that is there too: then the table stays as it is. None: in a figure of its own.
+        Axes to draw on; a diagram that is already there keeps its table. None makes a new figure.
     table : str, Table or None
         As in ``snooker_env.simulate``.
     position : Position, or array_like, float (n, 2), optional
-        Balls to be seen.
+        Balls to draw on the table [m].
     shares : sequence of float
-        Each within (0, 1): what part of the points the lines hold.
+        Shares of the points, each in (0, 1), around which lines are drawn.
     bandwidth : float, optional
-        How widely a point is spread [m]; None: Scott's rule.
+        Standard deviation of the Gaussian kernels [m], in [0.0001, 1]; None: Scott's rule.
     colour : sequence of int
-        Red, green and blue of the cloud, up to 255.
+        Red, green and blue of the map, 0 to 255.
     view : "table", "shot" or ((float, float), (float, float))
-        As in ``plot``; "shot": as much as the points need.
+        The part of the table to show, as in ``plot`` [m]; "shot": as much as the points need.
     title : str
-        A line at the top left.
+        Title at the top left.
 
     Returns
     -------
     matplotlib.axes.Axes
+        The axes of the diagram.
 
     Raises
     ------
     ValueError
         If there is no point, or an argument is wrong.
     ImportError
-        Without matplotlib.
+        If matplotlib is not installed.
 
     Examples
     --------
@@ -156,14 +216,14 @@ def _draw_balls(sketch, position):
 
 
 def _draw_cloud(sketch, points, bandwidth, shares, colour):
-    """The map where the cloud is, as opaque as it is dense, and a line around each share."""
+    """The map, more opaque where it is denser, and a line around each share."""
     from matplotlib.image import AxesImage
     from matplotlib.patheffects import withStroke
 
     bounds = extent(sketch.table)
     reach = 4.5 * bandwidth + 0.02
     low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
-    if is_closed(sketch.table):  # no ball's centre comes nearer to a cushion, but in a pocket's jaws
+    if is_closed(sketch.table):  # except in the jaws of a pocket no ball's centre is nearer to a cushion
         low, high = np.maximum(low, bounds[:, 0] + sketch.R), np.minimum(high, bounds[:, 1] - sketch.R)
     values, size = density_of(points.clip(low, high), low, high, bandwidth)
     strength = values / values.max()
@@ -186,7 +246,7 @@ def _draw_cloud(sketch, points, bandwidth, shares, colour):
 
 
 def _label(sketch, lines, share, *, outer):
-    """How much a line holds, at its rightmost point; of one within another at its leftmost."""
+    """The share of a line, written at its rightmost point; for a line inside another, at its leftmost."""
     from matplotlib.patheffects import withStroke
 
     ring = max(lines.get_paths()[0].to_polygons(closed_only=False), key=len, default=None)

@@ -1,12 +1,13 @@
-"""Which diagrams are there? Of one shot, of options side by side, of a fan over top and side, of where a ball stops: with matplotlib.
+"""Which diagrams are there? One shot, options side by side, a fan over top and side, and where a ball stops: with matplotlib.
 
-Each returns its axes and draws on those that it is given. The picture is seen from above, baulk left and black right: the axes' horizontal
-axis is y [m] to the right, the vertical one x [m] down.
+``plot``, ``compare``, ``fan`` and ``density`` draw on the axes that they are given, or on a new figure, and return the axes. The table is
+seen from above, baulk left and black right: the horizontal axis is y [m] to the right, the vertical one x [m] down. ``bandwidth_of``,
+``density_of`` and ``level_of`` are what ``density`` draws, as numbers.
 """
 
 from .compare_diagram import compare
-from .density_diagram import density
+from .density_diagram import bandwidth_of, density, density_of, level_of
 from .fan_diagram import fan
 from .shot_diagram import plot
 
-__all__ = ["compare", "density", "fan", "plot"]
+__all__ = ["bandwidth_of", "compare", "density", "density_of", "fan", "level_of", "plot"]

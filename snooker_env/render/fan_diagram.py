@@ -1,4 +1,4 @@
-"""Where can the cue ball go? The same pot with every top and side of a range, and the cue ball's path of each: a fan."""
+"""Where can the cue ball go? A fan: the same pot with every top and side of a range, and the cue ball's path of each."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 TOPS, SIDES = (-0.4, -0.2, 0.0, 0.2, 0.4), (-0.25, 0.0, 0.25)
-"""Tip offsets over R of a fan unless told."""
+"""Default tip offsets of a fan, over R."""
 SHADES = ((58, 132, 240), (150, 205, 255), (255, 255, 255), (255, 190, 120), (240, 84, 46))
 """Colours of the tops from lowest to highest: screw is blue, follow is red."""
 _MARKS = ("<", "o", ">")  # of side: left, none, right
@@ -34,7 +34,7 @@ class Option(NamedTuple):
     top: float
     side: float
     aim: float
-    """Of the cue [rad]."""
+    """Direction of the cue [rad]."""
     shot: Shot
 
 
@@ -56,46 +56,53 @@ def fan(
     labels: bool = False,
     title: str = "",
 ) -> "Axes":
-    """Draw the cue ball's paths of one pot, played with every pair of a top and a side: as Fig. 1 of the paper.
+    """Draw the cue ball's paths of one pot, played with every pair of a top and a side, as in Fig. 1 of the paper.
 
-    Side and throw move the aim that pots; of the aims that do, the middle one is played. A path's colour is its top, from screw (blue) to
-    follow (red); the sign at its end is its side.
+    Squirt and throw change the aim that pots the ball; of the aims that pot it, the middle one is played. The colour of a path is its top,
+    from screw (blue) to follow (red); the sign at its end is its side.
 
     Parameters
     ----------
     position : Position, or array_like, float (n, 2)
-        Where the balls lie [m], the cue ball first.
+        Positions of the balls [m], the cue ball first.
     ball : int, optional
-        Which ball is potted; None: the other one of two.
+        The ball to pot; None: the other one of two.
     pocket : int, optional
-        Into which fall of the table; None: that with the smallest cut.
+        The pocket, an index of the table's falls; None: the one with the smallest cut.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; None: in a figure of its own.
+        Axes to draw on; None makes a new figure.
     speed : float
-        Of the cue [m/s].
+        Speed that the cue gives [m/s].
     tops, sides : sequence of float
         Tip offsets over R, up and to the right.
     elevation : float
-        Of the cue's butt [rad].
+        Elevation of the cue [rad].
     aim : float, optional
-        The direction [rad] of every stroke; then nothing has to be potted.
-    table, physics
+        Direction of every stroke [rad]; then no ball needs to be potted.
+    table : str, Table or None
+        As in ``snooker_env.simulate``.
+    physics : None, str, dict or Physics
         As in ``snooker_env.simulate``.
     on_table : array_like, bool (n,), optional
-        Which balls are there, with an array of places.
-    view, labels, title
-        As in ``plot``.
+        False for the balls to leave out, with an array of positions; None: all are on the table.
+    view : "table", "shot" or ((float, float), (float, float))
+        The part of the table to show, as in ``plot`` [m].
+    labels : bool
+        Whether balls carry their letters.
+    title : str
+        Title at the top left.
 
     Returns
     -------
     matplotlib.axes.Axes
+        The axes of the diagram.
 
     Raises
     ------
     ValueError
-        If the ball cannot be potted there with one of the strokes, or an argument is wrong.
+        If one of the strokes cannot pot the ball, or an argument is wrong.
     ImportError
-        Without matplotlib.
+        If matplotlib is not installed.
 
     Examples
     --------
@@ -133,10 +140,10 @@ def fan_options(
     r: Floats, here: Any, ball: int | None, pocket: int | None, speed: float, tops: Sequence[float], sides: Sequence[float],
     elevation: float, aim: float | None, table: Table, physics: Physics,
 ) -> list[Option]:  # fmt: skip
-    """The strokes of a fan: for each top and side the aim, given or such that the ball is potted, and the shot."""
+    """The strokes of a fan: for each top and side the aim (as given, or one that pots the ball), and the shot."""
     tops, sides = array("tops", tops, (-1,)).tolist(), array("sides", sides, (-1,)).tolist()
     if not tops or not sides:
-        raise refuse("(tops, sides)", (tops, sides), "must hold at least one number each")
+        raise refuse("(tops, sides)", (tops, sides), "must each hold at least one number")
     if aim is not None:
         aims = np.array([number("aim", aim)])
     else:
@@ -152,7 +159,7 @@ def fan_options(
                 batch = _batch(r, here, struck, table, physics)
                 good = np.flatnonzero(batch.potted[:, ball] == pocket)
                 if not len(good):
-                    near = f"no aim within {np.degrees(_SHIFTS[-1]):.0f} degrees of the ghost ball's does"
+                    near = f"no aim within {np.degrees(_SHIFTS[-1]):.0f} degrees of the ghost ball does"
                     allowed = f"must pot ball {ball} into pocket {pocket}, and {near}"
                     raise refuse("(top, side, speed)", (top, side, speed), allowed)
                 k = int(good[len(good) // 2])
@@ -171,17 +178,17 @@ def _batch(r, here, struck, table, physics):
 
 
 def _places(position, on_table):
-    """(n, 2) and (n,) of a Position or of an array."""
+    """Positions (n, 2) and flags (n,) of a Position or of an array."""
     if hasattr(position, "arrays"):
         if on_table is not None:
-            raise refuse_what("on_table", "given", "must be left out with a Position, which says what is there")
+            raise refuse_what("on_table", "given", "must be left out with a Position, which has its own")
         return position.arrays()[:2]
     r = array("position", position, (-1, 2))
     if not 2 <= len(r) <= N_BALLS:
         raise refuse_what("position", f"{len(r)} places", f"must be 2 to {N_BALLS}, the cue ball first")
     here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
     if here.shape != (len(r),) or here.dtype != np.bool_ or not here[CUE]:
-        raise refuse("on_table", on_table, f"must be bool of shape ({len(r)},), the cue ball there")
+        raise refuse("on_table", on_table, f"must be bool of shape ({len(r)},), True for the cue ball")
     return r, here
 
 
@@ -195,7 +202,7 @@ def _object(ball, here):
 
 
 def _line(r, ball, pocket, table, R):
-    """The pocket, and the direction [rad] from the cue ball to the ghost ball for it."""
+    """The pocket, and the direction from the cue ball to the ghost ball for it [rad]."""
     if not len(table.falls):
         raise refuse("aim", None, "must be given: the table has no pockets")
     to_pocket = table.falls[:, :2] - r[ball]
@@ -214,7 +221,7 @@ def _met(shot):
 
 
 def _way(shot):
-    """(m, 2): the cue ball's path after it has met a ball; all of it if it meets none."""
+    """The cue ball's path after it has met a ball, or all of it if it meets none: (m, 2) [m]."""
     met = _met(shot)
     since = -np.inf if met is None else met.time
     own = [piece for piece in paths(shot).get(CUE, []) if piece.times[-1] > since]
@@ -223,7 +230,7 @@ def _way(shot):
 
 
 def _ends(shots):
-    """(m, 2): where the cue ball starts and meets the ball, and where that goes."""
+    """Where the cue ball starts, where it meets the ball, and where that ball stops: (m, 2) [m]."""
     found = []
     for shot in shots:
         met = _met(shot)
@@ -234,7 +241,7 @@ def _ends(shots):
 
 
 def shade(top: float, tops: Sequence[float]) -> tuple[int, ...]:
-    """The colour of one of the tops: of ``SHADES``, white where there is no top."""
+    """The colour of one of the tops, from ``SHADES``; white for no top."""
     most = max(map(abs, tops)) or 1.0
     middle = len(SHADES) // 2
     place = middle * (1.0 + top / most)
@@ -242,7 +249,7 @@ def shade(top: float, tops: Sequence[float]) -> tuple[int, ...]:
 
 
 def _write(sketch, options, tops, speed):
-    """What the colours and the signs mean."""
+    """Write the legend of colours and signs."""
     w, depth = sketch.region, sketch.depth
     if not depth:
         return

@@ -1,6 +1,7 @@
-"""Which parts of a table never move, and where? Cushions, falls and holes from its noses, jaws and falls, and snooker's lines, in metres.
+"""Which parts of a table never move, and where are they? Cushions, falls and holes, and snooker's lines, in metres.
 
-World frame: origin at the table's centre, +x to the yellow side, +y to the black end.
+They are computed from the noses, jaws and falls of a ``Table``. Table frame: origin at the table's centre, +x to the yellow side, +y to the
+black end.
 """
 
 from dataclasses import dataclass
@@ -17,14 +18,17 @@ from ..physics.table import Table, TableLike
 from .palette import COLOURS, LETTERS, PALETTE
 
 RAIL = 0.155
-"""From the nose line to the outer edge of the table [m]: cushion and wood."""
+"""Distance from the nose line to the outer edge of the table [m]: cushion and wood."""
 CUSHION = 0.050
-"""From the nose line to the wood [m]."""
+"""Distance from the nose line to the wood [m]."""
 
 BAULK_LINE = np.array([(-HALF_WIDTH, BAULK_Y), (HALF_WIDTH, BAULK_Y)])
+"""The two ends of snooker's baulk line: float64 (2, 2) [m], read-only."""
 _TURN = np.linspace(np.pi, 2 * np.pi, 65)
 D_ARC = np.stack([D_RADIUS * np.cos(_TURN), BAULK_Y + D_RADIUS * np.sin(_TURN)], axis=1)
+"""Points on the arc of snooker's D: float64 (65, 2) [m], read-only."""
 SPOT_MARKS = COLOUR_SPOTS
+"""Snooker's spots: float64 (6, 2) [m], read-only; ``snooker_env.geometry.COLOUR_SPOTS``."""
 
 for _constant in (BAULK_LINE, D_ARC):
     _constant.setflags(write=False)
@@ -32,18 +36,26 @@ for _constant in (BAULK_LINE, D_ARC):
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The parts of a table that never move. All empty for unbounded cloth.
+    """The parts of a table that never move, as ``outline`` computes them. All are empty for unbounded cloth.
 
     Attributes
     ----------
-    cushions : tuple of float64
-        Closed polygons (m, 2): nose, the jaws at its two ends, and the cushion's back under the wood.
-    noses : tuple of float64
-        Polylines (m, 2): the part of each cushion that balls meet, jaw - nose - jaw.
-    falls : float64
-        (k, 3) centre x, y and radius of the slate circles over which balls drop.
-    throats : float64
-        (k, 5) the hole in the wood: from x, y (middle of the mouth) to x, y, half as wide as the fifth number says.
+    cushions : tuple of float64 (m, 2)
+        Closed polygons, one for each cushion: nose, the jaws at its two ends, and the cushion's back under the wood [m].
+    noses : tuple of float64 (m, 2)
+        Polylines, one for each cushion: the part that balls meet, jaw - nose - jaw [m].
+    falls : float64 (k, 3)
+        x and y of the centre and radius of the slate circles over which balls drop [m].
+    throats : float64 (k, 5)
+        The holes in the wood: x and y of the middle of the mouth, x and y of the fall's centre, and half the width [m].
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.render import outline
+    >>> parts = outline(sn.Table.preset("match"))
+    >>> len(parts.cushions), parts.falls.shape, parts.throats.shape
+    (6, (6, 3), (6, 5))
     """
 
     cushions: tuple[Floats, ...]
@@ -53,28 +65,37 @@ class Outline:
 
 
 def extent(table: Table) -> Floats:
-    """(2, 2) [m] what a picture of a ``Table`` shows between its rails: its bounds, and snooker's bed where it has none."""
+    """The part of a ``Table`` between its rails that a picture shows, (2, 2) [m]: its bounds, or snooker's bed where it has none."""
     snooker = np.array([(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)])
     return np.where(np.isfinite(table.bounds), table.bounds, snooker)
 
 
 def is_marked(table: Table) -> bool:
-    """Are snooker's lines and spots drawn on a ``Table``? On its bed, and on unbounded cloth."""
+    """Whether snooker's lines and spots are drawn on a ``Table``: on a snooker bed, and on unbounded cloth."""
     ends = (HALF_WIDTH, HALF_LENGTH)
     return all(np.allclose(bounds, (-end, end), rtol=0.0, atol=1e-9) for bounds, end in zip(extent(table), ends, strict=True))
 
 
 @lru_cache(maxsize=16)
 def outline(table: Table) -> Outline:
-    """The parts of a table that never move, put together from its noses, jaws and falls.
+    """The parts of a table that never move, from its noses, jaws and falls.
 
     Parameters
     ----------
     table : Table
+        The table.
 
     Returns
     -------
     Outline
+        Polygons and circles in metres. The result is kept: do not change its arrays.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.render import outline
+    >>> len(outline(sn.Table.preset("carom")).noses)
+    4
     """
     cushions, noses = [], []
     ends = [(_point(axis, side * level, end), _point(axis, side, 0.0)) for axis, side, level, *low_high in table.noses for end in low_high]
@@ -82,7 +103,7 @@ def outline(table: Table) -> Outline:
         out = _point(axis, side, 0.0)  # from the nose into the wood
         left, right = (_jaw(table.jaws, _point(axis, side * level, end)) for end in (low, high))
         nose = np.concatenate([left[::-1], right])
-        depth = max(CUSHION + 0.017, *(nose @ out - level))  # some way under the wood
+        depth = max(CUSHION + 0.017, *(nose @ out - level))  # a little way under the wood
         backs = [_onward(jaw, out, level + depth, ends) for jaw in (left, right)]
         noses.append(nose)
         cushions.append(np.concatenate([backs[:1], nose, backs[1:]]))
@@ -95,11 +116,11 @@ def _point(axis, across, along):
 
 
 def _jaw(jaws, start):
-    """(m, 2) the jaw that begins at ``start`` on a nose, arc after arc to its end in the pocket; only ``start`` if there is none."""
+    """The jaw that begins at ``start`` on a nose, arc after arc to its end in the pocket: (m, 2); only ``start`` if there is none."""
     points, left = [start], list(jaws)
     while (found := _arc_from(points[-1], left)) is not None:
         k, arc = found
-        if left.pop(k)[JAW_RADIUS] > 0.0:  # else a point: the next arc begins there, too
+        if left.pop(k)[JAW_RADIUS] > 0.0:  # else a point, where the next arc begins too
             points += list(arc[1:])
     return np.array(points)
 
@@ -116,7 +137,7 @@ def _arc_from(place, jaws):
 
 
 def _onward(jaw, out, level, ends):
-    """Where a jaw, run on straight behind its last arc, meets the line ``level`` behind the nose; two noses that meet share a mitre."""
+    """Where the straight continuation of a jaw behind its last arc meets the line at ``level``; two noses that meet share a mitre."""
     if len(jaw) > 1:
         onward = jaw[-1] - jaw[-2]
     else:
@@ -132,7 +153,7 @@ def _throat(fall, noses, mouths):
 
 
 def scene_data(table: TableLike) -> dict[str, Any]:
-    """A table, its lines, the balls and all colours as JSON types: the one description that pygame, matplotlib and a browser draw.
+    """A table, its lines, the balls and all colours as JSON types: the description that pygame, matplotlib and the browser share.
 
     Parameters
     ----------
@@ -142,14 +163,19 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     Returns
     -------
     dict
-        Lengths in metres, to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in ``Outline``, lists for arrays; ``extent``:
-        [[lowest x, highest x], [lowest y, highest y]] of the bed; ``rail``, ``cushion``: ``RAIL``, ``CUSHION``; ``lines``: {"baulk", "d",
-        "spots"}, or None on a table without snooker's marks; ``ball_radius``; ``palette``: {name: [red, green, blue]}; ``balls``: by id
-        {"name", "letter", "value", "rgb"}.
+        Lengths in metres, rounded to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in ``Outline``, with lists for arrays.
+        ``extent``: [[lowest x, highest x], [lowest y, highest y]] of the bed. ``rail``, ``cushion``: ``RAIL``, ``CUSHION``. ``lines``:
+        {"baulk", "d", "spots"}, or None on a table without snooker's marks. ``ball_radius``. ``palette``: {name: [red, green, blue]}.
+        ``balls``: by id {"name", "letter", "value", "rgb"}.
+
+    Raises
+    ------
+    ValueError
+        For an unknown table.
 
     Examples
     --------
-    >>> from snooker_env.render.scene import scene_data
+    >>> from snooker_env.render import scene_data
     >>> data = scene_data("pool9")
     >>> data["lines"], len(data["cushions"]), data["balls"][21]["name"]
     (None, 6, 'black')

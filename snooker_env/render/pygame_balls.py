@@ -1,7 +1,7 @@
-"""How is a ball drawn? Shaded, with the lamps over the table mirrored in it, and with the faint shadow that each lamp gives it.
+"""How is a ball drawn? Shaded, with reflections of the lamps over the table, and with a faint shadow from each lamp.
 
-Pictures of balls are made once for each colour, size and quarter of a pixel, those of lamps and shadows too; a frame only puts them
-where they belong.
+Pictures of balls, reflections and shadows are made once for each colour, size and quarter of a pixel; a frame only copies them to their
+places.
 """
 
 from functools import lru_cache
@@ -19,7 +19,7 @@ from .turning import matrix
 from .view import View
 
 PANEL = 0.55
-"""How long a lamp is [m]."""
+"""Length of a lamp [m]."""
 _FADED = 0.42
 _SPOT = np.cos(np.radians(17.0))
 _SPOTS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=np.float64)
@@ -51,20 +51,20 @@ def draw_balls(surface: Any, scene: Scene, view: View) -> None:
 
 
 def _at(place, make, *what):
-    """A picture and where its corner goes, so that its middle lies at ``place`` to a quarter of a pixel."""
+    """A picture and the place of its corner, so that its middle is at ``place`` to a quarter of a pixel."""
     column, row = (round(4 * min(max(float(p), -1e5), 1e5)) for p in place)
     image = make(*what, column % 4, row % 4)
     return image, (column // 4 - image.get_width() // 2, row // 4 - image.get_height() // 2)
 
 
 def _grid(half, fx, fy):
-    """Columns and rows of a picture's pixels from its middle, which lies fx / 4, fy / 4 pixels right of and below a pixel's corner."""
+    """Columns and rows of a picture's pixels from its middle, which is fx / 4, fy / 4 pixels right of and below a pixel's corner."""
     steps = np.arange(-half, half + 1) + 0.5
     return np.meshgrid(steps - fx / 4, steps - fy / 4)
 
 
 def _shaded(colour, nz):
-    """A ball's colours (..., 3) where its surface leans by ``nz``: lit from above, and by the cloth from below."""
+    """A ball's colours (..., 3) where the z of its unit normal is ``nz``: lit from above, and by the cloth from below."""
     nz = nz[..., None]
     lit = np.asarray(colour, dtype=np.float64) * (0.50 + 0.56 * nz)
     rim = (1 - nz) ** 2.5
@@ -73,7 +73,7 @@ def _shaded(colour, nz):
 
 @lru_cache(maxsize=2048)
 def _body(colour, radius, strength, fx, fy):
-    """A ball without lamps."""
+    """A ball without reflections."""
     x, y = _grid(int(np.ceil(radius)) + 1, fx, fy)
     d = np.hypot(x, y)
     image = np.empty((*d.shape, 4))
@@ -83,13 +83,13 @@ def _body(colour, radius, strength, fx, fy):
 
 
 def _spotted(place, colour, radius, turn):
-    """A ball with six spots, as it is turned."""
+    """A ball with six spots, after the rotation ``turn``."""
     column, row = float(place[0]), float(place[1])
     left, top = int(np.floor(column)), int(np.floor(row))
     x, y = _grid(int(np.ceil(radius)) + 1, 4 * (column - left), 4 * (row - top))
     d = np.hypot(x, y)
     nz = np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1))
-    towards = matrix(turn) @ _SPOTS.T  # (3, 6) in the world: x down, y to the right, z to the eye
+    towards = matrix(turn) @ _SPOTS.T  # (3, 6) in the table frame: x down, y to the right, z to the eye
     seen = np.max(y[..., None] / radius * towards[0] + x[..., None] / radius * towards[1] + nz[..., None] * towards[2], axis=-1)
     spot = np.clip((seen - _SPOT) * radius * 3.4 + 0.5, 0, 1)[..., None]
     ink = np.array(COLOURS[1] if min(colour) > 120 else (250, 250, 245), dtype=np.float64)
@@ -101,13 +101,13 @@ def _spotted(place, colour, radius, turn):
 
 
 def _rays(positions, over):
-    """From k balls to the lamps: (k, m, 2) [m] across the table and (k, m) in all."""
+    """From k balls to m lamps: the horizontal vectors (k, m, 2) [m] and the distances (k, m) [m]."""
     across = over[None] - positions[:, None]
     return across, np.sqrt((across**2).sum(axis=-1) + LAMP_HEIGHT**2)
 
 
 def _mirrored(positions, over, where, radius):
-    """The lamps in the balls: each where the surface leans half-way between the eye, straight above, and the lamp."""
+    """The reflections of the lamps: each where the surface normal is half-way between the eye, straight above, and the lamp."""
     found = []
     ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
     across, far = _rays(positions, ends.reshape(-1, 2))
@@ -125,19 +125,19 @@ def _mirrored(positions, over, where, radius):
 
 @lru_cache(maxsize=2048)
 def _lamp(half, radius, fx, fy):
-    """A lamp's picture in a ball, ``half / 4`` pixels to each side, with its glow."""
+    """The reflection of a lamp, ``half / 4`` pixels to each side, with its glow."""
     along, across = half / 4, max(0.075 * radius, 0.4)
     x, y = _grid(int(np.ceil(along + 0.22 * radius)) + 1, fx, fy)
     d = np.hypot(np.maximum(np.abs(x) - along + across, 0), y)
     image = np.empty((*d.shape, 4))
     image[..., :3] = PALETTE["lamp"]
-    small = min(1.0, 0.25 + radius / 12)  # in a small ball it would be all that is seen
+    small = min(1.0, 0.25 + radius / 12)  # fainter in a small ball, which it would hide
     image[..., 3] = 255 * small * np.maximum(0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2)))
     return surface_of(image)
 
 
 def _shadows(positions, over, where, radius):
-    """One soft shadow a lamp, away from it, fainter the flatter its light falls; and the dark where the ball meets the cloth."""
+    """A soft shadow from each lamp, fainter for a lower angle of its light, and the dark place where the ball touches the cloth."""
     found = []
     across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3
@@ -173,12 +173,14 @@ def dot(ball: int, radius: float) -> Any:
     Parameters
     ----------
     ball : int
+        Id of the ball.
     radius : float
-        [pixels]
+        Its radius [pixels].
 
     Returns
     -------
     pygame.Surface
+        The picture, with transparency.
     """
     image = _body(tuple(COLOURS[ball].tolist()), round(radius, 2), 1.0, 2, 2).copy()
     if COLOURS[ball].max() < 90:  # dark on a dark bar
@@ -191,6 +193,6 @@ def dot(ball: int, radius: float) -> Any:
 
 
 def outline_of_a_ball(place: Floats, radius: float) -> Floats:
-    """A circle as points (49, 2), closed [m]."""
+    """A closed circle as points (49, 2) [m]."""
     turn = np.linspace(0.0, 2 * np.pi, 49)
     return place + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)

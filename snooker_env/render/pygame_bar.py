@@ -1,4 +1,4 @@
-"""How does the score bar look? As on television: the break and its balls, who plays whom with their points, what is on and what is left."""
+"""How is the score bar drawn? As on television: the break and its balls, the players and their points, the ball on and what is left."""
 
 from functools import lru_cache
 from typing import Any
@@ -12,25 +12,28 @@ from .scene import ScoreBar
 _ROWS = 72
 """Lengths in this file are those of a bar 72 pixels high, as in a picture of 1080."""
 _SMALLEST = 36
-"""A lower bar [pixels] says everything in one line of text."""
+"""A lower bar is one line of text [pixels]."""
 _EDGE = 28
 _GAP = 30
 
 
 @lru_cache(maxsize=64)
 def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> Any:
-    """The bar as a surface, not to be drawn on: ``bar``, or ``text`` where it is None.
+    """The bar as a surface: ``bar``, or ``text`` if that is None.
 
     Parameters
     ----------
     bar : ScoreBar or None
+        Content of the bar.
     text : str
+        One line, for a picture without a bar.
     width, height : int
-        [pixels]
+        Size of the surface [pixels].
 
     Returns
     -------
     pygame.Surface
+        A surface that is kept: do not draw on it.
     """
     pygame = pygame_()
     page = _Page(pygame.Surface((width, height), 0, 24), height / _ROWS)
@@ -53,10 +56,12 @@ def in_words(bar: ScoreBar) -> str:
     Parameters
     ----------
     bar : ScoreBar
+        Content of the bar.
 
     Returns
     -------
     str
+        The parts that are there, separated by " · ".
 
     Examples
     --------
@@ -85,7 +90,7 @@ class _Page:
         self.surface.fill(PALETTE[ink], (round(x * u), round(y * u), round((x + width) * u) - round(x * u), max(1, round(height * u))))
 
     def text(self, text, size, x, y, *, ink="text", file=MEDIUM, anchor="midleft", room=None):
-        """Write a line of which the middle lies at height y; one that is too long ends in "…". Returns its width."""
+        """Write a line with its middle at height y; one that is too long ends in "…". Returns its width."""
         line = self._fitting(text, size, ink, file, room)
         u = self.unit
         self.surface.blit(line, line.get_rect(**{anchor: (round(x * u), round(y * u))}))
@@ -110,7 +115,7 @@ class _Page:
 
 
 def _break(page, bar, end):
-    """On the left: the break, the balls potted in it, and what was said."""
+    """On the left: the break, the balls potted in it, and the referee's words."""
     x = _EDGE
     if bar.break_points is not None:
         page.text("BREAK", 17, x, 17, ink="text_quiet", file=BOLD)
@@ -126,7 +131,7 @@ def _break(page, bar, end):
 
 
 def _players(page, bar, width):
-    """In the middle: names and points, the light on whose turn it is. Returns where this begins."""
+    """In the middle: names and points, with the player whose turn it is emphasised. Returns the x where this begins."""
     middle, half = width / 2, 46
     if len(bar.players) == 1:
         name, score = bar.players[0], str(bar.scores[0])
@@ -154,7 +159,7 @@ def _score(page, score, middle, half, on):
 
 
 def _turn(page, x, side):
-    """A triangle that points to the name of whose turn it is."""
+    """A triangle that points to the name of the player whose turn it is."""
     pygame, u = pygame_(), page.unit
     fine = pygame.Surface((40, 40), pygame.SRCALPHA, 32)
     pygame.draw.polygon(fine, PALETTE["bar_accent"], [(20 - 14 * side, 2), (20 - 14 * side, 38), (20 + 16 * side, 20)])
@@ -163,7 +168,7 @@ def _turn(page, x, side):
 
 
 def _right(page, bar, width):
-    """On the right: what is on, the reds and the points that are left. Returns where this begins."""
+    """On the right: the ball on, the reds and the points that are left. Returns the x where this begins."""
     x = width - _EDGE
     if bar.points_on is not None:
         x = _column(page, "POINTS LEFT", str(bar.points_on), x)
@@ -175,7 +180,7 @@ def _right(page, bar, width):
 
 
 def _shown(ball_on):
-    """The balls that stand for what is on."""
+    """The balls drawn for the ball on."""
     words = ball_on.lower().split()
     if "colour" in words:
         return tuple(range(YELLOW, YELLOW + 6))
@@ -185,7 +190,7 @@ def _shown(ball_on):
 
 
 def _column(page, label, value, end, balls=(), size=36, widest=""):
-    """One figure under its label, up to ``end``; room for the ``widest`` keeps what follows in its place. Returns where the next ends."""
+    """One value under its label, up to ``end``, with room for the ``widest`` value, so that nothing moves. Returns the end of the next."""
     step = 22 if len(balls) < 3 else 13
     taken = (step * (len(balls) - 1) + 30) if balls else 0
     across = max(page.width(label, 17, BOLD), taken + max(page.width(text, size, BOLD, room=220) for text in (value, widest)))

@@ -1,4 +1,4 @@
-"""How does pygame-ce get here? When a picture is wanted, and with the line that installs it where it is missing; with it the typeface."""
+"""How is pygame-ce imported? At the first picture, with an error that says how to install it where it is missing; and its typeface."""
 
 import os
 from functools import lru_cache
@@ -12,7 +12,7 @@ BOLD, MEDIUM = "Inter-Bold.otf", "Inter-Medium.otf"
 
 
 def pygame_() -> Any:
-    """The module, or ImportError."""
+    """The module ``pygame``, or an ImportError with the command that installs it."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
         import pygame
@@ -36,6 +36,6 @@ def _font(file, size):
 
 
 def surface_of(rgba: Any) -> Any:
-    """An array (h, w, 4) of floats from 0 to 255 as a surface with transparency."""
+    """A surface with transparency from an array (h, w, 4) of floats from 0 to 255."""
     image = np.ascontiguousarray(np.clip(np.rint(rgba), 0, 255).astype(np.uint8))
     return pygame_().image.frombuffer(image, image.shape[1::-1], "RGBA")

@@ -1,7 +1,7 @@
 """How is a ball's path drawn? As a line with a dark edge, smooth at every angle, in pieces that are kept.
 
-A path that grows from frame to frame is the same but for its end: it is cut at equal lengths from its start, and each piece's picture is
-made once. First all edges are put on the table, then all lines, so that no piece darkens its neighbour.
+A path that grows from frame to frame changes only at its end. So it is cut at equal lengths from its start, and the picture of each piece
+is made once. First all edges are drawn, then all lines, so that no piece darkens its neighbour.
 """
 
 from functools import lru_cache
@@ -14,19 +14,19 @@ from .palette import PALETTE
 from .pygame_library import surface_of
 
 _STEP = 3.0
-"""A path is drawn from point to point this many pixels apart ..."""
+"""Distance between the points of a path [pixels]."""
 _POINTS = 16
-"""... so many of them a piece."""
+"""Points in a piece."""
 _LONGEST = 1e5  # pixels: a longer path is not drawn
 
 
 def line_width(scale: float) -> float:
-    """How wide a path is [pixels] at so many pixels a metre: 3.4 on the match table in a picture 1080 pixels high."""
+    """Width of a path [pixels] at ``scale`` pixels per metre: 3.4 on the match table in a picture 1080 pixels high."""
     return max(1.5, 0.0072 * scale)
 
 
 def draw_lines(surface: Any, lines: list[tuple[Floats, tuple[int, int, int]]], width: float) -> None:
-    """Draw polylines (points (m, 2) [pixels], colour) one above the other."""
+    """Draw polylines (points (m, 2) [pixels], colour), later ones on top."""
     for points, colour in lines:
         pieces = list(_pieces(points))
         edge = width + 2 * max(0.9, 0.45 * width)
@@ -35,9 +35,9 @@ def draw_lines(surface: Any, lines: list[tuple[Floats, tuple[int, int, int]]], w
 
 
 def _pieces(points):
-    """The line at equal steps from its start, cut: the points of each piece as numbers, and the cuts at its ends.
+    """The pieces of a line, cut at equal steps from its start: the points of each as numbers, and the cuts at its two ends.
 
-    A cut is a point and the line's direction there, or None at an end of the line. Both sides know the same cut, so that each pixel at it
+    A cut is a point and the line's direction there, or None at an end of the line. Both sides use the same cut, so that each pixel at it
     belongs to one of them.
     """
     steps = np.hypot(*np.diff(points, axis=0).T)
@@ -56,7 +56,7 @@ def _pieces(points):
 
 @lru_cache(maxsize=4096)
 def _piece(numbers, start, end, colour, width):
-    """One piece as a picture, and where its corner goes."""
+    """One piece as a picture, and the place of its corner."""
     points = np.array(numbers).reshape(-1, 2)
     chord = points[-1] - points[0]
     off = np.abs((points - points[0]) @ np.array([-chord[1], chord[0]])) / max(np.hypot(*chord), 1e-9)

@@ -1,6 +1,6 @@
-"""How does a frame come about? The kept picture of the table is copied; paths, balls and the score bar are put on it.
+"""How is a picture made? The kept picture of the table is copied; then paths, balls and the score bar are drawn on it.
 
-Pictures of balls are kept for each quarter of a pixel, and those of the pieces of paths, so that this takes a few milliseconds.
+Pictures of balls (for each quarter of a pixel) and of pieces of paths are kept too, so that this takes a few milliseconds.
 """
 
 from typing import Any
@@ -19,17 +19,19 @@ from .view import View
 
 
 def draw(scene: Scene, view: View) -> NDArray[np.uint8]:
-    """The picture of a scene, as a fresh array.
+    """Draw a scene.
 
     Parameters
     ----------
     scene : Scene
+        The scene.
     view : View
-        Of its table.
+        A view of its table.
 
     Returns
     -------
     uint8 (height, width, 3)
+        The picture, a new array.
     """
     pixels = table_picture(scene.table, view).copy()
     surface: Any = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")  # draws into ``pixels``

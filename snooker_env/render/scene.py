@@ -1,8 +1,8 @@
 """What is there to draw? A table, its lines, balls and overlays, in metres and without a drawing library.
 
-World frame: origin at the table's centre, +x to the yellow side, +y to the black end. ``scene`` says what lies on the table now,
-``Film`` and ``shot_scenes`` cut a shot into the pictures of a film. The parts of a table that never move, and ``scene_data``, which is
-all that a drawing in another language needs, are in ``outline``; colours are in ``palette``.
+Table frame: origin at the table's centre, +x to the yellow side, +y to the black end. ``scene`` describes one picture; ``Film`` and
+``shot_scenes`` make the pictures of a film from a shot. The parts of a table that never move, and ``scene_data`` for drawing in another
+language, are in ``outline``; colours are in ``palette``.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -27,7 +27,7 @@ from .turning import Turning
 
 @dataclass(frozen=True)
 class ScoreBar:
-    """What a score bar under the table says, as on television. What is not known is left out: None, "" or ().
+    """The content of a score bar under the table, as on television. None, "" and () leave a part out.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class ScoreBar:
     scores : tuple of int
         Their points in this frame, one for each player.
     striker : int, or None
-        Whose turn it is, an index of ``players``.
+        The player whose turn it is, an index of ``players``.
     break_points : int, or None
         Points of the visit so far.
     potted : tuple of int
@@ -46,9 +46,9 @@ class ScoreBar:
     points_on : int, or None
         Points that are still on the table.
     ball_on : str
-        What must be struck: "red", "any colour", "blue", "free ball", ...
+        The ball on: "red", "any colour", "blue", "free ball", ...
     words : str
-        One line: what just happened, in the referee's words.
+        One line: what just happened, as the referee would say it.
 
     Examples
     --------
@@ -80,33 +80,34 @@ class ScoreBar:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """One picture. Only balls on the table are in it; k of them.
+    """One picture, with the k balls that are on the table.
 
     Attributes
     ----------
     table : Table
-        What it lies on.
+        The table.
     ids : int64
         (k,) ball ids: 0 the cue ball, 1 to 15 reds, 16 to 21 yellow to black.
     positions : float64
-        (k, 2) [m].
+        (k, 2) centres of the balls [m].
     ball_radius : float
-        [m].
+        Radius of the balls [m].
     paths : dict of int to float64
-        Ball id -> (m, 2) [m]: where that ball ran.
+        Ball id -> (m, 2) points of that ball's path [m].
     aim : float64, or None
-        (m, 2) [m]: line of aim.
+        (m, 2) points of the line of aim [m].
     ghost : float64, or None
-        (2,) [m]: where the cue ball should meet its object ball, drawn as an outline.
+        (2,) where the cue ball should meet its object ball [m], drawn as an outline.
     ghosts : dict of int to float64
-        Ball id -> (m, 2) [m]: where that ball was, drawn faded; e.g. of ``contacts``.
+        Ball id -> (m, 2) earlier places of that ball [m], drawn faded; for instance those of ``contacts``.
     turns : dict of int to float64
-        Ball id -> (4,) the unit quaternion (w, x, y, z) that turns the ball from how it lay to how it lies. Such a ball has spots.
+        Ball id -> (4,) unit quaternion (w, x, y, z) of the ball's rotation since the start. Such a ball has spots.
     text : str
-        One line of status, shown where there is no ``bar``.
+        One line of status, shown if there is no ``bar``.
     bar : ScoreBar, or None
+        The score bar.
     lettered : bool
-        Whether balls carry their letters, so that nobody depends on colours.
+        Whether balls carry their letters, so that colours are not needed.
     """
 
     table: Table
@@ -124,12 +125,12 @@ class Scene:
 
     @property
     def colours(self) -> NDArray[np.uint8]:
-        """(k, 3) uint8."""
+        """Colours of the balls: (k, 3) uint8, red, green, blue."""
         return COLOURS[self.ids]
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """One letter a ball."""
+        """One letter for each ball."""
         return tuple(LETTERS[i] for i in self.ids)
 
 
@@ -148,43 +149,44 @@ def scene(
     bar: ScoreBar | None = None,
     lettered: bool = False,
 ) -> Scene:
-    """What to draw: n <= 22 balls with the ids 0 .. n-1, and what to lay over them. Arrays are copied.
+    """Describe one picture: n <= 22 balls with the ids 0 to n-1, and overlays. Arrays are copied.
 
     Parameters
     ----------
     table : str, Table or None
         As in ``snooker_env.simulate``.
     positions : array_like, float (n, 2)
-        [m]
+        Centres of the balls [m].
     on_table : array_like, bool (n,), optional
-        None: all are.
+        False for the balls to leave out; None: all are on the table.
     ball_radius : float, optional
-        [m]; None: that of the table, or snooker's.
+        Radius of the balls [m]; None: that of the table, or snooker's.
     paths : dict, optional
-        {ball id: (m, 2) points}, e.g. of ``ball_paths``.
+        {ball id: (m, 2) points [m]}, for instance of ``ball_paths``.
     aim : array_like, float (m, 2), optional
-        Points of a line.
+        Points of a line of aim [m].
     ghost : array_like, float (2,), optional
-        A ball's outline.
+        Centre of a ball drawn as an outline [m].
     ghosts : dict, optional
-        {ball id: (m, 2) places} where that ball is drawn faded, e.g. {0: contacts(shot)}.
+        {ball id: (m, 2) places [m]} at which that ball is drawn faded, for instance {0: contacts(shot)}.
     turns : dict, optional
         {ball id: (4,) quaternion}, as in ``Scene``.
     text : str
         One line of status.
     bar : ScoreBar, optional
-        In place of the text.
+        Score bar, shown instead of the text.
     lettered : bool
-        Letters on the balls.
+        Whether balls carry their letters.
 
     Returns
     -------
     Scene
+        The description, for ``pygame_view.rgb_array`` and ``ascii_view.ansi``.
 
     Raises
     ------
     ValueError
-        On bad input; the message names the field, its value and what is allowed.
+        For bad input; the message names the field, its value and what is allowed.
     """
     r = array("positions", positions, (-1, 2))
     if len(r) > N_BALLS:
@@ -211,16 +213,16 @@ def _by_ball(field, given, shape):
 
 
 def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), until: float | None = None, step: float = 0.02) -> dict[int, Floats]:
-    """{ball: (m, 2) points [m]} of a ``Shot`` from its start to the time ``until`` [s] (None: to its end), every ``step`` seconds.
+    """Paths {ball: (m, 2) points [m]} of a ``Shot`` from its start to the time ``until`` [s] (None: its end), every ``step`` seconds.
 
-    Times of impacts are added, so that corners are sharp; a ball that did not move has no path.
+    Times of impacts are added, so that corners are sharp. A ball that did not move has no path.
     """
     until = shot.duration if until is None else min(number("until", until, 0.0), shot.duration)
     return {ball: points for ball, (points, _) in _timed_paths(shot, balls, until, step).items()}
 
 
 def _timed_paths(shot, balls, until, step=0.02):
-    """{ball: its path's points (m, 2) [m] and their times (m,) [s]}."""
+    """Paths {ball: (points (m, 2) [m], their times (m,) [s])}."""
     times = np.append(np.arange(0.0, until, number("step", step, 0.0, open_low=True)), until)
     impacts = shot.events["time"][shot.events["kind"] <= EventKind.POT]
     times = np.union1d(times, impacts[impacts < until])
@@ -235,17 +237,19 @@ def _timed_paths(shot, balls, until, step=0.02):
 
 
 def contacts(shot: Shot, ball: int = CUE) -> Floats:
-    """Where a ball was when it met other balls, for faded ghosts.
+    """The places of a ball when it met other balls, for faded ghosts.
 
     Parameters
     ----------
     shot : Shot
+        The shot, with its path.
     ball : int
+        Id of the ball.
 
     Returns
     -------
     float64 (m, 2)
-        [m], in the order of time; one that would lie half over the last is left out.
+        Centres [m] in order of time. A place nearer than one radius to the last is left out.
     """
     return _timed_contacts(shot, ball)[0]
 
@@ -261,27 +265,27 @@ def _timed_contacts(shot, ball):
 
 
 class Film:
-    """A ``Shot`` as it is seen: a ``Scene`` at any time of it, and all that change once are computed once.
+    """The pictures of a ``Shot``: a ``Scene`` at any of its times. Everything that is needed more than once is computed once.
 
     Parameters
     ----------
     table : str, Table or None
         As in ``snooker_env.simulate``.
     shot : Shot
-        With its path.
+        The shot, with its path.
     trail : iterable of int
-        Balls whose path grows as they run.
+        Balls whose path is drawn up to the present time.
     spots : iterable of int
-        Balls with spots, which show how they turn.
+        Balls with spots, which show their rotation.
     faded : iterable of int
-        Balls of which a faded ghost stays wherever they met others, from then on.
-    overlays
-        As in ``scene``.
+        Balls with a faded ghost at each place where they have met another ball.
+    **overlays
+        Other arguments of ``scene``.
 
     Attributes
     ----------
     duration : float
-        Of the shot [s].
+        Duration of the shot [s].
     """
 
     def __init__(
@@ -303,11 +307,12 @@ class Film:
         Parameters
         ----------
         t : float
-            From the start of the shot [s].
+            Time from the start of the shot [s].
 
         Returns
         -------
         Scene
+            The picture.
         """
         r = self._shot.at(t)[0]
         paths = {}
@@ -328,13 +333,14 @@ class Film:
         Parameters
         ----------
         fps : float
-            Pictures a second of the film.
+            Pictures per second of the film.
         speed : float
-            2.0: twice as fast as in life.
+            Speed of the film over that of the shot.
 
         Yields
         ------
         Scene
+            The pictures in order.
         """
         step = number("speed", speed, 0.0, open_low=True) / number("fps", fps, 0.0, open_low=True)
         for t in np.append(np.arange(0.0, self.duration, step), self.duration):
@@ -354,6 +360,6 @@ def shot_scenes(
 ) -> Iterator[Scene]:
     """The film of a ``Shot``: one ``Scene`` every speed / fps seconds of the shot's own time, and one of its end.
 
-    A potted ball leaves the picture when it drops. The other arguments are those of ``Film``, which gives a picture of any time.
+    A potted ball leaves the picture when it drops. The other arguments are those of ``Film``, which makes a picture of any time.
     """
     return Film(table, shot, trail=trail, spots=spots, faded=faded, **overlays).scenes(fps, speed)

@@ -1,4 +1,4 @@
-"""How is a shot drawn as a diagram? Paths by slide and roll, ghost balls, impacts, speeds, the cut and the tip, on a ``Sketch``."""
+"""How is a shot drawn as a diagram? Sliding and rolling paths, ghost balls, impacts, speeds, the cut and the tip, on a ``Sketch``."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
-"""What is to be seen: all of the table, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) [m]."""
+"""The part of the table to show: all of it, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) [m]."""
 
 SLIDES = (255, 168, 36)
-"""The stripes of a path on which the ball slides."""
+"""Colour of the stripes of a path on which the ball slides."""
 DASHES = (0, (2.0, 1.6))
-"""Of that path: lengths of the stripes, in its widths."""
+"""Lengths of these stripes, in widths of the path."""
 MOST_PATHS = 7
-"""If more balls than this move, only the cue ball, what it strikes first and what is potted are drawn in full, the others thinly."""
+"""If more balls move, only the paths of the cue ball, of the ball that it strikes first and of potted balls are drawn in full width."""
 
 _SIGNS: dict[EventKind, tuple[Any, Any, float]] = {
     EventKind.BALL_BALL: ("o", "text", 4.5),
@@ -50,47 +50,47 @@ def plot(
     caption: Literal["full", "short", "none"] = "full",
     title: str = "",
 ) -> "Axes":
-    """Draw a shot: from above, baulk left and black right.
+    """Draw a shot from above, baulk left and black right.
 
-    Balls lie as before the shot. Paths are 3 pixels wide in the balls' colours, striped where the ball slides and plain where it rolls,
-    with arrowheads. Faded balls show where a ball is when it meets another, and where it comes to rest. Signs mark what is met: a disc a
-    ball, a diamond a cushion, a triangle a jaw, a cross a pocket. Under the table: where the tip struck, speeds and the cut.
+    Balls are drawn at their places before the shot. Paths are 3 pixels wide in the colours of the balls, striped where the ball slides and
+    plain where it rolls, with arrowheads. Faded balls show a ball when it meets another, and where it comes to rest. Signs mark impacts: a
+    disc with a ball, a diamond with a cushion, a triangle with a jaw, a cross in a pocket. Under the table: the tip, speeds and the cut.
 
     Parameters
     ----------
     shot : Shot
-        With its path, of at most 22 balls.
+        The shot, with its path and at most 22 balls.
     ax : matplotlib.axes.Axes, optional
-        Where to draw; None: in a figure of its own. On axes that a diagram was drawn on before, the table and what is seen of it stay.
-        Their horizontal axis is y [m], the vertical one x [m], downwards: ``ax.plot(y, x)``.
+        Axes to draw on; None makes a new figure. Axes with an earlier diagram keep their table and their limits. The horizontal axis is
+        y [m], the vertical one x [m] downwards: ``ax.plot(y, x)``.
     cue : mapping, optional
-        How the cue ball was struck, as far as it is known: "side", "top" (tip offset over R, right and up), "speed" [m/s], "elevation"
-        and "aim" [rad]. None: it follows from the cue ball's velocity and spin, but for the elevation of a cue without side, which is
-        taken as level.
+        How the cue ball was struck: "side" and "top" (tip offset over R, right and up), and if known "speed" [m/s], "elevation" and "aim"
+        [rad]. None: computed from the cue ball's velocity and spin; without side the cue is taken as level.
     view : "table", "shot" or ((float, float), (float, float))
-        What is to be seen: all of the table (as far as it has cushions on all sides), as much as the shot needs, or a range of x and
-        one of y [m].
+        The part of the table to show: all of it (if it has cushions on all sides), as much as the shot needs, or a range of x and one of
+        y [m].
     balls : iterable of int, optional
-        Whose paths to draw; None: all that moved, thinly those that matter less if many did.
+        Balls whose paths are drawn; None: all that moved, and if many did, the less important ones thinly.
     labels : bool
         Whether balls carry their letters.
     speeds : bool
         Whether the cue ball's speeds and the cut are written beside the path.
     caption : {"full", "short", "none"}
-        The strip of words under the table: "short" is for axes of half the width, and leaves out what stripes and signs mean.
+        The strip of text under the table. "short" is for axes of half the width, and omits the legend.
     title : str
-        A line at the top left.
+        Title at the top left.
 
     Returns
     -------
     matplotlib.axes.Axes
+        The axes of the diagram.
 
     Raises
     ------
     ValueError
-        If the shot has no path, more than 22 balls, or an option is wrong.
+        If the shot has no path or more than 22 balls, or an option is wrong.
     ImportError
-        Without matplotlib.
+        If matplotlib is not installed.
 
     Examples
     --------
@@ -107,7 +107,7 @@ def plot(
     truth("speeds", speeds)
     choice("caption", caption, CAPTIONS)
     table, found = shot.table or Table.of(None), paths(shot)
-    wanted = set(found if balls is None else (integer("balls", ball, 0, len(shot.positions) - 1) for ball in balls))
+    chosen = set(found if balls is None else (integer("balls", ball, 0, len(shot.positions) - 1) for ball in balls))
     first = cue_ball(shot)
     tip = _tip(cue, shot, first)
     sketch = Sketch(table, shot.physics.R, region_of(view, area(shot), table), ax, strip=CAPTIONS[caption])
@@ -115,8 +115,8 @@ def plot(
     start, there = shot.at(0.0)[0], shot.on_table | (shot.potted >= 0)
     for ball in np.flatnonzero(there).tolist():
         sketch.ball(ball, start[ball], label=labels)
-    main = principals(shot, found, first) if balls is None else wanted
-    for ball in sorted(wanted & set(found), reverse=True):  # the cue ball last, on top
+    main = principals(shot, found, first) if balls is None else chosen
+    for ball in sorted(chosen & set(found), reverse=True):  # the cue ball last, on top
         if ball in main:
             draw_path(sketch, found[ball], ball)
             _draw_impacts(sketch, shot, ball, start)
@@ -125,7 +125,7 @@ def plot(
             sketch.ax.plot(*flipped(thin).T, color=rgb(PALE[ball], 0.75), lw=0.8, zorder=4.0, gid="thin path")
         if shot.on_table[ball]:
             sketch.ghost(ball, shot.positions[ball], 0.62 if ball in main else 0.3)
-    if speeds and first is not None and first in wanted:
+    if speeds and first is not None and first in chosen:
         _write_speeds(sketch, shot, first, start)
     if sketch.depth:
         _write_strip(sketch, shot, first, tip, cue is not None, short=caption == "short")
@@ -133,7 +133,7 @@ def plot(
 
 
 def region_of(view: Any, points: Floats, table: Table) -> Region:
-    """What of the table a view shows, if something happens at these points (m, 2)."""
+    """The part of the table that a view shows, for a shot with these points (m, 2) [m]."""
     if isinstance(view, str) and view in ("table", "shot"):
         return Region.of_table(table) if view == "table" and is_closed(table) else Region.around(points, table)
     if isinstance(view, str) or np.shape(view) != (2, 2):
@@ -145,7 +145,7 @@ def region_of(view: Any, points: Floats, table: Table) -> Region:
 
 
 def area(shot: Shot) -> Floats:
-    """(m, 2) [m]: where something happens in a shot."""
+    """Points of the important paths of a shot: (m, 2) [m]."""
     found = paths(shot)
     main = principals(shot, found, cue_ball(shot))
     points = [piece.points for ball in main for piece in found.get(ball, [])]
@@ -153,7 +153,7 @@ def area(shot: Shot) -> Floats:
 
 
 def principals(shot: Shot, found: Mapping[int, Any], first: int | None) -> set[int]:
-    """Whose paths matter: all, or where many balls move the cue ball, what it meets first, and what is potted."""
+    """The important balls: all that move, or if many do, the cue ball, the first ball that it meets, and those that are potted."""
     if len(found) <= MOST_PATHS or first is None:
         return set(found)
     met = [contact.other for contact in contacts(shot, first) if contact.kind == EventKind.BALL_BALL]
@@ -177,7 +177,7 @@ def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = No
 
 
 def _draw_impacts(sketch, shot, ball, start):
-    """Signs where a ball meets something, and where it is then: a ghost unless it has not moved."""
+    """Signs at the impacts of a ball, and a ghost of the ball at each if it has moved."""
     for contact in contacts(shot, ball):
         marker, colour, size = _SIGNS[contact.kind]
         sketch.mark(contact.place, marker, colour, size, gid=f"{contact.kind.name.lower()}-{ball}")
@@ -186,7 +186,7 @@ def _draw_impacts(sketch, shot, ball, start):
 
 
 def _write_speeds(sketch, shot, first, start):
-    """The cue ball's speeds at the start and at what it meets, and the cut."""
+    """The cue ball's speeds at the start and at its impacts, and the cut."""
     v, _ = (part[first] for part in shot.at(0.0)[1:])
     sketch.label(start[first], f"{np.hypot(*v):.2f} m/s")
     for k, contact in enumerate(contacts(shot, first)):
@@ -199,7 +199,7 @@ def _write_speeds(sketch, shot, first, start):
 
 
 def _draw_cut(sketch, shot, contact):
-    """The cut as an angle, where balls are large enough for it to be seen: the old direction, the line of centres, an arc between them."""
+    """The cut as an angle, if balls are large enough: the old direction, the line of centres, and an arc between them."""
     if sketch.R * sketch.points_per_metre < 5.0:
         return
     v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
@@ -218,7 +218,7 @@ def _draw_cut(sketch, shot, contact):
 
 
 def _tip(cue: Mapping[str, float] | None, shot: Shot, first: int | None) -> Tip | None:
-    """Where the tip struck, as given or as the spin tells; None if no cue gives such a spin."""
+    """The strike of the tip, as given or computed from the spin; None if no cue gives such a spin."""
     if cue is not None:
         known = ("speed", "side", "top", "aim", "elevation")
         for key in cue:
@@ -248,7 +248,7 @@ def tip_words(tip: Tip) -> str:
 
 
 def draw_tip(sketch: Sketch, tip: Tip | None, middle: tuple[float, float], radius: float, limit: float) -> None:
-    """The cue ball as the player sees it, and where the tip struck it; ``middle``: (y, x); ``limit``: of a miscue, over R."""
+    """The cue ball as the player sees it, and where the tip struck it. ``middle``: (y, x) [m]; ``limit``: offset of a miscue over R."""
     from matplotlib.patches import Circle
 
     (y, x), add = middle, sketch.ax.add_patch
@@ -283,7 +283,7 @@ def _write_strip(sketch: Sketch, shot: Shot, first: int | None, tip: Tip | None,
 
 
 def summary(shot: Shot, first: int | None) -> list[str]:
-    """What a shot comes to, in up to three lines."""
+    """The result of a shot, in up to three lines."""
     if first is None:
         return ["nothing moves"]
     lines = []
@@ -297,23 +297,23 @@ def summary(shot: Shot, first: int | None) -> list[str]:
 
 
 def contact_of(shot: Shot, met: Meeting) -> Meeting:
-    """The same meeting of two balls as the other one sees it."""
+    """The same meeting of two balls from the side of the other ball."""
     return next(contact for contact in contacts(shot, met.other) if contact.time == met.time and contact.other == met.ball)
 
 
 def name(ball: int) -> str:
-    """What a ball is called."""
+    """The name of a ball."""
     return "cue ball" if ball == 0 else NAMES[ball].replace("_", " ")
 
 
 def pocket(shot: Shot, k: int) -> str:
-    """What a pocket is called."""
+    """The name of a pocket."""
     names = () if shot.table is None else shot.table.pockets
     return names[k] if names else f"pocket {k}"
 
 
 def _write_legend(sketch, shot, row):
-    """What stripes and signs mean; of the signs those that there are."""
+    """The legend of stripes and signs, with the signs that the diagram has."""
     w, long = sketch.region, 0.035 * sketch.region.width
     y = w.low_y + 0.735 * w.width
     line = {"lw": PATH_WIDTH, "zorder": 9.5}

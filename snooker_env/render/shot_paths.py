@@ -1,7 +1,7 @@
-"""What is worth drawing of a shot? Its paths in pieces that slide or roll, its contacts with their speeds, and where the tip struck.
+"""What does a diagram show of a shot? Its paths in pieces that slide or roll, its contacts with their speeds, and where the tip struck.
 
-Without a drawing library, in metres. A piece of a path is sampled so finely that straight lines between its points lie within ``STRAY``
-of it: a rolling ball runs straight, a sliding one on a parabola.
+Without a drawing library, in metres. A piece of a path has so many points that the straight lines between them are within ``STRAY`` of it:
+a rolling ball moves straight, a sliding one on a parabola.
 """
 
 from collections.abc import Iterator
@@ -18,9 +18,9 @@ from ..physics.parameters import Physics
 from ..simulation import Shot
 
 STRAY = 1e-4
-"""No point of a path is further than this [m] from the lines that are drawn."""
+"""The largest distance of a path from the lines that are drawn [m]."""
 STILL = 1e-3
-"""A ball that moved less than this [m] is drawn as one that did not."""
+"""A ball that moved less than this is drawn as one that did not move [m]."""
 
 Kind = Literal["slide", "roll", "fall"]
 _KINDS: dict[int, Kind] = {SLIDE: "slide", ROLL: "roll", BEND: "roll", FALLING: "fall"}
@@ -31,9 +31,9 @@ class Piece(NamedTuple):
 
     kind: Kind
     times: Floats
-    """(m,) [s]"""
+    """(m,) times [s]."""
     points: Floats
-    """(m, 2) [m]: where ``Shot.at`` has the ball at these times."""
+    """(m, 2) positions at these times, from ``Shot.at`` [m]."""
 
 
 class Meeting(NamedTuple):
@@ -43,15 +43,15 @@ class Meeting(NamedTuple):
     kind: EventKind
     ball: int
     other: int
-    """Ball, nose, jaw or pocket, as the log of events has it."""
+    """Index of the ball, nose, jaw or pocket, as in the log of events."""
     place: Floats
-    """(2,) [m] where they touch; of a pocket the middle of its fall."""
+    """(2,) the point of contact [m]; for a pocket the centre of its fall."""
     centre: Floats
-    """(2,) [m] of the ball."""
+    """(2,) centre of the ball [m]."""
     speed: float
-    """Of the ball, just before [m/s]."""
+    """Speed of the ball just before [m/s]."""
     after: float
-    """Of the ball, just after [m/s]."""
+    """Speed of the ball just after [m/s]."""
 
 
 def check_path(shot: Shot) -> None:
@@ -61,7 +61,7 @@ def check_path(shot: Shot) -> None:
 
 
 def pieces(shot: Shot, ball: int) -> list[Piece]:
-    """The path of a ball; empty if it never moves. Pieces of one kind that follow each other without an impact are one."""
+    """The path of a ball; empty if it never moves. Pieces of the same kind without an impact between them are joined."""
     own = shot.segments[shot.segments[:, SEGMENT_BALL] == ball]
     ends = np.append(own[1:, T0], shot.duration)
     impacts = set(shot.events["time"][_is_impact(shot) & ((shot.events["i"] == ball) | (shot.events["j"] == ball))].tolist())
@@ -84,8 +84,8 @@ def pieces(shot: Shot, ball: int) -> list[Piece]:
 
 
 def _steps(row, duration):
-    """How many straight lines stand for a segment: the chord of a parabola strays by a dt^2 / 8 at most."""
-    if row[SEGMENT_STATE] in (ROLL, FALLING):  # straight, and never back
+    """The number of straight lines that replace a segment: the distance of a parabola from its chord is at most a dt^2 / 8."""
+    if row[SEGMENT_STATE] in (ROLL, FALLING):  # straight, without a turning point
         return 1
     return int(np.clip(np.ceil(duration * np.sqrt(np.hypot(row[AX], row[AY]) / (8 * STRAY))), 1, 256))
 
@@ -102,13 +102,13 @@ def paths(shot: Shot) -> dict[int, list[Piece]]:
 
 
 def cue_ball(shot: Shot) -> int | None:
-    """The ball that moves first, and fastest; None if none does."""
+    """The ball that is fastest at the start; None if none moves."""
     v = np.hypot(*shot.at(0.0)[1].T)
     return int(v.argmax()) if v.max() > 0 else None
 
 
 def velocity_before(shot: Shot, ball: int, time: float) -> Floats:
-    """(2,) [m/s] of a ball just before something happens to it at that time."""
+    """Velocity of a ball just before its event at that time: (2,) [m/s]."""
     own = shot.segments[(shot.segments[:, SEGMENT_BALL] == ball) & (shot.segments[:, T0] < time)]
     if not len(own):  # it happens at the start
         return shot.at(0.0)[1][ball]
@@ -117,7 +117,7 @@ def velocity_before(shot: Shot, ball: int, time: float) -> Floats:
 
 
 def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
-    """What a ball meets, in order of time. Of two balls that meet, ``ball`` is ``Meeting.ball``. A ball that rests is only met."""
+    """The meetings of a ball in order of time. ``ball`` is ``Meeting.ball``, also where the other ball struck it."""
     R = shot.physics.R
     for time, number, i, j in shot.events[_is_impact(shot)].tolist():
         kind = EventKind(number)
@@ -142,13 +142,13 @@ def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
 
 
 def cut_angle(shot: Shot, contact: Meeting) -> float:
-    """The cut [rad] of a contact with a ball: between the ball's direction just before and the line of centres; 0 is a full hit."""
+    """Cut angle of a contact with a ball [rad]: between the ball's direction just before and the line of centres; 0 is a full contact."""
     v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
     return float(np.arctan2(abs(v[0] * line[1] - v[1] * line[0]), v @ line))
 
 
 class Tip(NamedTuple):
-    """Where and how a cue strikes: offsets over R (+ right, + up), [m/s], [rad]."""
+    """Where and how a cue strikes: offsets over R (+ right, + up), speed [m/s], elevation [rad]."""
 
     side: float
     top: float
@@ -159,21 +159,21 @@ class Tip(NamedTuple):
 def tip_of(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
     """The strike that gives a ball this velocity (2,) and spin (3,): ``physics.cue.struck`` solved for the tip.
 
-    Without side, no spin tells how far the cue was raised: it is taken as level.
+    Without side the spin does not depend on the elevation, so the cue is taken as level.
     """
     v = float(np.hypot(*velocity))
     c, s = velocity / v
     about_path, about_up = float(spin[0] * c + spin[1] * s), float(spin[2])
     elevation = float(np.arctan2(about_path * np.sign(about_up), abs(about_up))) if about_up else 0.0
-    elevation = elevation if elevation > 1e-9 else 0.0  # a lower one is no cue's
+    elevation = elevation if elevation > 1e-9 else 0.0  # no cue has a negative one
     q = 2.5 * v / np.cos(elevation) / physics.R
     return Tip(about_up / np.cos(elevation) / q, float(spin[1] * c - spin[0] * s) / q, v / float(np.cos(elevation)), elevation)
 
 
 def arrow_places(points: Floats, spacing: float) -> list[tuple[Floats, Floats]]:
-    """Where arrowheads stand on a line (m, 2), one each ``spacing`` [m] from half of that on, and their unit directions.
+    """Places of arrowheads on a line (m, 2), one each ``spacing`` [m], the first at half of that, and their unit directions.
 
-    A line of half the spacing or more has one at least; a shorter one has none.
+    A line of at least half the spacing has at least one; a shorter one has none.
     """
     steps = np.diff(points, axis=0)
     lengths = np.hypot(*steps.T)

@@ -1,7 +1,7 @@
-"""How is a table drawn with matplotlib? A ``Sketch``: axes in metres, baulk left and black right, with cloth, cushions, balls and marks.
+"""How is a table drawn with matplotlib? By a ``Sketch``: axes in metres, baulk left and black right, with cloth, cushions, balls and marks.
 
 The horizontal axis of the picture is y [m] to the right, the vertical one x [m] down, as from above on television: a point (x, y) of the
-table is drawn by ``ax.plot(y, x)``. Everything lies on the table's own colours, so that it looks the same in light and dark surroundings.
+table is drawn by ``ax.plot(y, x)``. Everything is drawn on the table's own colours, so that light and dark pages show it alike.
 """
 
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 WIDTH = 8.3
-"""Of a figure that is made for a diagram [inches]: 830 pixels, as wide as a README shows."""
+"""Width of a new figure [inches]: 830 pixels, the width of a README."""
 PATH_WIDTH, OUTLINE = 2.16, 1.6
-"""Of a path [points]: 3 pixels at 100 dots an inch; and how much wider its dark outline is."""
+"""Width of a path [points], 3 pixels at 100 dots per inch; and by how much its dark outline is wider [points]."""
 TABLE = "snooker-table"
-"""The gid of what a sketch draws once on its axes."""
+"""The gid of the parts that a sketch draws once on its axes."""
 CAPTIONS = {"full": 0.118, "short": 0.2, "none": 0.0}
-"""How high the strip for words under the picture is, as a part of its width: for wide axes, for those of half the width, and none."""
+"""Height of the strip for text under the picture over the width of the picture: for wide axes, for axes of half the width, and none."""
 
-_MARGIN = 0.02  # floor to be seen around the rails [m]
+_MARGIN = 0.02  # floor shown around the rails [m]
 
 
 def pyplot() -> Any:
-    """``matplotlib.pyplot``; ImportError with the line that installs it."""
+    """``matplotlib.pyplot``, or an ImportError with the command that installs it."""
     try:
         from matplotlib import pyplot as plt
     except ImportError as error:
@@ -39,7 +39,7 @@ def pyplot() -> Any:
 
 
 class Region(NamedTuple):
-    """What of a table is to be seen [m]."""
+    """The part of a table that a picture shows [m]."""
 
     low_x: float
     high_x: float
@@ -48,12 +48,12 @@ class Region(NamedTuple):
 
     @property
     def width(self) -> float:
-        """From left to right in the picture [m]."""
+        """Width of the picture, along y [m]."""
         return self.high_y - self.low_y
 
     @property
     def height(self) -> float:
-        """From top to bottom in the picture [m]."""
+        """Height of the picture, along x [m]."""
         return self.high_x - self.low_x
 
     @classmethod
@@ -65,7 +65,7 @@ class Region(NamedTuple):
 
     @classmethod
     def around(cls, points: Floats, table: Table, margin: float = 0.18, ratio: tuple[float, float] = (1.35, 2.1)) -> "Region":
-        """As much as points (m, 2) need, at least 1 m wide, its width over its height within ``ratio``, and within the table's picture."""
+        """The region around points (m, 2) [m]: at least 1 m wide, width over height within ``ratio``, and inside the table's picture."""
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         height, width = high - low
         width, height = max(width, 1.0, ratio[0] * height), height
@@ -84,25 +84,25 @@ class Region(NamedTuple):
 
 
 def is_closed(table: Table) -> bool:
-    """Is there a cushion on each side? Then there is wood around, else cloth as far as one sees."""
+    """Whether there is a cushion on each side. If so, the table has a wooden frame; if not, cloth fills the picture."""
     return bool(np.isfinite(table.bounds).all())
 
 
 def rgb(colour: Any, alpha: float = 1.0) -> tuple[float, float, float, float]:
-    """A colour of the palette by name, or three numbers up to 255, as matplotlib takes it."""
+    """A colour of the palette by name, or three numbers up to 255, in matplotlib's form."""
     red, green, blue = (PALETTE[colour] if isinstance(colour, str) else colour)[:3]
     return red / 255, green / 255, blue / 255, alpha
 
 
 def flipped(points: Any) -> Floats:
-    """(..., 2) as matplotlib is to draw them: y to the right, x down."""
+    """Points (..., 2) in the order for matplotlib: y to the right, x down."""
     return np.asarray(points, np.float64)[..., ::-1]
 
 
 class Sketch:
-    """Axes with a table on them; ``ax`` None: in a figure of their own.
+    """Axes with a table on them; ``ax`` None makes a new figure.
 
-    Axes that a sketch has drawn on before keep their table and what they show of it.
+    Axes with an earlier sketch keep their table and their limits.
     """
 
     def __init__(self, table: Table, R: float, region: Region | None = None, ax: "Axes | None" = None, *, strip: float = 0.0):
@@ -147,7 +147,7 @@ class Sketch:
 
         ax, parts, w = self.ax, outline(self.table), self.region
         (low_x, high_x), (low_y, high_y) = extent(self.table)
-        scale = 72 * WIDTH / w.width  # of lines that are so many metres wide, about
+        scale = 72 * WIDTH / w.width  # points per metre, about, for the widths of lines
 
         def add(patch, level, clip=None):
             patch.set(zorder=level, gid=TABLE)
@@ -175,10 +175,10 @@ class Sketch:
                     add(Circle((y1, x1), half + rim, fc=rgb(colour), ec="none"), level)
             left, top = max(low_y - CUSHION, w.low_y), max(low_x - CUSHION, w.low_x)
             right, bottom = min(high_y + CUSHION, w.high_y), min(high_x + CUSHION, w.high_x)
-        else:  # cloth as far as one sees
+        else:  # cloth fills the picture
             left, top, right, bottom = w.low_y, w.low_x, w.high_y, w.high_x
         add(Rectangle((left, top), right - left, bottom - top, fc=rgb("cloth"), ec="none"), 0.3)
-        cloth = Rectangle((left, top), right - left, bottom - top, transform=ax.transData)  # what is drawn on it ends with it
+        cloth = Rectangle((left, top), right - left, bottom - top, transform=ax.transData)  # clips what is drawn on it
         for x, y, radius in parts.falls:
             add(Circle((y, x), radius + 0.006, fc=rgb("cloth_edge"), ec="none"), 0.4, cloth)
             add(Circle((y, x), radius, fc=rgb("hole"), ec="none"), 0.45, cloth)
@@ -197,10 +197,10 @@ class Sketch:
             add(Rectangle((w.low_y, w.high_x), w.width, self.depth, fc=rgb("bar"), ec="none"), 9.0)
             ax.plot([w.low_y, w.high_y], [w.high_x] * 2, color=rgb("bar_edge"), lw=1.0, zorder=9.1, gid=TABLE)
 
-    # what lies on it ---------------------------------------------------------------------------------------------------------
+    # things on the table -----------------------------------------------------------------------------------------------------
 
     def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
-        """A ball as it lies, with a little light on it; ``label``: and its letter."""
+        """A ball at rest, with a highlight; ``label``: with its letter."""
         from matplotlib.patches import Circle
 
         (y, x), R, colour = flipped(place), self.R, COLOURS[ball % N_BALLS]
@@ -219,7 +219,7 @@ class Sketch:
             self.ax.text(y, x, LETTERS[ball % N_BALLS], color=ink, size=size, weight="bold", ha="center", va="center_baseline", zorder=7.2)
 
     def ghost(self, ball: int, place: Vector, alpha: float = 0.4, *, radius: float | None = None, level: float = 6.0) -> None:
-        """A ball that is there only for a moment, or in the end: faded, with a rim. ``radius``: not as large as it is."""
+        """A faded ball with a rim, for a moment of the shot or its end. ``radius``: another size than the ball's [m]."""
         from matplotlib.patches import Circle
 
         (y, x), colour = flipped(place), COLOURS[ball % N_BALLS]
@@ -238,7 +238,7 @@ class Sketch:
         self.keep_clear(points, 0.0)
 
     def arrow(self, place: Floats, direction: Floats, colour: Any, size: float = 10.0, level: float = 5.6) -> None:
-        """An arrowhead about a place, ``size`` [points] long, pointing along a unit vector."""
+        """An arrowhead at a place, ``size`` long [points], pointing along a unit vector."""
         from matplotlib.patches import Polygon
 
         head = np.array([(0.5, 0.0), (-0.35, 0.32), (-0.17, 0.0), (-0.35, -0.32)]) * size / self.points_per_metre
@@ -254,22 +254,22 @@ class Sketch:
     # words -------------------------------------------------------------------------------------------------------------------
 
     def keep_clear(self, points: Floats, size: float) -> None:
-        """Labels are not to lie on these points (m, 2), each ``size`` [m] wide; of a line also not between them."""
+        """Keep labels away from these points (m, 2), each ``size`` wide [m], and for a line from the points between them."""
         if len(points) > 1:
             steps = np.maximum(1, np.ceil(np.hypot(*np.diff(points, axis=0).T) / 0.02).astype(int))
             points = np.concatenate([np.linspace(a, b, n) for a, b, n in zip(points[:-1], points[1:], steps, strict=True)])
         self._busy.append(np.column_stack([points, np.full(len(points), size)]))
 
     def text(self, y: float, x: float, words: str, colour: Any = "text", size: float = 1.0, **more: Any) -> None:
-        """Words at a place of the picture, in sizes of the usual font."""
+        """Text at a place of the picture; ``size`` in units of the usual font."""
         self.ax.text(y, x, words, **{"color": rgb(colour), "size": self.font * size, "zorder": 9.5, "va": "center"} | more)
 
     def rows(self, n: int) -> list[float]:
-        """The heights (as x) of n lines of words in the strip under the picture."""
+        """The x of n lines of text in the strip under the picture [m]."""
         return [self.region.high_x + self.depth * (k + 0.62) / (n + 0.24) for k in range(n)]
 
     def title(self, words: str) -> None:
-        """A line at the top left."""
+        """Write a title at the top left."""
         from matplotlib.patheffects import withStroke
 
         if words:
@@ -282,7 +282,7 @@ class Sketch:
             self._taken.append((w.low_y, w.low_y + 0.66 * line * len(words), w.low_x, w.low_x + 1.3 * line))
 
     def label(self, place: Vector, words: str, colour: Any = "text") -> bool:
-        """Words near a place, where they cover least, with a line to it; False if there is no room for them."""
+        """Write text near a place, where it covers least, with a line to it; False if there is no room for it."""
         from matplotlib.patheffects import withStroke
 
         high = 1.25 * self.font / self.points_per_metre
@@ -310,7 +310,7 @@ class Sketch:
         return True
 
     def _cost(self, box, busy):
-        """How much a label in that box would cover."""
+        """The cost of a label in that box: how much it would cover."""
         left, right, top, bottom = box
         w = self.region
         out = max(w.low_y - left, right - w.high_y, w.low_x - top, bottom - w.high_x, 0.0)

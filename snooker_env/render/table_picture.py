@@ -1,7 +1,7 @@
-"""How does a table look from above? Everything that does not move, as an array: floor, wood, leather, cloth, cushions, pockets, light.
+"""How is a table drawn from above? Everything that does not move, as an array: floor, wood, leather, cloth, cushions, pockets, light.
 
-Each part is a signed distance [m] (negative inside) on the pixels around it; an edge covers a pixel by as much as it reaches into it, so
-that edges are smooth at every size. Needs numpy alone.
+Each part is a signed distance [m] (negative inside) on the pixels around it. An edge covers a part of a pixel, so that edges are smooth at
+every size. Needs only numpy.
 """
 
 from functools import lru_cache
@@ -16,9 +16,9 @@ from .palette import PALETTE
 from .view import View
 
 LAMPS = 4
-"""Over a table hang this many lamps, in a row along its length ..."""
+"""Number of lamps over a table, in a row along its length."""
 LAMP_HEIGHT = 0.95
-"""... so high above the cloth [m]."""
+"""Height of the lamps above the cloth [m]."""
 
 _RIM = 0.020  # width of a pocket's leather [m]
 _ROUND = 0.085  # radius of the table's corners [m]
@@ -26,7 +26,7 @@ _INK = {name: np.array(rgb, dtype=np.float32) for name, rgb in PALETTE.items()}
 
 
 def lamps(table: Table) -> NDArray[np.float64]:
-    """(``LAMPS``, 2) places over the table [m]."""
+    """Places of the lamps over the table: (``LAMPS``, 2) [m]."""
     (low_x, high_x), (low_y, high_y) = extent(table)
     parts = (np.arange(LAMPS) + 0.5) / LAMPS
     return np.stack([np.full(LAMPS, (low_x + high_x) / 2), low_y + (high_y - low_y) * parts], axis=1)
@@ -34,17 +34,19 @@ def lamps(table: Table) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=8)
 def table_picture(table: Table, view: View) -> NDArray[np.uint8]:
-    """A table as uint8 (height, width, 3), read-only; the rows of the score bar hold only floor.
+    """The picture of a table without balls; the rows of the score bar show the floor.
 
     Parameters
     ----------
     table : Table
+        The table.
     view : View
-        Of that table.
+        A view of that table.
 
     Returns
     -------
     uint8 (height, width, 3)
+        The picture, read-only.
     """
     canvas, parts = _Canvas(view, table), outline(table)
     canvas.image[:] = _INK["floor"]
@@ -62,7 +64,7 @@ def table_picture(table: Table, view: View) -> NDArray[np.uint8]:
 
 
 class _Canvas:
-    """A picture in the making: float32 (height, width, 3), and where its pixels lie on the table [m]."""
+    """An unfinished picture, float32 (height, width, 3), and the coordinates of its pixels on the table [m]."""
 
     def __init__(self, view, table):
         self.view, self.extent = view, extent(table)
@@ -79,7 +81,7 @@ class _Canvas:
         return self.image[rows, columns], self.x[rows], self.y[:, columns]
 
     def cover(self, distance):
-        """How much of each pixel lies inside."""
+        """The part of each pixel that is inside, 0 to 1."""
         return np.clip(0.5 - distance * self.view.scale, 0.0, 1.0)
 
     def box(self, x, y, extra, radius=0.0):
@@ -89,7 +91,7 @@ class _Canvas:
         return outside + np.minimum(np.maximum(across, along), 0) - radius
 
     def grain(self, rows, columns, fine, run):
-        """Unrest of mean 0 and size 1, ``fine`` pixels across and ``run`` pixels along the columns."""
+        """Noise of mean 0 and standard deviation about 1, correlated over ``fine`` pixels across and ``run`` pixels along the columns."""
         across, along = int(rows / fine) + 2, int(columns / run) + 3
         noise = self.random.standard_normal((across, along)).astype(np.float32)
         at, part = np.divmod(np.arange(columns) / run, 1.0)
@@ -98,13 +100,13 @@ class _Canvas:
 
 
 def _paint(image, colour, alpha):
-    """Lay a colour (3,) or picture over a picture."""
+    """Blend a colour (3,) or a picture over a picture."""
     alpha = alpha[..., None]
     image += alpha * (colour - image)
 
 
 def _smooth(t):
-    """From 0 at t = 0 to 1 at t = 1."""
+    """A smooth step from 0 at t = 0 to 1 at t = 1."""
     t = np.clip(t, 0.0, 1.0)
     return t * t * (3 - 2 * t)
 
@@ -139,7 +141,7 @@ def _marks(canvas):
 
 
 def _pockets(canvas, parts: Outline):
-    """The holes: the cloth bends over the slate's edge and down; behind, the leather's inside goes down into the dark."""
+    """The holes: in front the cloth bends down over the slate's edge; behind, the inside of the leather goes down into the dark."""
     for (cx, cy, radius), throat in zip(parts.falls.tolist(), parts.throats.tolist(), strict=True):
         image, x, y = canvas.around([(cx, cy), throat[:2]], max(radius, throat[4]) + 0.03)
         fall = np.hypot(x - cx, y - cy) - radius
@@ -154,7 +156,7 @@ def _pockets(canvas, parts: Outline):
 
 
 def _capsule(x, y, throat):
-    """Distance to a throat: a line from its mouth to its fall, thick, with a round end."""
+    """Distance to a throat: a thick line with a round end, from its mouth to its fall."""
     x0, y0, x1, y1, half = throat
     dx, dy = x1 - x0, y1 - y0
     part = np.clip(((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy), 0, 1)
@@ -162,13 +164,13 @@ def _capsule(x, y, throat):
 
 
 def _cushion(canvas, polygon, nose):
-    """One cushion with the shadow that it throws on the bed: bright along the nose, darker towards the wood."""
+    """One cushion and its shadow on the bed: bright along the nose, darker towards the wood."""
     reach = 0.055
     image, x, y = canvas.around(nose, reach + 0.05)
     to_nose = _to_line(x, y, nose, reach + 0.03)
     inside = _inside(x, y, polygon)
-    outer = np.where(inside, -to_nose, to_nose)  # the nose is the only edge of a cushion that is seen
-    within = canvas.cover(canvas.box(x, y, CUSHION + 0.02))  # a nose may run on beyond the frame
+    outer = np.where(inside, -to_nose, to_nose)  # the nose is the only visible edge of a cushion
+    within = canvas.cover(canvas.box(x, y, CUSHION + 0.02))  # a nose may go on beyond the frame
     image *= (1 - 0.50 * np.exp(-np.maximum(outer, 0) / 0.013) * (outer > 0) * (outer < reach) * within)[..., None]
     t = np.clip(to_nose / (CUSHION + 0.004), 0, 1)
     top = _INK["cushion"] * (1.16 - 0.42 * t)[..., None]
@@ -197,7 +199,7 @@ def _to_line(x, y, points, reach):
 
 
 def _inside(x, y, polygon):
-    """Which pixels' centres lie in a polygon: those that a ray in -x leaves through an odd number of edges."""
+    """The pixels whose centres are in a polygon: from them a ray in -x crosses an odd number of edges."""
     odd = np.zeros((len(x), y.shape[1]), bool)
     for a, b in zip(polygon.tolist(), np.roll(polygon, -1, axis=0).tolist(), strict=True):
         (ax, ay), (bx, by) = (a, b) if a[1] < b[1] else (b, a)
@@ -208,7 +210,7 @@ def _inside(x, y, polygon):
 
 
 def _wood(canvas, table, parts):
-    """The frame: polished wood with its grain along each rail, and the pockets' leather let into it."""
+    """The frame: polished wood with its grain along each rail, and the leather of the pockets in it."""
     image, x, y = canvas.around(canvas.extent.T, RAIL + 0.1)
     edge = canvas.box(x, y, RAIL, _ROUND)
     inner = canvas.box(x, y, CUSHION)
@@ -237,7 +239,7 @@ def _wood(canvas, table, parts):
 
 
 def _leather(canvas, image, x, y, throat):
-    """A pocket's leather: round, bright along its ridge, cut off square where its ends lap over the cushions."""
+    """The leather of a pocket: round, bright along its ridge, cut off square where its ends lie over the cushions."""
     x0, y0, x1, y1, half = throat
     around = _near(x, y, (x0, y0), (x1, y1), half + 0.06)
     image, x, y = image[around], x[around[0]], y[:, around[1]]

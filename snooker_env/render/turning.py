@@ -1,7 +1,7 @@
-"""How is a ball turned at any time of a shot? Its spin is added up once, from the shot's start, as unit quaternions (w, x, y, z).
+"""How is a ball oriented at any time of a shot? Its spin is integrated once, from the shot's start, as unit quaternions (w, x, y, z).
 
-A quaternion turns the ball from how it lay at the start to how it lies: world = q ball q*. Spins are in the world frame, so that a short
-turn is multiplied from the left.
+A quaternion q is the rotation since the start: a vector v of the ball is q v q* in the table frame. Spins are in the table frame, so the
+rotation of a short time step is multiplied from the left.
 """
 
 import numpy as np
@@ -10,11 +10,11 @@ from .._types import Floats
 from ..simulation import Shot
 
 STEP = 1 / 240
-"""Between the places where the turn is kept [s]: at 100 rad/s the ball turns a quarter of a right angle in between."""
+"""Time between stored rotations [s]: at 100 rad/s the ball turns by a quarter of a right angle in it."""
 
 
 class Turning:
-    """One ball of a ``Shot``."""
+    """The rotation of one ball of a ``Shot``."""
 
     def __init__(self, shot: Shot, ball: int):
         self._shot, self._ball = shot, int(ball)
@@ -34,14 +34,14 @@ class Turning:
 
 
 def rotation(turn: Floats) -> Floats:
-    """The quaternion (..., 4) of a turn about the axis ``turn`` (..., 3) by its length [rad]."""
+    """The quaternion (..., 4) of a rotation about the axis ``turn`` (..., 3) by its length [rad]."""
     turn = np.asarray(turn, dtype=np.float64)
     angle = np.linalg.norm(turn, axis=-1, keepdims=True)
     return np.concatenate([np.cos(angle / 2), turn * (np.sinc(angle / (2 * np.pi)) / 2)], axis=-1)
 
 
 def product(a: Floats, b: Floats) -> Floats:
-    """Two quaternions (4,): first ``b``, then ``a``."""
+    """The product of two quaternions (4,): the rotation ``b``, then ``a``."""
     (aw, ax, ay, az), (bw, bx, by, bz) = a.tolist(), b.tolist()
     return np.array([
         aw * bw - ax * bx - ay * by - az * bz, aw * bx + ax * bw + ay * bz - az * by,
@@ -50,7 +50,7 @@ def product(a: Floats, b: Floats) -> Floats:
 
 
 def matrix(q: Floats) -> Floats:
-    """(3, 3) the same turn as a matrix."""
+    """The rotation of a quaternion as a matrix (3, 3)."""
     w, x, y, z = q.tolist()
     return np.array([
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

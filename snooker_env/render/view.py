@@ -1,4 +1,4 @@
-"""Where do metres lie on a picture? The table in the middle, +y to the right and +x down, the score bar below it."""
+"""How do metres map to pixels? The table is in the middle of the picture, +y to the right and +x down; the score bar is below it."""
 
 from typing import NamedTuple
 
@@ -10,11 +10,11 @@ from ..physics.table import Table
 from .outline import RAIL, extent
 
 SIZE = (1920, 1080)
-"""Width and height of a picture [pixels] unless told."""
+"""Default width and height of a picture [pixels]."""
 
-_MARGIN = 0.012  # floor to be seen around the rails [m]
+_MARGIN = 0.012  # floor shown around the rails [m]
 _BAR = 1 / 15  # part of the height for the score bar
-_LONGEST = 8.0  # a picture whose width follows is at most this many times as wide as high
+_LONGEST = 8.0  # largest width over height, for a width that follows from the table
 _LEAST, _MOST = 100, 8192
 
 
@@ -26,14 +26,15 @@ class View(NamedTuple):
     bar: int
     """Rows of the score bar, at the bottom."""
     scale: float
-    """Pixels a metre."""
+    """Pixels per metre."""
     x: float
+    """Column of the origin."""
     y: float
-    """Pixel of the origin."""
+    """Row of the origin."""
 
     @classmethod
     def of(cls, table: Table, height: int | None = None, size: tuple[int, int] | None = None) -> "View":
-        """``size`` (width, height): the table as large as fits into it; ``height`` alone: as wide as that table asks; neither: ``SIZE``."""
+        """The view of a table. ``size`` (width, height): as large as fits; ``height``: with the width of that table; neither: ``SIZE``."""
         low, high = extent(table).T
         (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + _MARGIN), (low + high) / 2
         if height is not None and size is not None:
@@ -42,7 +43,7 @@ class View(NamedTuple):
             height = integer("height", height, _LEAST, 4320)
             bar = round(_BAR * height)
             scale = min((height - bar) / tall, _LONGEST * height / wide)
-            width = 2 * round(scale * wide / 2)  # even, as video encoders want it
+            width = 2 * round(scale * wide / 2)  # even, for video encoders
         else:
             width, height = _checked(SIZE if size is None else size)
             bar = round(_BAR * min(height, width * SIZE[1] / SIZE[0]))

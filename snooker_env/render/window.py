@@ -1,14 +1,14 @@
-"""How is a table shown on the screen? In a window that says what it waits for, and that listens to the keyboard.
+"""How is a table shown on the screen? In a window that shows what it waits for, and that reads the keyboard.
 
-| key | what it does |
+| key | effect |
 |---|---|
-| space | pause, and go on |
-| right arrow | one picture further, while paused |
+| space | pause and go on |
+| right arrow | next picture, while paused |
 | enter | to the end of the shot |
 | up, down arrow | faster, slower: 0.25 to 8 times |
 | L | letters on the balls |
 | P | paths |
-| escape, close button | shut the window |
+| escape, close button | close the window |
 """
 
 import dataclasses
@@ -27,17 +27,17 @@ from .scene import Film, Scene
 from .view import SIZE, View
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
-"""How fast a shot can be shown, in multiples of what the caller asks for."""
+"""Speeds that the user can choose, in multiples of the caller's."""
 KEYS = "space: pause    right: step    enter: skip    up/down: speed    L: letters    P: paths    esc: close"
 WAITING = "waiting for the next stroke"
-_HINT = 0.026  # part of the window's height for the line that says what it waits for
-_TO_NOBODY = ("dummy", "offscreen")  # drivers of SDL
+_HINT = 0.026  # part of the window's height for the line with its status
+_INVISIBLE = ("dummy", "offscreen")  # drivers of SDL
 
 
 def require_display() -> None:
-    """Refuse where a window could be shown to nobody.
+    """Raise an error if nobody could see a window.
 
-    A program that wants a window without a screen, as tests do, says so by the environment variable ``SDL_VIDEODRIVER=dummy``.
+    The environment variable ``SDL_VIDEODRIVER=dummy`` allows a window without a screen, as in tests.
 
     Raises
     ------
@@ -54,31 +54,32 @@ def require_display() -> None:
 def _no_display(why):
     return RuntimeError(
         f'a window (render_mode="human") needs a display, and there is none ({why}): use render_mode="rgb_array" for pictures or "ansi" '
-        "for text, or set SDL_VIDEODRIVER=dummy to play to nobody"
+        "for text, or set SDL_VIDEODRIVER=dummy for a window that nobody sees"
     )
 
 
 class Window:
-    """A window with a table. It opens at the first ``draw``; its close button shuts it until ``close``.
+    """A window with a table. It opens at the first ``draw``. After its close button was used it stays closed until ``close`` is called.
 
     Parameters
     ----------
     height : int, optional
-        [pixels]: as high as this, and as wide as the first table asks.
+        Height of the picture [pixels]; its width follows from the first table.
     title : str
+        Title of the window.
     size : (int, int), optional
-        (width, height) [pixels]. Without both: ``SIZE``, or less where the screen is smaller. It may be resized by its edges.
+        Width and height [pixels]. With neither: ``SIZE``, or less on a smaller screen. The window can be resized.
     """
 
     def __init__(self, height: int | None = None, title: str = "snooker", *, size: tuple[int, int] | None = None):
-        View.of(Table.of(None), height, size)  # refused now, not when it opens
+        View.of(Table.of(None), height, size)  # raises for a wrong size now, not when the window opens
         self._height, self._size, self._title = height, size, title
         self._screen: Any = None
         self._shut = False
         self._speed, self._paused, self._letters, self._paths = SPEEDS.index(1.0), False, False, True
         self._steps, self._skip, self._hint = 0, False, 0
         self.status = ""
-        """What the window's last line says that it waits for."""
+        """The status in the window's last line."""
 
     @property
     def is_open(self) -> bool:
@@ -87,7 +88,7 @@ class Window:
 
     @property
     def speed(self) -> float:
-        """How fast the user wants shots to be shown, in multiples of what ``play`` is asked for."""
+        """The speed that the user has chosen, in multiples of that of ``play``."""
         return SPEEDS[self._speed]
 
     @property
@@ -101,13 +102,14 @@ class Window:
         Parameters
         ----------
         scene : Scene
+            The scene.
         status : str
-            What the window waits for, said in its last line.
+            What the window waits for, shown in its last line.
 
         Returns
         -------
         bool
-            False, with nothing shown, once the user has shut the window.
+            False, with nothing shown, if the user has closed the window.
 
         Raises
         ------
@@ -125,21 +127,28 @@ class Window:
         return True
 
     def play(self, scenes: Film | Iterable[Scene], fps: float = 30.0, *, speed: float = 1.0) -> bool:
-        """Show a shot as it moves, by the clock, at the speed that the user wants.
+        """Show a moving shot in real time, at the speed that the user has chosen.
 
         Parameters
         ----------
         scenes : Film or iterable of Scene
-            A film is drawn at the very time of each picture; of scenes, those of ``shot_scenes``, one is shown every 1 / fps seconds.
+            A film is drawn at the exact time of each picture. Of scenes, as from ``shot_scenes``, one is shown every 1 / fps seconds.
         fps : float
-            Pictures a second.
+            Pictures per second.
         speed : float
-            Of a film: how fast it runs at the user's speed 1.
+            Speed of a film over that of the shot, at the user's speed 1.
 
         Returns
         -------
         bool
-            False if the window was shut.
+            False if the user has closed the window.
+
+        Raises
+        ------
+        ValueError
+            If ``fps`` or ``speed`` is not positive.
+        RuntimeError
+            If there is no display.
         """
         fps, clock = number("fps", fps, 0.0, open_low=True), pygame_().time.Clock()
         speed = number("speed", speed, 0.0, open_low=True)
@@ -159,7 +168,7 @@ class Window:
         return True
 
     def close(self) -> None:
-        """Close the window, if there is one. A later ``draw`` opens it again."""
+        """Close the window if it is open. A later ``draw`` opens it again."""
         self._shut = self._paused = False
         if self._screen is not None:
             self._screen = None
@@ -176,7 +185,7 @@ class Window:
         except pygame.error as error:
             raise _no_display(str(error)) from None
         driver = pygame.display.get_driver()
-        if not os.environ.get("SDL_VIDEODRIVER") and driver in _TO_NOBODY:
+        if not os.environ.get("SDL_VIDEODRIVER") and driver in _INVISIBLE:
             pygame.display.quit()
             raise _no_display(f"SDL found only its driver {driver!r}")
         pygame.display.set_caption(self._title)
@@ -219,7 +228,7 @@ class Window:
 
     def _show(self, scene):
         pygame = pygame_()
-        self._screen = pygame.display.get_surface()  # another one once the window was resized
+        self._screen = pygame.display.get_surface()  # a new one after the window was resized
         width, height = self._screen.get_size()
         hint = self._hint
         scene = dataclasses.replace(scene, lettered=scene.lettered or self._letters, paths=scene.paths if self._paths else {})
@@ -235,7 +244,7 @@ class Window:
 
 
 class _FilmReel:
-    """A film from which the next picture is taken; None once the last was taken."""
+    """The pictures of a film one by one; None after the last."""
 
     def __init__(self, film: Film, step: float):
         self._film, self._step, self._time = film, step, 0.0
@@ -247,7 +256,7 @@ class _FilmReel:
         return self._to(self._time + speed * self._step)
 
     def skip(self) -> Scene | None:
-        """The very last picture."""
+        """The last picture."""
         return self._to(self._film.duration)
 
     def _to(self, time):
@@ -258,7 +267,7 @@ class _FilmReel:
 
 
 class _SceneReel:
-    """The same of scenes one after the other: some are left out at speeds above 1, and shown again below."""
+    """The same for an iterable of scenes: at speeds above 1 some are left out, below 1 some are shown again."""
 
     def __init__(self, scenes: Iterable[Scene]):
         self._scenes, self._due = iter(scenes), 0.0

@@ -1,4 +1,4 @@
-"""What does the score bar say at each stroke? Two bars a stroke: while it is played, and once it has been judged."""
+"""What does the score bar show at each stroke? Two bars for each stroke: one during it, and one after the referee's decision."""
 
 from collections.abc import Iterable, Sequence
 
@@ -12,9 +12,9 @@ from .words import on_words, pots_of, sentence
 
 
 def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreBar, ScoreBar]]:
-    """For each stroke of one episode, in their order: the bar during it and the bar after it. ``players``: their names."""
+    """For each stroke of one episode, in order: the bar during it and the bar after it. ``players``: their names."""
     made, names = [], tuple(players)
-    potted: list[int] | None = []  # in this break; None: it began before the first stroke that was seen
+    potted: list[int] | None = []  # in this break; None: it began before the first recorded stroke
     run = 0
     for played in strokes:
         gains = {played.player: played.points, 1 - played.player: played.penalty}
@@ -41,7 +41,7 @@ def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreB
 
 
 def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar | None = None) -> ScoreBar:
-    """What the bar says of table k as it stands; ``last``: the bar after the stroke that led there, if one was seen."""
+    """The bar for table k as it stands; ``last``: the bar after the stroke that led there, if known."""
     standing, on_table = tables.standing(k), tables.on_table[k]
     ball_on = BallOn(tables.game[k, BALL_ON])
     goes_on = last is not None and bool(standing["break_points"])

@@ -19,46 +19,72 @@ from ..tasks.played import Played
 from .encode import encoded_stroke
 
 WEB = Path(__file__).resolve().parent.parent / "web"
-"""Where the module that draws in a browser is."""
+"""Folder of the JavaScript that draws in a browser."""
 FORMAT, VERSION = "snooker-replay", 1
 SUFFIXES = (".html", ".json", ".mp4", ".gif")
 
 
 class Replay:
-    """Strokes to look at: ``html()`` and ``save`` give a file that any browser opens, a notebook shows the replay itself.
+    """A sequence of strokes that can be shown: as a page (``html``, ``save``), in a notebook (as the value of a cell), or as a film.
 
-    Made by ``snooker_env.replay``, which says what its arguments are.
+    ``snooker_env.replay`` makes replays from shots, histories, positions and environments.
+
+    Parameters
+    ----------
+    strokes : iterable of Shot or Played
+        The strokes in the order in which they were played; at least one, each with its path.
+    title : str, optional
+        Title of the page; default none.
+    players : iterable of str, optional
+        Names of the players: two for a frame, one for a visit, none for bare shots. Default: "Player 1" and "Player 2", or "Player".
+    table : str, Table or None, optional
+        The table on which the strokes were played; default: that of the shots, or "match".
 
     Attributes
     ----------
     strokes : tuple of Shot or Played
-        In the order in which they were played.
+        The strokes.
     title : str
+        The title.
     players : tuple of str
-        Names: none for bare shots, one for a visit, two for a frame.
+        Names of the players; none for bare shots.
     table : Table
-        What they were played on.
+        The table.
+
+    Raises
+    ------
+    ValueError
+        If there is no stroke, if strokes differ in ball radius, spin deceleration or table, or if an argument is invalid.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> shot = sn.simulate([(0.0, -1.0), (0.0, 0.5)], [(0.0, 3.0), (0.0, 0.0)], [(0.0, 0.0, 0.0)] * 2)
+    >>> film = sn.Replay([shot, shot], title="twice")
+    >>> film, film.players, film.table.name
+    (Replay(2 strokes, 'twice'), (), 'match')
     """
 
     def __init__(self, strokes: Iterable[Shot | Played], *, title: str = "", players: Iterable[str] = (), table: TableLike = None):
-        self.strokes = tuple(strokes)
+        self.strokes: tuple[Shot | Played, ...] = tuple(strokes)
         for k, stroke in enumerate(self.strokes):
             if not isinstance(stroke, Shot | Played):
                 raise refuse_what(f"strokes[{k}]", f"a {type(stroke).__name__}", "must be a Shot, or a stroke of env.history")
         if not self.strokes:
             raise refuse("strokes", [], "must hold at least one stroke")
-        self.title, names = checked_text("title", title), checked_players(players)
+        self.title: str = checked_text("title", title)
+        names = checked_players(players)
         usual = self._usual_players()
         if names and len(names) != len(usual):
             allowed = "must be two names for a frame, one for a visit, none for bare shots"
             raise refuse_what("players", f"{len(names)} names", allowed)
-        self.players = names or usual
+        self.players: tuple[str, ...] = names or usual
         for k, shot in enumerate(self.shots):
             if (shot.physics.R, shot.physics.spin_decel) != (self.shots[0].physics.R, self.shots[0].physics.spin_decel):
-                raise refuse_what(f"strokes[{k}]", "a shot in another world", "must have the R and the spin_decel of the first")
+                raise refuse_what(f"strokes[{k}]", "a shot with other physics", "must have the R and the spin_decel of the first")
         tables = [shot.table for shot in self.shots if shot.table is not None]
         if table is not None:
-            self.table = Table.of(table)
+            self.table: Table = Table.of(table)
         else:
             self.table = tables[0] if tables else Table.preset("match")
             for k, other in enumerate(tables):
@@ -72,7 +98,7 @@ class Replay:
 
     @property
     def shots(self) -> list[Shot]:
-        """The shots of the strokes."""
+        """The ``Shot`` of each stroke, a list."""
         return [stroke if isinstance(stroke, Shot) else stroke.shot for stroke in self.strokes]
 
     def __len__(self) -> int:
@@ -82,12 +108,25 @@ class Replay:
         return f"Replay({len(self)} strokes, {self.title!r})"
 
     def to_dict(self) -> dict[str, Any]:
-        """The replay as JSON types, as docs/replay.md describes them.
+        """Return the replay as JSON types, in the format that docs/play/replay.md describes.
 
         Returns
         -------
         dict
-            Fresh at the top; treat what is inside as read-only.
+            The top level is new at each call; treat everything inside as read-only.
+
+        Raises
+        ------
+        ValueError
+            If a shot has no path, or more than 22 balls.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.5)], [(0.0, 0.0, 0.0)])
+        >>> data = sn.replay(shot).to_dict()
+        >>> data["format"], data["version"], len(data["strokes"])
+        ('snooker-replay', 1, 1)
         """
         if self._data is None:
             strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
@@ -99,11 +138,24 @@ class Replay:
         return dict(self._data)
 
     def html(self) -> str:
-        """The replay as one HTML page that needs nothing else, no network either.
+        """Return the replay as one HTML page that needs no other file and no network.
 
         Returns
         -------
         str
+            The page.
+
+        Raises
+        ------
+        ValueError
+            If a shot has no path, or more than 22 balls.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.5)], [(0.0, 0.0, 0.0)])
+        >>> sn.replay(shot).html().splitlines()[0]
+        '<!DOCTYPE html>'
         """
         data = json.dumps(self.to_dict(), separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
         parts = {"title": html.escape(self.title or "Snooker replay"), "module": (WEB / "table.js").read_text("utf-8"), "data": data}
@@ -111,55 +163,73 @@ class Replay:
         return re.sub(r"\{\{(title|module|data)\}\}", lambda place: parts[place[1]], page)
 
     def _repr_html_(self) -> str:
-        """In a notebook: the page in a frame of its own."""
+        """In a notebook: the page in a frame."""
         return (
             f'<iframe srcdoc="{html.escape(self.html(), quote=True)}" sandbox="allow-scripts" title="snooker replay" '
             'style="width: 100%; aspect-ratio: 16 / 10; border: 0"></iframe>'
         )
 
     def frames(self, *, fps: float = 30.0, speed: float = 1.0, size: tuple[int, int] = (1920, 1080)) -> Iterator[NDArray[np.uint8]]:
-        """The pictures of the film, one after the other.
+        """Iterate over the pictures of the film.
 
         Parameters
         ----------
-        fps : float
-            Pictures a second.
-        speed : float
-            Of the film over that of the strokes.
-        size : (int, int)
-            Width and height [pixels].
+        fps : float, optional
+            Pictures per second of the film, in (0, 1000]; default 30.
+        speed : float, optional
+            Speed of the film over that of the strokes, in (0, 1000]; default 1.
+        size : (int, int), optional
+            Width and height [pixels]; default (1920, 1080).
 
         Returns
         -------
-        iterator of uint8 (height, width, 3)
-            To be read only: where nothing moves the same array comes again.
+        iterator of numpy.ndarray
+            uint8 (height, width, 3). Treat them as read-only: while nothing moves, the same array comes again.
+
+        Raises
+        ------
+        ValueError
+            If ``fps`` or ``speed`` is out of range.
+        ImportError
+            Without pygame.
         """
         from .film import frames
 
         return frames(self, fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
-        """Write the replay to a file: its suffix says as what.
+        """Write the replay to a file in the format of its suffix.
 
         Parameters
         ----------
         path : str or Path
-            ``.html``: the page; ``.json``: the data; ``.mp4``, ``.gif``: a film, which needs the extra ``render``. It is written whole or
-            not at all.
+            ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra ``render``. The file is written
+            whole or not at all.
         **film
-            ``fps``, ``speed``, ``size`` of a film, as ``frames`` takes them; a .gif is 640 x 360 at 15 pictures a second unless told.
+            ``fps``, ``speed`` and ``size`` of a film, as in ``frames``. Default for ``.gif``: 640 x 360 at 15 pictures per second.
 
         Returns
         -------
         Path
-            Where it is.
+            The file.
 
         Raises
         ------
         ValueError
-            For another suffix.
+            For another suffix, or if an argument is invalid.
         OSError
             If the file cannot be written.
+        ImportError
+            If the extra ``render`` is missing for a film.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import snooker_env as sn
+        >>> shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.5)], [(0.0, 0.0, 0.0)])
+        >>> sn.replay(shot).save(Path(tempfile.mkdtemp()) / "shot.html").name
+        'shot.html'
         """
         target = Path(path)
         suffix = choice("suffix", target.suffix.lower(), SUFFIXES)
@@ -176,14 +246,14 @@ class Replay:
 
 
 def checked_text(field: str, text: Any) -> str:
-    """A text that a file can hold."""
+    """``text`` if a file can hold it, else ValueError."""
     if not isinstance(text, str) or any(0xD800 <= ord(letter) < 0xE000 for letter in text):
         raise refuse(field, text, "must be a str, without halves of surrogate pairs")
     return text
 
 
 def checked_players(players: Any) -> tuple[str, ...]:
-    """Names of players: one alone may be a str."""
+    """Names of players as a tuple; a single name may be a str."""
     names = (players,) if isinstance(players, str) else tuple(players)
     if len(names) > 2:
         raise refuse("players", players, "must be at most two names")

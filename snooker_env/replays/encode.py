@@ -1,7 +1,7 @@
-"""How is a stroke written down for a browser? As the closed forms of its phases: small, and exact at every time.
+"""How is a stroke encoded for a browser? As the closed forms of its phases of motion: small, and exact at every time.
 
-The numbers of a path are binary in base64: 64 bits for places, velocities and accelerations, so that the browser computes the same places
-as ``Shot.at``; 32 bits for spins, which are only looked at. ``docs/replay.md`` is the format.
+The numbers of a path are binary in base64. Positions, velocities and accelerations have 64 bits, so that the browser computes the same
+positions as ``Shot.at``. Spins have 32 bits, because they are only displayed. docs/play/replay.md describes the format.
 """
 
 import base64
@@ -28,7 +28,7 @@ def packed(values: Any, kind: str) -> str:
 
 
 def encoded_shot(shot: Shot) -> dict[str, Any]:
-    """The motion of a shot, up to "pots". ValueError if it has no path, or more balls than snooker."""
+    """The motion of a shot, up to the key "pots". ValueError if it has no path, or more balls than snooker."""
     n = len(shot.positions)
     if n > N_BALLS:
         raise refuse_what("shot", f"{n} balls", f"must have at most {N_BALLS}: their colours are snooker's")
@@ -36,7 +36,7 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
         raise refuse_what("shot", "a Shot without its path", "must be of sn.simulate, or of an environment with keep_history = True")
     first, states = shot.segments[:n], shot.segments[:, cloth.SEGMENT_STATE]
     idle = (states == cloth.REST) | (states == cloth.GONE)
-    waits = (np.arange(len(states)) < n) & idle & (shot.segments[:, cloth.WZ] == 0.0)  # lies still from the start: ``start`` says where
+    waits = (np.arange(len(states)) < n) & idle & (shot.segments[:, cloth.WZ] == 0.0)  # at rest from the start: its place is in ``start``
     moves = shot.segments[~waits]
     return {
         "n": n, "start": packed(first[:, [cloth.X, cloth.Y]], "f8"),
@@ -51,7 +51,7 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
 
 
 def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, Any]:
-    """One stroke of a replay; of a bare ``Shot`` the parts that only a referee knows are empty."""
+    """One stroke of a replay. For a bare ``Shot``, the parts that come from the referee are empty."""
     if isinstance(item, Shot):
         return encoded_shot(item) | {
             "cue": None, "player": None, "ball_on": None, "points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0,
@@ -66,7 +66,7 @@ def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, A
 
 
 def _after(item: Played) -> dict[str, Any] | None:
-    """The table before the next stroke, where it is not as the balls came to rest."""
+    """The table before the next stroke, if it differs from the balls at rest."""
     there = item.on_table
     same = np.array_equal(there, item.shot.on_table) and np.array_equal(item.positions[there], item.shot.positions[there])
     return None if same else {"places": packed(_places(item.positions), "f8"), "on_table": np.flatnonzero(there).tolist()}

@@ -1,4 +1,4 @@
-"""How does a replay become a film? Picture after picture of its strokes, straight into the encoder: never more than one is held."""
+"""How does a replay become a film? Picture after picture is sent to the encoder, so that only one is in memory at a time."""
 
 import subprocess
 from collections.abc import Iterator
@@ -27,22 +27,22 @@ PAUSE = 0.8
 UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 SIZE = (1920, 1080)
 HD = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
-"""What the numbers of ``to_video`` mean."""
+"""Options that declare the colour space of ``to_video`` (BT.709, limited range)."""
 USUAL = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 15.0)}
-"""Size [pixels] and pictures a second of a film unless told: a GIF that fits into a page."""
+"""Default size [pixels] and pictures per second of a film: a GIF that fits into a page."""
 
 
 def shown(replay: "Replay") -> Iterator[tuple[Film, Scene]]:
-    """For each stroke its film, and the table after it with what the referee said."""
+    """For each stroke its film, and the table after it with the referee's words."""
     judged = [stroke for stroke in replay.strokes if isinstance(stroke, Played)]
-    told = iter(bars(judged, replay.players))
+    shown_bars = iter(bars(judged, replay.players))
     for stroke in replay.strokes:
-        during, after = next(told) if isinstance(stroke, Played) else (None, None)
+        during, after = next(shown_bars) if isinstance(stroke, Played) else (None, None)
         yield filmed(replay.table, stroke, during, after, "" if during else replay.title)
 
 
 def filmed(table: Table, stroke: Shot | Played, during: ScoreBar | None, after: ScoreBar | None, text: str = "") -> tuple[Film, Scene]:
-    """A stroke as a film, and the table after it; the bars are those of ``bars``."""
+    """A stroke as a film, and the table after it; ``during`` and ``after`` are the bars of ``bars``."""
     shot, judged = (stroke.shot, True) if isinstance(stroke, Played) else (stroke, False)
     film = Film(table, shot, trail=(0, *pots_of(shot)), spots=(0,), faded=(0,), bar=during, text=text)
     last = film.at(shot.duration)
@@ -54,7 +54,7 @@ def filmed(table: Table, stroke: Shot | Played, during: ScoreBar | None, after: 
 
 
 def frames(replay: "Replay", fps: float, speed: float, size: tuple[int, int]) -> Iterator[NDArray[np.uint8]]:
-    """See ``Replay.frames``."""
+    """The pictures of ``Replay.frames``."""
     from ..render.pygame_view import rgb_array
 
     fps, speed = _rate("fps", fps), _rate("speed", speed)
@@ -69,12 +69,12 @@ def frames(replay: "Replay", fps: float, speed: float, size: tuple[int, int]) ->
 def write_film(
     replay: "Replay", target: Path, *, fps: float | None = None, speed: float = 1.0, size: tuple[int, int] | None = None
 ) -> None:
-    """Write ``frames`` to an .mp4 or .gif file."""
+    """Write the pictures of ``frames`` to an .mp4 or .gif file."""
     usual_size, usual_fps = USUAL[target.suffix.lower()]
     size, fps = usual_size if size is None else size, usual_fps if fps is None else _rate("fps", fps)
     sides: Any = size if isinstance(size, tuple | list) else ()
     if len(sides) != 2 or not all(isinstance(side, int) and side > 0 and side % 2 == 0 for side in sides):
-        raise refuse("size", size, "must be (width, height), both even, as video encoders want them")
+        raise refuse("size", size, "must be (width, height), both even, as video encoders require")
     width, height = sides
     pictures = replay.frames(fps=fps, speed=speed, size=(width, height))
     write_whole(target, lambda path: _encode(pictures, path, fps, (width, height)))
@@ -106,7 +106,7 @@ def _encode(pictures: Iterator[NDArray[np.uint8]], path: Path, fps: float, size:
 
 
 def _in_video_colours(pictures: Iterator[NDArray[np.uint8]]) -> Iterator[NDArray[np.uint8]]:
-    """``to_video`` of each; of a picture that comes again only once."""
+    """``to_video`` of each picture, computed once for a picture that is repeated."""
     last, made = None, np.empty(0, np.uint8)
     for picture in pictures:
         if picture is not last:
@@ -115,7 +115,7 @@ def _in_video_colours(pictures: Iterator[NDArray[np.uint8]]) -> Iterator[NDArray
 
 
 def _swatches(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The colours of a picture as a picture (256, 256, 3), the rare ones much enlarged: a ball is small, and its colour matters."""
+    """The colours of a picture as a picture (256, 256, 3), with rare ones much enlarged: a ball is small, and its colour matters."""
     coarse = (picture >> 2).astype(np.uint32)
     codes, counts = np.unique((coarse[..., 0] << 12) | (coarse[..., 1] << 6) | coarse[..., 2], return_counts=True)
     share = np.cumsum(counts**0.25)

@@ -1,4 +1,4 @@
-"""How does one make a replay? Of a shot, of several, of the strokes of an episode, or of the environment that plays it."""
+"""How is a replay made? From a shot, from several, from the strokes of an episode, or from the environment that played it."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -17,31 +17,36 @@ _ALLOWED = "must be a Shot, a list of shots or of strokes of env.history, a Posi
 
 
 def replay(source: Any, path: str | Path | None = None, *, title: str = "", players: Iterable[str] = (), table: TableLike = None) -> Replay:
-    """A replay of what was played, written to a file if a ``path`` is given.
+    """Make a replay of what was played, and write it to a file if ``path`` is given.
 
     Parameters
     ----------
-    source : Shot, sequence of Shot or of strokes, environment, Position, or Replay
-        A ``Shot`` of ``sn.simulate``, or several in the order in which they were played. The strokes of an episode: ``env.history`` of
-        ``SnookerEnv`` or a match, or the environment itself, wrapped or not, of which ``keep_history`` was set to True, or which has a
-        render mode. A ``Position`` is shown as it stands.
+    source : Shot, Played, sequence of Shot or Played, Position, Replay, or environment
+        * A ``Shot`` of ``sn.simulate``, or several in the order in which they were played.
+        * The strokes of an episode: ``env.history`` of ``SnookerEnv`` or of a match; or the environment itself, wrapped or not, if it has
+          a render mode or its ``keep_history`` was set to True.
+        * A ``Position`` is shown as it stands.
+        * A ``Replay`` is copied, with the other arguments applied.
     path : str or Path, optional
-        Where to write it, see ``Replay.save``: "break.html", ".json", ".mp4" or ".gif".
-    title : str
-        Shown above it.
-    players : sequence of str
-        Their names, two for a frame, one for a visit; left out: "Player 1", "Player 2", and "Player".
-    table : str, Table or None
-        What the shots were played on; None: the table that they know.
+        Where to write it, see ``Replay.save``: a file that ends in ``.html``, ``.json``, ``.mp4`` or ``.gif``. Default None: nowhere.
+    title : str, optional
+        Title of the page; default none.
+    players : iterable of str, optional
+        Names of the players: two for a frame, one for a visit. Default: "Player 1" and "Player 2", or "Player".
+    table : str, Table or None, optional
+        The table on which the shots were played; default None: the table stored in them.
 
     Returns
     -------
     Replay
+        The replay.
 
     Raises
     ------
     ValueError
-        If there is nothing to show, or a shot without its path.
+        If there is nothing to show, a shot has no path, or an argument is invalid.
+    OSError
+        If the file cannot be written.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""How are pictures sent to a video encoder? As luma and halved chroma, which is half of the bytes and what the encoder would make itself.
+"""How are pictures converted for a video encoder? To luma and halved chroma: half the bytes, and what the encoder would compute itself.
 
 ITU-R BT.709, limited range: Y' = 16 + 219 (0.2126 R + 0.7152 G + 0.0722 B) / 255, Cb = 128 + 224 (B - Y) / (1.8556 * 255) and
-Cr = 128 + 224 (R - Y) / (1.5748 * 255), Y the sum in brackets; in integers of 16 bits after the point.
+Cr = 128 + 224 (R - Y) / (1.5748 * 255), where Y is the sum in brackets; as integers with 16 fractional bits.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ _HALF = 1 << 15
 
 @entry(what="the colours of films", seconds=1)
 def _fill(rgb, luma, cb, cr):
-    """Luma (h, w), cb and cr (h/2, w/2) uint8 of the picture rgb (h, w, 3) uint8; h and w even."""
+    """Fill luma (h, w), cb and cr (h/2, w/2) uint8 from the picture rgb (h, w, 3) uint8; h and w even."""
     for i in range(cb.shape[0]):
         for j in range(cb.shape[1]):
             red = green = blue = 0
@@ -28,7 +28,7 @@ def _fill(rgb, luma, cb, cr):
 
 
 def to_video(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The bytes (3 h w / 2,) of a picture (h, w, 3), planes one after the other: what ffmpeg calls yuv420p."""
+    """The bytes (3 h w / 2,) of a picture (h, w, 3), one plane after the other: ffmpeg's format yuv420p."""
     height, width = picture.shape[:2]
     out = np.empty(3 * height * width // 2, np.uint8)
     luma, chroma = out[: height * width].reshape(height, width), out[height * width :].reshape(2, height // 2, width // 2)

@@ -22,12 +22,12 @@ def ball_name(ball: int) -> str:
 
 
 def on_words(ball_on: BallOn) -> str:
-    """What is on, e.g. "red", "any colour"; "" when nothing is."""
+    """The ball on in words, e.g. "red", "any colour"; "" if nothing is on."""
     return "" if ball_on == BallOn.NOTHING else ball_on.name.lower().replace("_", " ")
 
 
 def foul_words(fouls: Foul) -> list[str]:
-    """What each of these fouls is called."""
+    """The names of these fouls."""
     return [words for foul, words in FOUL_WORDS.items() if foul & fouls]
 
 
@@ -37,7 +37,7 @@ def pots_of(shot: Shot) -> list[int]:
 
 
 def sentence(played: Played, players: tuple[str, ...]) -> str:
-    """What the referee says after this stroke; ``players``: the names of both in a frame."""
+    """The referee's words after this stroke; ``players``: the names of both in a frame."""
     if played.fouls:
         said = f"Foul, {played.penalty}: {', '.join(foul_words(played.fouls))}"
     elif played.points:

@@ -1,4 +1,4 @@
-"""How are an environment's episodes written to files? ``RecordReplay``: a Gymnasium wrapper, a replay for each episode that is wanted."""
+"""How are an environment's episodes written to files? ``RecordReplay``: a wrapper that writes a replay for each wanted episode."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -11,25 +11,25 @@ from .document import SUFFIXES, Replay, checked_players
 
 
 class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
-    """Keeps the strokes of ``Snooker-v0`` and writes each wanted episode as a replay: ``FOLDER/PREFIX-episode-0.html``, ...
+    """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay: ``FOLDER/PREFIX-episode-0.html``, and so on.
 
-    An episode is written when it ends, and when the next one or ``close()`` cuts it short. One without a stroke gives no file. No render
-    mode is needed; an existing file of that name is overwritten.
+    An episode is written when it ends, or when the next one or ``close()`` cuts it short. An episode without a stroke gives no file. No
+    render mode is needed. An existing file of that name is overwritten.
 
     Parameters
     ----------
     env : gymnasium.Env
         ``Snooker-v0``, wrapped or not.
     folder : str or Path
-        Where the files go; made if it is not there.
+        Folder of the files; it is created if it does not exist.
     episode_trigger : callable, optional
-        ``episode_trigger(number) -> bool``: is this episode wanted? Numbers from 0. None: all are.
-    name_prefix : str
-        How the files' names begin.
-    suffix : {".html", ".json", ".mp4", ".gif"}
-        See ``Replay.save``.
-    players : sequence of str
-        Names, see ``snooker_env.replay``.
+        ``episode_trigger(number) -> bool``: whether to write the episode with this number, from 0. Default None: all.
+    name_prefix : str, optional
+        Beginning of the files' names; default "snooker".
+    suffix : {".html", ".json", ".mp4", ".gif"}, optional
+        Format of the files, see ``Replay.save``; default ".html".
+    players : iterable of str, optional
+        Names of the players, see ``snooker_env.replay``.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     Raises
     ------
     ValueError
-        If the environment is not one of one table of this package, or an argument is none of these.
+        If the environment is not one of this package with one table, or an argument is invalid.
 
     Examples
     --------
@@ -78,17 +78,26 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         self._folder.mkdir(parents=True, exist_ok=True)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """A new episode; what there is of the last one is written first.
+        """Begin a new episode, after writing what there is of the last one.
 
         Parameters
         ----------
         seed : int, optional
+            As in ``SnookerEnv.reset``.
         options : dict, optional
-            As for ``Snooker-v0``.
+            As in ``SnookerEnv.reset``.
 
         Returns
         -------
-        observation, info
+        observation : numpy.ndarray or dict
+            The wrapped environment's.
+        info : dict
+            The wrapped environment's.
+
+        Raises
+        ------
+        OSError
+            If a replay cannot be written.
         """
         self._write()
         result = super().reset(seed=seed, options=options)
@@ -96,19 +105,31 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         return result
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """One step; the replay of an episode that ends with it is written.
+        """Play one step; write the replay of an episode that ends with it.
 
         Parameters
         ----------
-        action
-            As for ``Snooker-v0``.
+        action : array_like or int
+            As in ``SnookerEnv.step``.
 
         Returns
         -------
-        observation, reward, terminated, truncated, info
+        observation : numpy.ndarray or dict
+            The wrapped environment's.
+        reward : float
+            The wrapped environment's.
+        terminated, truncated : bool
+            The wrapped environment's.
+        info : dict
+            The wrapped environment's.
+
+        Raises
+        ------
+        OSError
+            If a replay cannot be written.
         """
         result = super().step(action)
-        if self._written:  # a wrapper beneath has begun another episode
+        if self._written:  # an inner wrapper has begun another episode
             self._number, self._written = self._number + 1, False
         if result[2] or result[3]:
             self._write()

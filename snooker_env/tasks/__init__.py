@@ -1,4 +1,9 @@
-"""What is played: strokes of visits and frames on one table or many. ``__all__`` is public: what actions, errors and observations mean."""
+"""Tasks: strokes of visits and frames on one table or many. Public here: what actions, observations and execution errors mean.
+
+>>> from snooker_env.tasks import CHOICES, LEVELS, choice_of
+>>> CHOICES, choice_of(pot=0, speed=4, side=1, top=2), LEVELS["club"].aim_deg
+(540, 67, 0.08)
+"""
 
 from .box_actions import MAX_SPEED, MIN_SPEED
 from .discrete_actions import POTS, SIDES, SPEEDS, STROKES, TOPS, choice_of

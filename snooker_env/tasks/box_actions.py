@@ -1,4 +1,4 @@
-"""What shot does an action mean? The vector in [-1, 1]^k -> cue speed, tip offset, aim, elevation, place in the D."""
+"""What shot does an action mean? The vector in [-1, 1]^k as cue speed, tip offset, aim, elevation, place in the D."""
 
 from math import atan2, hypot, pi, radians, sqrt
 from typing import Any
@@ -17,25 +17,26 @@ from ..physics.parameters import Physics
 
 AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
-"""Cue speeds [m/s] that -1 and +1 mean: from a ball rolled up to the hardest power shot."""
+"""Smallest and largest cue speed [m/s], for -1 and +1 of an action: from a ball just rolled to the hardest power shot."""
 TARGET_SPAN = radians(3.0)
-"""Aim "target": how far +-1 turns the aim off the potting line [rad]. The largest throw and the noise of a club player are within it."""
+"""With ``aim="target"``: angle off the potting line for +-1 of an action [rad]. The largest throw and a club player's errors are smaller.
+"""
 MAX_ELEVATION = radians(30.0)
 
-# Places in the packed options.
+# Columns of the packed options.
 (A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_DISCRETE) = range(6)
 
 
 @kernel
 def tip_on_disc(side, top, max_offset):
-    """A tip offset over R, drawn back onto the disc of the miscue limit if it lies outside."""
+    """A tip offset over R, moved back to the disc of the miscue limit if it lies outside."""
     far = hypot(side, top) / max_offset
     return (side / far, top / far) if far > 1.0 else (side, top)
 
 
 @kernel
 def place_of(a, options):
-    """Where in the D the two components of the placement put the cue ball: (x, y)."""
+    """The place in the D (x, y) [m] that the two placement components of an action mean."""
     at = 5 if options[A_ELEVATION] else 4
     x, back = a[at], 0.5 * (a[at + 1] + 1.0)
     return D_RADIUS * x, BAULK_Y - D_RADIUS * sqrt(max(0.0, 1.0 - x * x)) * back
@@ -43,7 +44,24 @@ def place_of(a, options):
 
 @kernel
 def line_of(positions, on_table, on, found):
-    """Direction [rad] of the best potting line, see ``line``; ``found`` (1, POT_COLUMNS) is work space."""
+    """Direction of the best potting line, see ``line``. An inner kernel.
+
+    Parameters
+    ----------
+    positions : float64 (22, 2)
+        Centres of the balls [m], the cue ball first.
+    on_table : bool (22,)
+        Which balls are on the table.
+    on : int
+        Mask of the balls that may be struck first, bit i for ball i.
+    found : float64 (1, POT_COLUMNS)
+        Work space.
+
+    Returns
+    -------
+    float
+        Direction [rad], anticlockwise from +x: to the ghost ball of the widest direct pot, else to the nearest ball on.
+    """
     x, y = positions[0, 0], positions[0, 1]
     if find_pots(positions, on_table, on, BALL_RADIUS, found):
         return atan2(found[0, GHOST_Y] - y, found[0, GHOST_X] - x)
@@ -58,7 +76,7 @@ def line_of(positions, on_table, on, found):
 
 @kernel
 def shot_of(a, positions, on_table, on, options, found):
-    """(speed, side, top, aim, elevation) of an action (k,), the aim being the cue's direction [rad]; ``options``: ``Actions.pack``."""
+    """(speed, side, top, aim, elevation) of an action (k,). The aim is the cue's direction [rad]; ``options`` from ``Actions.pack``."""
     speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
     side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], options[A_MAX_OFFSET])
     elevation = 0.5 * (a[4] + 1.0) * MAX_ELEVATION if options[A_ELEVATION] else 0.0
@@ -77,22 +95,23 @@ def _shot(a, positions, on_table, on, options):
 
 
 class Actions:
-    """The action space's meaning.
+    """The box action space and the meaning of its components.
 
     ==== ============ =======================================================================
-    0    cue speed    0.2 .. 7.0 m/s, linear
-    1    side         tip offset / R = 0.5 x, + right; the pair (1, 2) is drawn back onto the
-    2    top          disc of radius 0.5 (the miscue limit) when it lies outside; + top, - back
-    3    aim          "absolute": angle pi x from +x, anticlockwise, the direction the ball
-                      leaves in without noise (squirt is compensated, as a player does);
-                      "target": potting line + 3 deg x (see ``line``)
-    4    elevation    only with ``elevation=True``: 0 .. 30 deg, linear
-    next place in     only with ``placement=True``; used when the cue ball is in hand, else
-    two  the D        ignored: across the D, and from the baulk line (-1) back to the D's edge (+1)
-    last decision     only with ``decision=True``; used when the other player has just fouled,
-                      else ignored: below -1/3 the offender must play again from here, above
-                      1/3 the balls are replaced and he plays again (only after a miss was
-                      called, else as the middle), in the middle: play, with this same action
+    0    cue speed    0.2 to 7.0 m/s, linear
+    1    side         tip offset over R = 0.5 x, + to the right. The point (side, top) is moved
+    2    top          back to the disc of radius 0.5 (the miscue limit) if it lies outside;
+                      top: + above, - below the middle
+    3    aim          "absolute": the angle pi x from +x, anticlockwise, in which the ball
+                      leaves without noise (squirt is compensated, as a player does).
+                      "target": the potting line + 3 deg x (see ``line``)
+    4    elevation    only with ``elevation=True``: 0 to 30 deg, linear
+    next place in     only with ``placement=True``: across the D, then from the baulk line (-1)
+    two  the D        to the edge of the D (+1). Ignored unless the cue ball is in hand
+    last decision     only with ``decision=True``: what to do after a foul of the opponent, else
+                      ignored. Below -1/3: the offender plays again from here. Above 1/3: the
+                      balls are replaced and he plays again, if a miss was called. In between,
+                      or without a miss: play, with this same action
     ==== ============ =======================================================================
     """
 
@@ -103,7 +122,7 @@ class Actions:
     physics: Physics
     space: spaces.Box
     size: int
-    """How many numbers an action has."""
+    """Number of components of an action."""
 
     def __init__(self, aim: str, elevation: bool, placement: bool, physics: Physics, decision: bool = False):
         self.aim = choice("aim", aim, AIMS)
@@ -114,7 +133,7 @@ class Actions:
         self.size = 4 + self.elevation + 2 * self.placement + self.decision
 
     def check(self, action: Action) -> list[float]:
-        """The action as a list of floats; ValueError unless it is finite, of the right shape and within [-1, 1]."""
+        """The action as a list of floats; ValueError unless it is finite, has the right shape and lies within [-1, 1]."""
         allowed = f"must have shape ({self.size},), real numbers"
         try:
             a = np.asarray(action)
@@ -124,13 +143,13 @@ class Actions:
             raise refuse("action", action, allowed)
         if a.shape != (self.size,):
             raise refuse_what("action", f"array of shape {a.shape}", allowed)
-        a = a.astype(np.float64).tolist()  # whatever it was: the kernels are compiled for float64 alone
+        a = a.astype(np.float64).tolist()  # from any type: the kernels are compiled for float64 only
         if not all(-1.0 <= x <= 1.0 for x in a):  # NaN fails too
             raise refuse("action", a, "must be finite and within [-1, 1]")
         return a
 
     def check_many(self, actions: Any, n: int) -> Floats:
-        """The actions of n tables as a fresh float64 array (n, size); ValueError as ``check``, naming the first table that is wrong."""
+        """The actions of n tables as a new float64 array (n, size); ValueError names the first table with an invalid action."""
         allowed = f"must have shape ({n}, {self.size}), real numbers"
         try:
             a = np.asarray(actions)
@@ -147,16 +166,19 @@ class Actions:
         return a
 
     def pack(self) -> Floats:
-        """What the kernels must know: float64, places ``A_*`` of this module."""
-        world = self.physics
-        return np.array([self.aim == "target", self.elevation, self.placement, world.end_mass_ratio, world.max_offset, False], np.float64)
+        """The options for the kernels: float64, in the columns ``A_*`` of this module."""
+        limits = self.physics.end_mass_ratio, self.physics.max_offset
+        return np.array([self.aim == "target", self.elevation, self.placement, *limits, False], np.float64)
 
     def shot(self, a: Any, positions: Vectors, on_table: Flags, on: int) -> tuple[float, float, float, float, float]:
-        """(speed, side, top, aim, elevation) of an action list, the aim being the cue's direction [rad]."""
+        """(speed, side, top, aim, elevation) of an action list; the aim is the cue's direction [rad]."""
         return _shot(np.array(a, np.float64), np.array(positions, np.float64), np.array(on_table, np.bool_), int(on), self.pack())
 
 
 def line(positions: Vectors, on_table: Flags, on: int) -> float:
-    """Direction [rad] of the best potting line: from the cue ball to the ghost of the direct pot with the widest tolerance (``game.pots``)
-    among the balls on; if there is none, to the centre of the nearest ball on."""
+    """Direction [rad] of the best potting line.
+
+    It runs from the cue ball to the ghost ball of the direct pot with the widest tolerance (``game.pots``) among the balls on. If there is
+    no direct pot, it runs to the centre of the nearest ball on.
+    """
     return _line(np.array(positions, np.float64), np.array(on_table, np.bool_), int(on))

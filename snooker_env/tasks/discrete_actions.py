@@ -1,7 +1,7 @@
-"""Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top, and the aim is solved for them.
+"""Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top; the aim is solved for them.
 
-The pots are the widest direct ones that the table offers (``game.pots``); one whose aim cannot be found is played along its straight line.
-Where there is none the first stands for a full hit on the nearest ball on. ``action_masks`` says which pots there are.
+The pots are the widest direct ones on the table (``game.pots``). If no aim can be solved for one, it is played along its straight line. If
+the table has no direct pot, the first one stands for a full hit on the nearest ball on. ``action_masks`` says which pots there are.
 """
 
 from typing import Any
@@ -22,30 +22,37 @@ from .box_actions import line_of
 from .pot_aim import solved_aim
 
 POTS = 4
-"""Pots to choose from, widest first."""
+"""Number of pots to choose from, widest tolerance first."""
 SPEEDS = (0.9, 1.3, 1.8, 2.3, 2.9, 3.6, 4.4, 5.3, 6.3)
-"""Cue speeds [m/s]."""
+"""The cue speeds to choose from [m/s]."""
 SIDES = (-0.3, 0.0, 0.3)
+"""The tip offsets to choose from, over R, to the right."""
 TOPS = (-0.4, -0.2, 0.0, 0.2, 0.4)
-"""Tip offsets over R, right and up."""
+"""The tip offsets to choose from, over R, upwards."""
 STROKES = len(SPEEDS) * len(SIDES) * len(TOPS)
+"""Number of strokes at one pot: speeds x sides x tops."""
 SIZE = POTS * STROKES
+"""Number of choices in all; a choice is an integer in [0, 540). Public as ``snooker_env.tasks.CHOICES``."""
 
 
 def choice_of(pot: int, speed: int, side: int, top: int) -> int:
-    """The choice with these places.
+    """Return the choice with these indices: ((pot * 9 + speed) * 3 + side) * 5 + top.
 
     Parameters
     ----------
     pot : int
-        Of the pots, widest first, in [0, 4).
-    speed, side, top : int
-        Places in ``SPEEDS``, ``SIDES`` and ``TOPS``.
+        Index of the pot, widest first, in [0, 4).
+    speed : int
+        Index into ``SPEEDS``, in [0, 9).
+    side : int
+        Index into ``SIDES``, in [0, 3).
+    top : int
+        Index into ``TOPS``, in [0, 5).
 
     Returns
     -------
     int
-        In [0, 540).
+        The choice, in [0, 540). The indices are not checked.
 
     Examples
     --------
@@ -58,8 +65,10 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
 
 @kernel(seconds=1, uses=(solved_aim,))
 def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_steps, found, motion, state, work):
-    """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``; found (POTS, POT_COLUMNS), motion (2, COLUMNS),
-    state (2,) and work are work space."""
+    """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``.
+
+    Work space: found (POTS, POT_COLUMNS), motion (2, COLUMNS), state (2,), work.
+    """
     pot, stroke = index // STROKES, index % STROKES
     speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
     side, top = SIDES[stroke // len(TOPS) % len(SIDES)], TOPS[stroke % len(TOPS)]
@@ -78,7 +87,7 @@ def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_ste
 
 @entry
 def masks(which, positions, on_table, game, out):
-    """Which choices there are on the tables ``which``: a row of ``out`` each, bool (SIZE,). ``game`` (n, columns): of visits or frames."""
+    """Available choices on the tables ``which``: one row of ``out`` each, bool (SIZE,). ``game`` (n, columns): of visits or frames."""
     found = np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
@@ -89,7 +98,7 @@ def masks(which, positions, on_table, game, out):
 
 
 class Choices:
-    """The discrete action space's meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``POTS``, ``SPEEDS``, ``SIDES``, ``TOPS``."""
+    """The discrete action space and its meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``choice_of``."""
 
     size: int = 1
     placement: bool = False
@@ -108,7 +117,7 @@ class Choices:
         return [float(a.item())]
 
     def check_many(self, actions: Any, n: int) -> Floats:
-        """The choices of n tables, float64 (n, 1); ValueError names the first table that is wrong."""
+        """The choices of n tables, float64 (n, 1); ValueError names the first table with an invalid choice."""
         a = np.asarray(actions)
         if a.dtype.kind not in "iu" or a.shape not in ((n,), (n, 1)):
             raise refuse_what("actions", f"array of {a.dtype} and shape {a.shape}", f"must be {n} integers")
@@ -120,6 +129,6 @@ class Choices:
         return a.astype(np.float64).reshape(n, 1)
 
     def pack(self) -> Floats:
-        """What the kernels must know, places ``A_*`` of ``box_actions``."""
-        world = self.physics
-        return np.array([False, False, False, world.end_mass_ratio, world.max_offset, True], np.float64)
+        """The options for the kernels, in the columns ``A_*`` of ``box_actions``."""
+        physics = self.physics
+        return np.array([False, False, False, physics.end_mass_ratio, physics.max_offset, True], np.float64)

@@ -1,13 +1,15 @@
 """How is a frame played, on one table or on thousands? Turns of two players by the rules of ``game.frame_columns``, each table on its own.
 
-A turn is the striker's: ``frame_kernels.decide`` (after a foul of the other), ``stroke.address``, ``stroke.run`` and the referee,
-``frame_kernels.conclude``. A step of the frame task is the agent's turn and all turns of the opponent up to the agent's next; the agent is
-player 0, the opponent player 1.
-Alone, the agent gets the table back at once whenever it would go to the other: penalties still go to the other's score, and after a foul
-he plays on from where the balls lie, without a free ball. A match is played turn by turn, whoever strikes.
+A turn of the striker: ``frame_kernels.decide`` (after a foul of the opponent), ``stroke.address``, ``stroke.run``, then the referee,
+``frame_kernels.conclude``. A step of the frame task is the agent's turn and all turns of the opponent up to the agent's next one. The agent
+is player 0, the opponent player 1.
 
-A cue ball in hand is put at once on the free place of the D nearest to its usual place for the break, so that it can be seen; whoever plays
-may place it elsewhere first. The physics is planar: no ball leaves the table and the cue ball jumps none, so those fouls cannot come up.
+With ``opponent="none"`` the table returns to the agent at once whenever it would go to the opponent. Penalties still go to the opponent's
+score, and after a foul the agent plays on from where the balls lie, without a free ball. A match is played turn by turn by both players.
+
+A cue ball in hand is placed at once on the free place of the D nearest to its usual place for the break-off, so that it can be seen. The
+player may place it elsewhere before the stroke. The physics is planar: no ball leaves the table and the cue ball cannot jump over a ball,
+so those fouls never occur.
 """
 
 from collections.abc import Callable
@@ -56,15 +58,16 @@ class Frames(Tables):
     COLUMNS = COLUMNS
 
     nominated: Ints
-    """(n,) the colour that the striker has named after a red or as his free ball. AUTO, as always in the environments: the one first
-    struck. Whoever sets it checks it, and sets it back after the stroke."""
+    """(n,) The colour that the striker has nominated after a red or as his free ball. AUTO, as always in the environments: the colour first
+    struck. The code that sets it must check it, and must reset it after the stroke.
+    """
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         super().__init__(rules, n, limit=limit)
         self._saved_positions, self._saved_on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
         self._lead, self._replies, self._played = (np.zeros(n, np.int64) for _ in range(3))
         self.nominated = np.full(n, AUTO, np.int64)
-        self.positions[:], self.on_table[:] = SPOTS, True  # as a frame stands before its first reset
+        self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
             write_frame(Frame.start(miss="clear_path" if rules.miss else "off"), 0, self.game[0], self.saved, 0)
             self.game[:] = self.game[0]
@@ -83,29 +86,29 @@ class Frames(Tables):
         return frame_of(self.game[k], "clear_path" if self.rules.miss else "off", self.saved, k)
 
     def on(self, k: int) -> int:
-        """The mask of the balls that may be struck first on table k: those on, and with a free ball every colour."""
+        """The mask of the balls that may be struck first on table k: the balls on and, with a free ball, every colour."""
         return super().on(k) | (COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, FREE_BALL] else 0)
 
     def lead(self) -> Ints:
-        """The agent's scores less the opponent's: (n,)."""
+        """The agent's scores minus the opponent's: (n,)."""
         return self.game[:, SCORE_0 + AGENT] - self.game[:, SCORE_1 - AGENT]
 
     def stopped(self) -> Bools:
-        """Which frames the referee has stopped or would stop, as ``max_strokes`` have been played: bool (n,)."""
+        """Which frames the referee stops because ``max_strokes`` have been played: bool (n,)."""
         return self.game[:, STROKES] >= self.rules.max_strokes
 
     def ended(self) -> Bools:
-        """Where there is nothing more to play: bool (n,)."""
+        """Which tables have no stroke left to play: bool (n,)."""
         return super().ended() | self.stopped()
 
     def interrupted(self) -> None:
-        """A step or reset was cut short: a table at which it is the opponent's turn needs a reset."""
+        """A step or reset was cut short: tables at which it is the opponent's turn need a reset."""
         self.begun[self.game[:, STRIKER] != AGENT] = False
 
     # a turn ----------------------------------------------------------------------------------------------------------------
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
-        """The strikers' decisions on the tables ``which``, and their strokes up to the strike: the tables on which there is a stroke."""
+        """Take the decisions on the tables ``which`` and carry the strokes out up to the strike; returns the tables with a stroke."""
         if self.game[which, PHASE].any():
             plays = np.empty(len(which), np.bool_)
             frame_kernels.decide(which, actions, self.rules.actions.decision, self.positions, self.on_table, self.game, self.saved, plays)
@@ -114,8 +117,10 @@ class Frames(Tables):
         return which
 
     def complete(self, which: Ints, out: StepOutput, buffers: ShotBuffers, crew: Crew, *, own: bool, alone: bool = False) -> None:
-        """Play and judge the shots of the tables ``which`` that have been struck. ``own``: ``out`` tells of them, else they are only
-        counted; ``alone``: the agent gets the table back."""
+        """Play and judge the shots of the tables ``which`` that have been struck.
+
+        ``own``: ``out`` reports the strokes; otherwise they are only counted. ``alone``: the table returns to the agent.
+        """
         if not len(which):
             return
         if self.rules.miss:
@@ -134,9 +139,10 @@ class Frames(Tables):
         )  # fmt: skip
 
     def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:
-        """One turn of whoever strikes on each table: a match. ``out`` gets the infos of strokes; returns where there was one, (n,) bool.
+        """One turn of the striker on each table, in a match. ``out`` gets the infos of the strokes; returns where there was one, (n,) bool.
 
-        ``prepare(which, buffers)``: decides and plays up to the strike, as the method of that name does; the tables with a stroke.
+        ``prepare(which, buffers)``: takes decisions and carries strokes out up to the strike, as the method ``prepare``; the tables with a
+        stroke.
         """
         self._played[:] = 0
         crew(np.arange(self.n), lambda which, b: self.complete(prepare(which, b), out, b, crew, own=True))
@@ -145,12 +151,13 @@ class Frames(Tables):
     # steps and resets of the frame task --------------------------------------------------------------------------------------
 
     def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
-        """One step of all tables: actions (n, k) float64 that were checked, results into ``out``.
+        """One step of all tables: checked actions (n, k) float64, results into ``out``.
 
-        ``waiting`` (n,) bool: tables that begin a new frame instead of playing; ``same_step``: those whose frame ends begin a new one at
-        once. Raises SimulationError if a shot cannot be computed: its balls are left as they lay, but for a cue ball that was placed, and a
-        decision that was taken stands; other tables may have been played. And
-        whatever an opponent raises.
+        ``waiting`` (n,) bool: tables that begin a new frame instead of playing. ``same_step``: tables whose frame ends begin a new one at
+        once.
+
+        Raises SimulationError if a shot cannot be computed. Its balls are then left as they lay, except for a cue ball that was placed; a
+        decision already taken stands; other tables may have been played. Errors raised by an opponent are passed on.
         """
         anew, alone = bool(waiting.any()), self.rules.opponent is None
         playing = np.flatnonzero(~waiting) if anew else np.arange(self.n)
@@ -179,9 +186,9 @@ class Frames(Tables):
         )  # fmt: skip
 
     def _reply(self, which, out, crew):
-        """All that the opponent plays on the tables ``which`` until the agent is to play, or the frame has ended."""
+        """All strokes of the opponent on the tables ``which`` until it is the agent's turn or the frame has ended."""
         opponent = self.rules.opponent
-        assert opponent is not None  # alone, nobody replies
+        assert opponent is not None  # without an opponent there are no replies
         while len(which := which[(self.game[which, STRIKER] != AGENT) & ~self.ended()[which]]):
             actions: Any = opponent.ask(self, which, crew.generators)
 
@@ -191,13 +198,13 @@ class Frames(Tables):
             crew(which, play)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
-        """New frames on the tables ``wanted`` (n,) bool; what a reset returns of all tables into ``out``."""
-        self.begun[wanted] = False  # until the opponent has played, if it is he who breaks
+        """New frames on the tables ``wanted`` (n,) bool; the results of the reset for all tables into ``out``."""
+        self.begun[wanted] = False  # until the opponent has played, if he breaks
         self._start(np.flatnonzero(wanted), out, crew)
         crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out, fresh=False))
 
     def _start(self, which, out, crew):
-        """New frames. Those that end within the opponent's first visit are dealt again: each episode holds a stroke of the agent."""
+        """New frames, dealt again if they end within the opponent's first visit: each episode holds a stroke of the agent."""
         alone, left = self.rules.opponent is None, which
         while len(left):
             self._replies[left] = 0
@@ -212,7 +219,7 @@ class Frames(Tables):
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool) -> None:
-        """New frames on the tables ``which``; ``drawn``: who breaks is drawn, else it is the agent."""
+        """New frames on the tables ``which``; ``drawn``: who breaks is drawn, otherwise it is the agent."""
         plan = self.rules.plan
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         frame_kernels.begin(which, drawn, plan.in_hand, self.on_table, self.game, self.streams)
@@ -222,7 +229,7 @@ class Frames(Tables):
         frame_kernels.show(which, fresh, self.positions, self.on_table, self.game, self._replies, out.rows)
 
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
-        """What ``player`` sees of the tables ``which``: float32 (len(which), FRAME_SIZE), fresh."""
+        """The observations of ``player`` on the tables ``which``: float32 (len(which), FRAME_SIZE), a new array."""
         rows = np.empty((len(which), FRAME_SIZE), np.float32)
         frame_kernels.observe(which, player, self.positions, self.on_table, self.game, rows)
         return rows
@@ -230,15 +237,17 @@ class Frames(Tables):
     # states ----------------------------------------------------------------------------------------------------------------
 
     def get_state(self, k: int) -> dict[str, Any]:
-        """Table k as JSON types: the parts of a ``states.FrameState`` but "rng"."""
+        """Table k as JSON types: the fields of a ``states.FrameState`` except "rng"."""
         return {
             "positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist(), "frame": self.frame(k).to_dict(),
             "strokes": int(self.game[k, STROKES]), "stream": self.streams[k].tolist(),
         }  # fmt: skip
 
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False) -> FrameState:
-        """The ``states.FrameState`` that a dict describes; ValueError if it is not sound, if it is ``to_play`` and there is no stroke left,
-        or unless ``either`` player may be the striker if it is not the agent."""
+        """The ``states.FrameState`` that a dict describes.
+
+        ValueError if it is invalid, if no stroke is left with ``to_play``, or if the striker is not the agent, unless ``either``.
+        """
         miss = "clear_path" if self.rules.miss else "off"
         sound = checked_frame(state, miss, self.rules.table, self.rules.physics.R, generator)
         over, stopped = sound.frame.phase == "over", sound.strokes >= self.rules.max_strokes
@@ -252,14 +261,14 @@ class Frames(Tables):
         return sound
 
     def set_state(self, k: int, state: FrameState) -> None:
-        """Take over a sound ``states.FrameState`` on table k."""
+        """Restore a valid ``states.FrameState`` on table k."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
         self.streams[k] = np.array(state.stream, np.uint64)
         self._replies[k], self.begun[k] = 0, True
 
     def standing(self, k: int) -> dict[str, Any]:
-        """Of a ``Played`` on table k what the frame says."""
+        """The fields of ``Played`` that the frame on table k determines."""
         frame = self.frame(k)
         return {
             "next_player": frame.striker, "scores": frame.scores, "break_points": frame.break_points, "choice": frame.phase == "choice",
@@ -267,8 +276,10 @@ class Frames(Tables):
         }  # fmt: skip
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin a frame on table k with a sound position, ``game`` being the row of a visit: player 0 is at the table, scores are 0, the
-        points of the visit are his break so far; its random numbers go on."""
+        """Begin a frame on table k with a valid position; ``game`` is the row of a visit.
+
+        Player 0 is at the table, both scores are 0, and the points of the visit are his break so far. The random stream goes on.
+        """
         ball_on, in_hand, points = game[[BALL_ON, IN_HAND, POINTS]].tolist()
         frame = Frame(
             break_points=points, on_table=mask_of_present(on_table) & ~CUE_BIT, ball_on=BallOn(ball_on), in_hand=bool(in_hand),
@@ -279,7 +290,7 @@ class Frames(Tables):
         self._replies[k], self.begun[k] = 0, True
 
     def text(self, k: int) -> str:
-        """One line for the pictures."""
+        """One line of text for pictures."""
         frame = self.frame(k)
         on = frame.ball_on.name.lower().replace("_", " ")
         ended = "" if frame.winner is None else f"   player {frame.winner} wins"

@@ -1,6 +1,6 @@
-"""What happens to frames inside a step? Decisions, the referee, hand-backs, observations, rewards and infos, as kernels over tables.
+"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos, as kernels over tables.
 
-``tasks.frame`` calls them in the order of a turn. ``which``: the tables that they are about; row j of a shot's arrays is that of which[j].
+``tasks.frame`` calls them in the order of a turn. ``which``: the tables concerned; row j of a shot's arrays belongs to which[j].
 """
 
 from .._jit import entry, kernel
@@ -42,7 +42,7 @@ from ..physics.engine import Status
 from .observations import SIZE, observe_into
 from .rewards import frame_reward_of
 from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, SPEED, TOUCHING, place, see, write_ruling
-from .tables import COUNTS, I_BREAK, REALS, keep_last, tell_nothing, tell_stroke
+from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
 _OK = int(Status.OK)
@@ -52,8 +52,11 @@ _OK = int(Status.OK)
 
 @entry(what="the decisions after a foul", seconds=1)
 def decide(which, actions, decision, positions, on_table, game, saved, plays):
-    """What the strikers of the tables ``which`` decide where the other has fouled: below -1/3 of the action's last number, if it has that
-    ``decision``, the offender plays again; above 1/3 from the position before, if a miss was called. ``plays[j]``: is there a stroke?"""
+    """The strikers' decisions on the tables ``which`` where the opponent has fouled.
+
+    ``decision``: the last component of the action decides. Below -1/3 the offender plays again; above 1/3 from the position before, if a
+    miss was called. ``plays[j]``: whether a stroke follows.
+    """
     for j in range(which.shape[0]):
         k = which[j]
         row, plays[j] = game[k], True
@@ -71,9 +74,9 @@ def decide(which, actions, decision, positions, on_table, game, saved, plays):
 
 @entry(what="the paths of the miss rule", seconds=2)
 def remember(which, positions, on_table, game, saved, nominated, seen):
-    """What the miss rule needs of the tables ``which`` before their strokes: the position, and which paths are clear.
+    """Record what the miss rule needs of the tables ``which`` before their strokes: the position, and which paths are clear.
 
-    ``nominated`` (n,): the colour that each striker has named, the only one that he may then strike first, or AUTO.
+    ``nominated`` (n,): the colour that each striker has nominated, the only one that he may then strike first, or AUTO.
     """
     for j in range(which.shape[0]):
         k = which[j]
@@ -87,19 +90,19 @@ def remember(which, positions, on_table, game, saved, nominated, seen):
 
 @kernel
 def _hand_back(row):
-    """Alone at the table: the agent plays on."""
+    """Return the table to the agent, who plays alone."""
     if not row[OVER] and row[STRIKER] != AGENT:
         if row[PHASE] == CHOICE:
             choose(row, PLAY_AGAIN)
-        row[STRIKER] = AGENT  # whose break has ended: ``after_stroke`` saw to that
+        row[STRIKER] = AGENT  # ``after_stroke`` has ended the break already
 
 
 @entry(what="the referee of frames", seconds=6)
 def conclude(which, positions, on_table, game, streams, nominated, r, potted, status, duration, event_time, event_what, n_events, shots,
               seen, jaws, miss, own, alone, played, reals, counts):  # fmt: skip
-    """Judge the shots that came to rest and put tables and frames in order. ``own``: infos tell of the strokes; ``played`` counts them.
+    """Judge the shots that came to rest and update tables and frames. ``own``: infos report the strokes; ``played`` counts them.
 
-    ``nominated`` (n,): the colour that each striker has named, or AUTO: the one first struck.
+    ``nominated`` (n,): the colour that each striker has nominated, or AUTO: the one first struck.
     """
     for j in range(which.shape[0]):
         if status[j] != _OK:
@@ -117,21 +120,21 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
         write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result, seen)
         after_stroke(row, result, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], miss)
         row[STROKES] += 1
-        if row[PHASE] == LOT:  # the winner of the lot is taken to play first
+        if row[PHASE] == LOT:  # the winner of the lot is assumed to play first
             u, _ = pair(streams[k])
             draw(row, int(2.0 * u))
         if row[IN_HAND] and not row[OVER]:
             place(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
         played[k] += 1
         if own:
-            tell_stroke(j, k, result, ball_on, seen, duration, n_events, reals, counts)
+            write_stroke_info(j, k, result, ball_on, seen, duration, n_events, reals, counts)
         if alone:
             _hand_back(row)
 
 
 @kernel
 def observe_frame_into(out, positions, on_table, row, player):
-    """Write what ``player`` sees of a frame, float32 (FRAME_SIZE,): what a visit would show, then ``observations.FRAME_ENTRIES``."""
+    """Write the observation of ``player``, float32 (FRAME_SIZE,): that of a visit, then ``observations.FRAME_ENTRIES``."""
     on = strikeable(row, bits(on_table) & ~1)
     observe_into(out, positions, on_table, row[BALL_ON], on, row[IN_HAND], row[POINTS])
     mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
@@ -147,15 +150,15 @@ def observe_frame_into(out, positions, on_table, row, player):
 
 @entry(what="the observations of frames", seconds=1)
 def observe(which, player, positions, on_table, game, out):
-    """What ``player`` sees of the tables ``which``: a row of ``out`` each."""
+    """The observations of ``player`` on the tables ``which``: one row of ``out`` each."""
     for j in range(which.shape[0]):
         k = which[j]
         observe_frame_into(out[j], positions[k], on_table[k], game[k], player)
 
 
 @kernel
-def _tell(k, row, replies, reals, counts):
-    """The part of the info that tells of the frame."""
+def _write_frame_info(k, row, replies, reals, counts):
+    """Write the entries of the info that concern the frame."""
     mine, other = row[SCORE_0 + AGENT], row[SCORE_1 - AGENT]
     reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = row[POINTS], mine, other
     counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies[k], row[WINNER]
@@ -166,7 +169,7 @@ def _tell(k, row, replies, reals, counts):
 @entry(what="the steps of frames", seconds=1)
 def finish(which, positions, on_table, game, lead, replies, played, kind, limit, max_strokes, observations, rewards, terminated, truncated,
             reals, counts):  # fmt: skip
-    """Write what a step returns of the tables ``which``; ``lead`` (n,): of the agent before it, ``played`` (n,): had he a stroke?"""
+    """Write the results of a step for the tables ``which``; ``lead`` (n,): before it, ``played`` (n,): whether the agent had a stroke."""
     for j in range(which.shape[0]):
         k = which[j]
         row = game[k]
@@ -175,14 +178,14 @@ def finish(which, positions, on_table, game, lead, replies, played, kind, limit,
         terminated[k] = row[OVER]
         truncated[k] = (not row[OVER] and row[STROKES] >= max_strokes) or row[STEPS] >= limit
         if not played[k]:
-            tell_nothing(k, row[BALL_ON], reals, counts)
-        _tell(k, row, replies, reals, counts)
+            write_empty_info(k, row[BALL_ON], reals, counts)
+        _write_frame_info(k, row, replies, reals, counts)
         observe_frame_into(observations[k], positions[k], on_table[k], row, AGENT)
 
 
 @entry(what="the start of a frame", seconds=1)
 def begin(which, drawn, in_hand, on_table, game, streams):
-    """New frames on the tables ``which``, dealt before. ``drawn``: who breaks is drawn, else it is the agent."""
+    """New frames on the tables ``which``, already dealt. ``drawn``: who breaks is drawn, otherwise it is the agent."""
     for j in range(which.shape[0]):
         k = which[j]
         breaker = AGENT
@@ -194,12 +197,12 @@ def begin(which, drawn, in_hand, on_table, game, streams):
 
 @entry(what="the resets of frames", seconds=1)
 def show(which, fresh, positions, on_table, game, replies, out):
-    """Write what a reset returns of the tables ``which``; of ``fresh`` ones the last arrays of ``out`` get what their rows held before."""
+    """Write the results of a reset for the tables ``which``; with ``fresh``, the last arrays of ``out`` first keep the previous rows."""
     observations, reals, counts, _, _, _ = out
     for j in range(which.shape[0]):
         k = which[j]
         if fresh:
             keep_last(k, out)
-        tell_nothing(k, game[k, BALL_ON], reals, counts)
-        _tell(k, game[k], replies, reals, counts)
+        write_empty_info(k, game[k, BALL_ON], reals, counts)
+        _write_frame_info(k, game[k], replies, reals, counts)
         observe_frame_into(observations[k], positions[k], on_table[k], game[k], AGENT)

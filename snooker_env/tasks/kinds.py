@@ -1,4 +1,4 @@
-"""Which tables play which task? By the name of the option ``task``."""
+"""Which class of tables plays which task? A dict by the name of the option ``task``."""
 
 from .frame import Frames
 from .tables import Tables

@@ -1,32 +1,46 @@
-"""How well does the player execute a shot? Gaussian errors of aim, speed, tip offset and elevation.
+"""How accurately does a player execute a shot? Gaussian errors of aim, speed, tip offset and elevation.
 
-What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): the aim, and the squirt of a tip that is off to
-the side. No measurement of a snooker player's errors in these units was found. So the levels are set by what players achieve, on these
-pockets; ``python -m benchmarks.hand`` prints their pot rates beside the published figures, ``--fit`` the errors that meet them.
+What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): the aim error plus the squirt of a tip that is
+off to the side. No measurement of a snooker player's errors in these units was found. So the levels are set by what players achieve, on
+the pockets of this package. ``python -m benchmarks.execution`` prints their pot rates beside the published figures, and with ``--fit`` the
+errors that reproduce them.
 
-* "professional": 0.035 deg in all. Professionals are said to pot 50 to 65 % of long pots, and so does this level, as the mean over three
-  pots of our choice (26, 62 and 84 %); a player who always takes the likeliest pot then scores, in play, nearly as often as
-  professionals are said to pot what they choose, 88 to 95 %: about 88 % of all that it tries, 91 % where its chance is half or more.
-* "amateur", "club": 0.048 and 0.114 deg in all. Aim errors given for such players (0.05 deg good amateur, 0.08 to 0.12 club) were derived
-  as total errors for pockets with an effective half window of 22 mm; these give the same mean rate of four pots on these pockets.
-  All these figures are second-hand: no statistics behind them were found.
-* "robot": 0.046 deg in all: 90 % of pots of moderate difficulty, the cue ball 0.15 m from where it would stop without errors. The robot of
-  Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and left the cue ball 100 to 200 mm from where it was
-  wanted. No more is in its abstract. The pots ("moderate" in benchmarks.hand) are our choice, and so is to put its whole error of position
-  into the speed, which so stands for what its plan did not know, too.
-* "olympiad": the Computer Olympiad's billiards, as defined there: aim 0.125 deg, elevation 0.1 deg, speed 0.075 m/s, offsets 0.5 mm. The
-  squirt of the offset comes on top of the aim: 0.149 deg in all.
+=============== ========================= ===========================================================================================
+level           error of direction [deg]  set by
+=============== ========================= ===========================================================================================
+"professional"  0.035                     long pots: professionals are said to pot 50 to 65 %
+"amateur"       0.048                     aim error of 0.05 deg, given for a good amateur
+"club"          0.114                     aim errors of 0.08 to 0.12 deg, given for club players
+"robot"         0.046                     90 % of pots of moderate difficulty, cue ball 0.15 m from where it would stop without errors
+"olympiad"      0.149                     the definition of the Computer Olympiad's billiards
+=============== ========================= ===========================================================================================
+
+* "professional": the mean over three long pots of our choice lies in that range (26, 62 and 84 %). A player who always takes the likeliest
+  pot then makes, in play, about 88 % of the pots that it tries, and 91 % of those with a chance of half or more. Professionals are said to
+  make 88 to 95 % of the pots that they choose.
+* "amateur", "club": the published aim errors were derived as total errors for pockets with an effective half window of 22 mm. These levels
+  give the same mean rate of four pots on these pockets. All figures quoted so far are from secondary sources: no statistics behind them
+  were found.
+* "robot": the robot of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and left the cue ball 100 to 200 mm
+  from the planned place. The abstract says no more. The pots ("moderate" in the benchmark) are our choice. So is putting the whole error of
+  position into the speed, which therefore includes the error of the robot's own predictions.
+* "olympiad": aim 0.125 deg, elevation 0.1 deg, speed 0.075 m/s, offsets 0.5 mm, as defined there. The squirt of the offset is added to the
+  aim.
 
 A pot that loses the cue ball counts as missed, also in the fit: 17 % of a professional's strokes at the longest straight pot, without spin,
-end so. If it counted as made, as in that derivation, the fit would give about 0.040, 0.056 and 0.122 deg. The aim errors given for
-professionals, 0.02 to 0.03 deg, make 83 to 92 % of those four pots, this level 76 %; both figures cannot be met at once, and we took the
-long pots.
+end that way. If it counted as made, as in the published derivation, the fit would give about 0.040, 0.056 and 0.122 deg. The aim errors
+published for professionals, 0.02 to 0.03 deg, make 83 to 92 % of those four pots; this level makes 76 %. Both figures cannot be met at
+once, and we chose the long pots.
 
-Our choices: aim and squirt have half of the variance each, which no measurement tells apart. The errors are drawn independently, so the tip
-error is small. A real cue turns about the bridge hand; if that is R over the squirt's slope (0.35 m) behind the ball, squirt cancels the
-turn, and a real tip may well be off by more. The height errs as much as the side. Speed: 1.75 % (professional), 2.5 %, 4 % (club), between
-what is said of pool players: a good one rolls a ball the length of a table to within an inch or two, 0.5 to 1 % of the speed, a learner to
-within a diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009). Elevation: 0.1 to 0.3 deg; it hardly matters with a level cue.
+Our choices:
+
+* Aim and squirt have half of the variance each; no measurement separates them.
+* The errors are drawn independently, so the tip error is small. A real cue turns about the bridge. If the bridge is R over the squirt's
+  slope (0.35 m) behind the ball, squirt cancels the turn, and a real tip may well be off by more.
+* The vertical tip error equals the horizontal one.
+* Speed: 1.75 % (professional), 2.5 % (amateur), 4 % (club). Of pool players it is said that a good one rolls a ball the length of a table
+  to within an inch or two, 0.5 to 1 % of the speed, and a beginner to within a diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009).
+* Elevation: 0.1 to 0.3 deg; it hardly matters with a level cue.
 """
 
 from dataclasses import asdict, dataclass, fields
@@ -42,13 +56,34 @@ from ..game.philox import normals
 from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics, PhysicsLike
 
-# Places in the packed deviations: 1 if there is no noise, then speed [m/s] and over the speed, tip offset over R, aim and elevation [rad].
+# Columns of the packed deviations: 1 if there is no noise, then speed [m/s], speed (relative), tip offset over R, aim, elevation [rad].
 (N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION) = range(6)
 
 
 @kernel
 def executed(speed, side, top, aim, elevation, noise, stream):
-    """The shot as executed: three blocks are drawn from ``stream``, nothing if ``noise``, as ``Noise.pack`` gives it, is silent."""
+    """A shot with its execution errors. An inner kernel.
+
+    Parameters
+    ----------
+    speed : float
+        Intended speed of the cue [m/s].
+    side, top : float
+        Intended tip offset over R.
+    aim : float
+        Intended direction of the cue [rad].
+    elevation : float
+        Intended elevation of the cue [rad].
+    noise : float64 (k,)
+        Standard deviations of the errors, as ``Noise.pack`` returns them.
+    stream : uint64 (2,)
+        Stream of random numbers: key and counter. Three blocks are drawn from it, or nothing if ``noise`` has no errors.
+
+    Returns
+    -------
+    speed, side, top, aim, elevation : float
+        The shot as executed, in the same units.
+    """
     if noise[N_SILENT]:
         return speed, side, top, aim, elevation
     a, b = normals(stream)
@@ -65,20 +100,20 @@ def executed(speed, side, top, aim, elevation, noise, stream):
 
 @dataclass(frozen=True, kw_only=True)
 class Noise:
-    """Standard deviations of one shot's execution, all >= 0.
+    """Execution errors: standard deviations of one shot, all at least 0.
 
     Parameters
     ----------
-    aim_deg : float
-        Aim [deg].
-    speed_rel : float
-        Speed, as a share of the speed.
-    speed_abs : float
-        Speed [m/s], added to the relative part in squares.
-    offset_mm : float
-        Tip offset, each of side and height [mm].
-    elevation_deg : float
-        Elevation [deg].
+    aim_deg : float, optional
+        Aim [deg]; default 0.
+    speed_rel : float, optional
+        Speed, as a fraction of the speed; default 0.
+    speed_abs : float, optional
+        Speed [m/s], combined with the relative part as the root of the sum of squares; default 0.
+    offset_mm : float, optional
+        Tip offset [mm], for each of side and height; default 0.
+    elevation_deg : float, optional
+        Elevation [deg]; default 0.
 
     Raises
     ------
@@ -104,16 +139,17 @@ class Noise:
 
     @classmethod
     def of(cls, noise: "NoiseLike") -> "Noise":
-        """What users may pass as ``noise``.
+        """Convert an argument to a ``Noise``.
 
         Parameters
         ----------
         noise : str, dict or Noise
-            A level's name, or a dict of fields of ``Noise``, the others 0.
+            The name of a level (a key of ``LEVELS``), or a dict of fields of ``Noise``; fields left out are 0.
 
         Returns
         -------
         Noise
+            The argument itself if it is one already.
 
         Raises
         ------
@@ -138,48 +174,61 @@ class Noise:
 
     @property
     def silent(self) -> bool:
-        """No noise at all: nothing is drawn then."""
+        """Whether all deviations are 0, a bool; then nothing is drawn."""
         return not (self.aim_deg or self.speed_rel or self.speed_abs or self.offset_mm or self.elevation_deg)
 
     def direction_deg(self, physics: PhysicsLike = None) -> float:
-        """Total error of the cue ball's direction: the aim's and that of the tip's squirt, added in squares.
+        """Return the total error of the cue ball's direction: aim and squirt, as the root of the sum of squares.
 
-        A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a small offset [TP A.31]: with the
-        usual ratio of 30 by 0.163 deg for each millimetre. For strokes without intended side; the swerve of a nearly level cue is left out.
+        A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a small offset [TP A.31]. With the
+        usual ratio of 30 that is 0.163 deg for each millimetre. The result holds for strokes without intended side; the swerve of a nearly
+        level cue is neglected.
 
         Parameters
         ----------
-        physics : None, str, dict or Physics
-            As ``Physics.of`` takes it.
+        physics : str, dict, Physics or None, optional
+            Physical constants, as ``Physics.of`` takes them; default None: the preset "paper".
 
         Returns
         -------
         float
             Standard deviation [deg].
+
+        Examples
+        --------
+        >>> from snooker_env.tasks import LEVELS
+        >>> round(LEVELS["professional"].direction_deg(), 4)
+        0.035
         """
-        world = Physics.of(physics)
-        tip = self.offset_mm * 1e-3 / world.R
-        return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + world.end_mass_ratio)))
+        constants = Physics.of(physics)
+        tip = self.offset_mm * 1e-3 / constants.R
+        return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + constants.end_mass_ratio)))
 
     def pack(self, R: float) -> Floats:
-        """What the kernels must know.
+        """Return the deviations as an array for the kernels.
 
         Parameters
         ----------
         R : float
-            The ball's radius [m].
+            Radius of the ball [m].
 
         Returns
         -------
-        float64 (6,)
-            Places ``N_*`` of this module.
+        numpy.ndarray
+            float64 (6,), in the columns ``N_*`` of this module.
+
+        Examples
+        --------
+        >>> from snooker_env.tasks import Noise
+        >>> Noise(speed_rel=0.02).pack(R=0.02625).tolist()
+        [0.0, 0.0, 0.02, 0.0, 0.0, 0.0]
         """
         tip = self.offset_mm * 1e-3 / R
         return np.array([self.silent, self.speed_abs, self.speed_rel, tip, radians(self.aim_deg), radians(self.elevation_deg)], np.float64)
 
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
-"""What users may pass as ``noise``, see ``Noise.of``."""
+"""The types that arguments called ``noise`` accept, see ``Noise.of``."""
 
 LEVELS: dict[str, Noise] = {
     "none": Noise(),
@@ -189,3 +238,6 @@ LEVELS: dict[str, Noise] = {
     "robot": Noise(aim_deg=0.033, speed_rel=0.08, offset_mm=0.2, elevation_deg=0.1),
     "olympiad": Noise(aim_deg=0.125, speed_abs=0.075, offset_mm=0.5, elevation_deg=0.1),
 }
+"""The named levels of execution noise: "none", "professional", "amateur", "club", "robot" and "olympiad", as ``Noise``. The module's
+docstring gives their sources.
+"""

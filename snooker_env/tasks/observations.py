@@ -1,4 +1,4 @@
-"""What does the agent see? The ball layout and the state of the game, as float32 arrays in [-1, 1]."""
+"""What does the agent observe? The balls and the state of the game, as float32 arrays in [-1, 1]."""
 
 import numpy as np
 from gymnasium import spaces
@@ -10,41 +10,49 @@ from ..game.balls import N_BALLS, REDS_MASK, VALUES, bits, count
 from ..geometry import HALF_LENGTH, HALF_WIDTH
 
 OBSERVATIONS = ("flat", "balls")
+"""The kinds of observations: "flat", one array; "balls", a dict of two arrays."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
-"""Columns of the table of balls: x / 0.889 and y / 1.7845 (0 when off the table), 1 if on the table, value / 7, 1 if it may be struck
-first (a ball on)."""
+"""Columns of the table of balls: x / 0.889 m and y / 1.7845 m (0 when off the table), 1 if on the table, value / 7, 1 if it may be struck
+first (a ball on).
+"""
 STATE_ENTRIES = (
     "reds", "any_colour", "red", "yellow", "green", "brown", "blue", "pink", "black", "in_hand", "break",
 )  # fmt: skip
-"""Entries of the game's state: reds left / 15, what is on (one-hot), 1 if the cue ball is in hand, points of this break / 155."""
+"""Entries of the state of the game: reds left / 15; the ball on as one-hot, from "any_colour" to "black"; 1 if the cue ball is in hand;
+points of this break / 155.
+"""
 
 FRAME_ENTRIES = (
     "score", "opponent_score", "lead", "available", "to_play", "free_ball", "choice", "miss_called", "respotted_black",
 )  # fmt: skip
-"""What a frame adds to the state, seen by one player: his score and the other's / 155, the difference / 155, points on the table / 147
-(all cut to [-1, 1]), then flags: it is his turn, the striker has a free ball, the other has just fouled (a decision is open), the foul
-was called a miss, the black was re-spotted. With a free ball "ball_on" is 1 for every colour too."""
+"""Entries that a frame adds, from one player's point of view: his score, the opponent's score and the difference, each / 155; points on the
+table / 147; all clipped to [-1, 1]. Then flags: it is his turn, the striker has a free ball, the opponent has just fouled (a decision is
+open), the foul was called a miss, the black was re-spotted. With a free ball, "ball_on" is 1 for every colour too.
+"""
 
 _COLUMNS = len(BALL_COLUMNS)
 BALLS_SIZE = N_BALLS * _COLUMNS
+"""Numbers in the table of balls, the first part of a flat observation."""
 SIZE = BALLS_SIZE + len(STATE_ENTRIES)
+"""Numbers in the flat observation of a visit (121). Public as ``snooker_env.tasks.OBSERVATION_SIZE``."""
 FRAME_SIZE = SIZE + len(FRAME_ENTRIES)
-"""Numbers in the flat observation of a visit, of a frame, and how many of them, at the front, are the table of balls."""
+"""Numbers in the flat observation of a frame (130)."""
 
 
 def space(kind: ObservationKind, *, frame: bool = False) -> spaces.Box | spaces.Dict:
-    """The observation space.
+    """Return the observation space.
 
     Parameters
     ----------
     kind : {"flat", "balls"}
-        "flat": a Box of 22 * 5 + 11 numbers; "balls": a Dict of "balls" (22, 5) and "state" (11,).
-    frame : bool
-        With the nine entries of a frame behind the eleven.
+        "flat": a Box with shape (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,).
+    frame : bool, optional
+        Whether the nine entries of a frame follow the eleven of a visit: shapes (130,) and (20,). Default False.
 
     Returns
     -------
     gymnasium.spaces.Box or gymnasium.spaces.Dict
+        The space of float32 numbers in [-1, 1].
 
     Raises
     ------
@@ -86,18 +94,26 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
 
 
 def shaped(kind: ObservationKind, rows: Singles) -> Observation:
-    """Flat observations as the observations of a kind.
+    """Convert flat observations to a kind of observations.
 
     Parameters
     ----------
     kind : {"flat", "balls"}
-    rows : float32 (..., 121 or more)
-        They are taken over: with "flat" they come back as they are.
+        The kind.
+    rows : numpy.ndarray
+        float32 (..., k), with k = 121 in a visit and 130 in a frame.
 
     Returns
     -------
-    float32 (..., k) or dict
-        With "balls": "balls" (..., 22, 5) and "state" (..., k - 110).
+    numpy.ndarray or dict
+        With "flat": ``rows`` itself. With "balls": a dict of new arrays, "balls" (..., 22, 5) and "state" (..., k - 110).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.tasks import shaped_observations
+    >>> {name: part.shape for name, part in shaped_observations("balls", np.zeros((8, 121), np.float32)).items()}
+    {'balls': (8, 22, 5), 'state': (8, 11)}
     """
     if kind == "flat":
         return rows

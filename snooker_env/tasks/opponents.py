@@ -1,7 +1,7 @@
-"""Who plays the other side of a frame? Uniform play and the plain geometric player as kernels, any callable, or a saved model.
+"""Who plays the other side of a frame? Uniform random play and a geometric player as kernels, any callable, or a saved model.
 
-An opponent is asked for all tables at which it is its turn: ``ask(frames, which, generators)`` in Python, once, for actions (or nothing),
-then ``prepare(frames, which, actions, buffers)``, on several threads, which carries them out up to the strike.
+For all tables at which it is the opponent's turn, ``ask(frames, which, generators)`` is called once, in Python, and returns actions or
+None. Then ``prepare(frames, which, actions, buffers)``, on several threads, carries them out up to the strike.
 """
 
 from collections.abc import Callable, Sequence
@@ -30,20 +30,20 @@ if TYPE_CHECKING:
     from .frame import Frames
 
 Policy: TypeAlias = Callable[[Observation, np.random.Generator], Action]
-"""A player in Python: what it sees from its own side of the table, and a generator for its random numbers, to an action."""
+"""A player in Python: maps the observation from its own side of the table, and a generator for its random numbers, to an action."""
 OPPONENTS = ("none", "random", "ghost_ball")
 PLAYER = 1
-"""The opponent's place in the frame."""
+"""Index of the opponent in the frame."""
 
 _ROLL = 0.25  # twice a rolling ball's deceleration [m/s^2]
-_SLIDE = 1.4  # speed that a ball struck in its middle must have, over that with which it rolls on
+_SLIDE = 1.4  # initial speed of a ball struck in its middle, over the speed with which it rolls on
 _PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8))
 _USUAL_PLACE = 2
 
 
 @entry(what="uniform play", seconds=1)
 def _uniform(which, streams, actions):
-    """Every number of the actions of the tables ``which`` uniform in [-1, 1): the rows of ``actions`` (n, k)."""
+    """Each component of the actions of the tables ``which`` uniform in [-1, 1): the rows of ``actions`` (n, k)."""
     size = actions.shape[1]
     for j in range(which.shape[0]):
         k = which[j]
@@ -56,7 +56,7 @@ def _uniform(which, streams, actions):
 
 @entry
 def _uniform_choice(which, streams, masks, actions):
-    """One of the choices that there are on the tables ``which``, each as likely; masks (len(which), CHOICES)."""
+    """A uniformly random available choice on each of the tables ``which``; masks (len(which), CHOICES)."""
     for j in range(which.shape[0]):
         k, many = which[j], 0
         for c in range(CHOICES):
@@ -71,14 +71,14 @@ def _uniform_choice(which, streams, masks, actions):
 
 
 class UniformOpponent:
-    """Every component of the action uniform, the decision too; of discrete actions one that there is."""
+    """Uniform random play: every component of a box action, the decision included; or one of the available discrete actions."""
 
     def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
-        """Nothing: each table draws from its own stream."""
+        """Empty actions: ``prepare`` draws them from each table's own stream."""
         return np.empty((frames.n, frames.rules.actions.size))
 
     def prepare(self, frames: "Frames", which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
-        """The strokes up to the strike: the tables on which there is one."""
+        """Carry the strokes out up to the strike; returns the tables with a stroke."""
         if isinstance(frames.rules.actions, Choices):
             _uniform_choice(which, frames.streams, frames.action_masks(which), actions)
         else:
@@ -88,7 +88,7 @@ class UniformOpponent:
 
 @kernel
 def _full(positions, on_table, ball):
-    """Can the cue ball be rolled straight at the middle of ``ball``, past every other?"""
+    """Whether the cue ball can roll straight at the middle of ``ball`` without touching another ball."""
     cx, cy = positions[0, 0], positions[0, 1]
     dx, dy = positions[ball, 0] - cx, positions[ball, 1] - cy
     far = hypot(dx, dy)
@@ -150,19 +150,20 @@ def _ghost_ball(which, positions, on_table, game, streams, options, noise, r, v,
 
 
 class GhostBallOpponent:
-    """The plain geometric player: the widest direct pot (``game.pots``), struck in the middle, as soft as will do.
+    """The geometric player: the widest direct pot (``game.pots``), struck in the middle, as softly as possible.
 
-    Without a pot it rolls full at the nearest ball on that it sees; seeing none, it strikes anywhere and hopes. In hand it takes the best
-    of ten places. After a foul it always plays the table as it lies. It knows neither throw nor position. Its speed is drawn within a
-    tenth of what it wants, and after the other's foul it strikes anywhere one time in ten: two exact players could repeat one failing
-    stroke for ever.
+    * Without a pot it rolls full at the nearest ball on with a clear path; without one, it strikes in a random direction.
+    * With the cue ball in hand it takes the best of ten places. After a foul it always plays the table as it lies.
+    * It allows for neither throw nor position.
+    * Its speed varies by a tenth, and after a foul of the opponent it strikes in a random direction one time in ten. Otherwise two exact
+      players could repeat one failing stroke for ever.
     """
 
     def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> None:
-        """Nothing: it plays as a kernel."""
+        """None: it plays as a kernel."""
 
     def prepare(self, frames: "Frames", which: Ints, actions: Any, buffers: ShotBuffers) -> Ints:
-        """Its strokes up to the strike, one on each table."""
+        """Carry its strokes out up to the strike, one on each table."""
         b = buffers
         options, noise, _ = frames.packed
         _ghost_ball(which, frames.positions, frames.on_table, frames.game, frames.streams, options, noise, b.r, b.v, b.w, b.here, b.shots)
@@ -170,17 +171,17 @@ class GhostBallOpponent:
 
 
 class AskedOpponent:
-    """A player by a policy: ``policy(observation, rng) -> action`` in the environment's own spaces, decision and placement included.
+    """A player given by a policy, ``policy(observation, rng) -> action``, in the environment's own spaces, decision and placement included.
 
-    A policy that has a method ``many(observations, generators, masks) -> actions`` is called once for all tables that wait for it:
-    observations with a leading axis, as many generators, and the masks of discrete actions (None of others).
+    A policy with a method ``many(observations, generators, masks) -> actions`` is called once for all tables that wait for it: observations
+    with a leading axis, as many generators, and the masks of discrete actions (None for box actions).
     """
 
     def __init__(self, policy: Policy):
         self.policy = policy
 
     def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
-        """Its actions on the tables ``which``: (n, k). Raises ValueError, naming "opponent's action", for a wrong one."""
+        """Its actions on the tables ``which``: (n, k). Raises ValueError, naming "opponent's action", for an invalid one."""
         rules, k_of = frames.rules, which.tolist()
         seen = frames.observe(which, PLAYER)
         wished = self._wishes(rules, seen, [generators[k] for k in k_of], frames, which)
@@ -203,16 +204,16 @@ class AskedOpponent:
         return wished
 
     def prepare(self, frames: "Frames", which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
-        """The strokes up to the strike: the tables on which there is one."""
+        """Carry the strokes out up to the strike; returns the tables with a stroke."""
         return frames.prepare(which, actions, buffers)
 
 
 class SavedPolicy:
-    """A model that Stable-Baselines3 or sb3-contrib saved; its pickles run when it is loaded, which is why ``trust`` is asked for.
+    """A model saved by Stable-Baselines3 or sb3-contrib. Its pickles run when it is loaded, so ``trust`` is required.
 
-    Trained on a frame or on the visit task, with the observation kind, aim and action options of this environment: of the frame's entries
-    and the decision it then gets and gives none (the decision is to play). Its actions are its deterministic ones. One that is not is
-    refused here, by what its file says of itself before anything of it runs.
+    The model may have been trained on frames or on the visit task, with the observation kind, aim and action options of this environment. A
+    model of the visit task does not get the frame's entries, and its decision is to play. Actions are deterministic. A model that does not
+    fit is refused by the plain data in its file, before anything in it runs.
     """
 
     path: Path
@@ -233,7 +234,7 @@ class SavedPolicy:
         return self.many(one, [rng], None)[0]
 
     def many(self, observation: Observation, generators: Sequence[np.random.Generator], masks: Bools | None) -> Any:
-        """The actions of all tables whose observations these are; ``masks``: of discrete actions, if known."""
+        """The actions of all tables with these observations; ``masks``: of discrete actions, or None."""
         if self._network is None:
             self._network = self._load()
         if self._network.observation_space == observations.space(self.kind):
@@ -262,7 +263,7 @@ class SavedPolicy:
             raise other_actions
         network = saved.network(self.trust, "trust=True")
         self._masked = discrete and saved.algorithm[1] == "MaskablePPO"
-        if network.observation_space not in seen:  # a file may say one thing and hold another
+        if network.observation_space not in seen:  # a file's description may not match its content
             raise other_view
         if outline(network.action_space) not in fitting:
             raise other_actions
@@ -273,7 +274,7 @@ Opponent: TypeAlias = UniformOpponent | GhostBallOpponent | AskedOpponent
 
 
 def visit_part(observation: Observation) -> Observation:
-    """What the visit task would show of a frame's observations."""
+    """The part of a frame's observations that the visit task has too."""
     extra = len(observations.FRAME_ENTRIES)
     if isinstance(observation, dict):
         return observation | {"state": observation["state"][..., :-extra]}
@@ -281,7 +282,7 @@ def visit_part(observation: Observation) -> Observation:
 
 
 def opponent_of(opponent: str | Path | Policy, kind: ObservationKind, actions: Actions | Choices, trust: bool = False) -> Opponent | None:
-    """The player that ``opponent`` names; None for "none". ``kind``: of the observation, ``trust``: may code run, for a model's file."""
+    """The player that ``opponent`` names; None for "none". ``kind``: of the observation; ``trust``: code in a model's file may run."""
     allowed = "must be one of " + ", ".join(map(repr, OPPONENTS)) + ", a path to a model (.zip), or a callable(observation, rng) -> action"
     truth("trust", trust)
     if not isinstance(opponent, str | Path):

@@ -1,7 +1,7 @@
-"""How is the game played that an environment offers? All its options in one frozen place, checked together when they are made.
+"""How is the game of an environment configured? All options in one immutable object, validated together when it is made.
 
-``SnookerEnv``, ``SnookerVectorEnv``, ``MatchEnv``, ``SnookerVecEnv`` and ``planning.Planner`` take the same ``Options``, or the same
-keywords, of which they make one.
+``SnookerEnv``, ``SnookerVectorEnv``, ``MatchEnv``, ``SnookerVecEnv`` and ``planning.Planner`` take an ``Options``, or its fields as
+keywords.
 """
 
 from collections.abc import Mapping
@@ -30,18 +30,18 @@ from .table_fit import fitted, table_of
 TASKS = ("visit", "frame")
 ACTIONS = ("box", "discrete")
 LAYOUTS = {"visit": "opened", "frame": "break_off"}
-"""What layout="default" is in each task."""
+"""What layout="default" means in each task."""
 MAX_STROKES = 1000
-"""Strokes of both players after which the referee stops a frame, unless told otherwise. Uniformly random players that aim near a pot needed
-284, and in 2,000 frames never more than 560 (``benchmarks.frames``); players that only foul, or only hand the table over, never end.
+"""Default number of strokes of both players after which the referee stops a frame. Uniformly random players that aim near a pot needed 284
+on average, and never more than 560 in 2,000 frames (``benchmarks.frames``). Players that only foul, or only pass the turn, never finish.
 """
 NEVER = 2**62
-"""A limit of strokes or steps that is none."""
+"""Stands for no limit of strokes or steps."""
 
 
 @dataclass(frozen=True)
 class Rules:
-    """The options of a game as its kernels need them: what ``Options.rules`` holds."""
+    """The options of a game in the form that the kernels need, as ``Options.rules`` holds them."""
 
     actions: Actions | Choices
     """``Actions`` or ``Choices``."""
@@ -49,17 +49,19 @@ class Rules:
     physics: Physics
     table: Table
     fidelity: Solver
-    """As ``parse_fidelity`` gives it."""
+    """As ``parse_fidelity`` returns it."""
     plan: Plan
     """How tables are dealt."""
     reward: str
     observation: ObservationKind
     miss: bool = False
-    """Of a frame: whether a foul and a miss is called."""
+    """In a frame: whether a foul and a miss is called."""
     max_strokes: int = NEVER
-    """Of a frame: after how many strokes of both players it is stopped."""
+    """In a frame: number of strokes of both players after which it is stopped."""
     opponent: Opponent | None = None
-    """Of a frame: who plays the other side, as ``opponents.opponent_of`` gives it."""
+    """In a frame: the player of the other side, from ``opponents.opponent_of``."""
+    one_stroke: bool = False
+    """In a visit: whether it ends after its first stroke."""
 
     def packed(self) -> tuple[Floats, Floats, Floats]:
         """For the kernels: options of the action, deviations of the noise, physical parameters."""
@@ -68,55 +70,57 @@ class Rules:
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """What may be chosen of a game. The fields are the keywords of ``gymnasium.make("Snooker-v0", ...)``; an ``Options`` never changes.
+    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together. An ``Options`` is immutable.
 
     Parameters
     ----------
-    task : {"visit", "frame"}
-        Build a break until the first miss or foul, or play a whole frame.
-    layout : str
+    task : {"visit", "frame"}, optional
+        "visit" (default): build a break until the first miss or foul. "frame": play a whole frame.
+    layout : str, optional
         How tables are dealt: "opened", "held_out", "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy",
-        "pots:medium", "pots:hard". "default": "opened" in a visit, "break_off" in a frame.
-    action : {"box", "discrete"}
-        Numbers in [-1, 1], or one number that means a pot, a speed, a side and a top (``snooker_env.tasks.discrete_actions``).
-    aim : {"absolute", "target"}
-        What the aim of a box action is measured from: +x, or the best potting line.
-    observation : {"flat", "balls"}
-        One array, or a dict of two.
-    noise : str, dict or Noise
-        Errors of execution: a level's name, or standard deviations; see ``snooker_env.tasks.Noise``.
-    reward : {"points", "points_and_fouls", "pots", "win"}
-        The first three in a visit, "points" and "win" in a frame.
-    elevation : bool
-        Whether a box action holds the cue's elevation.
-    placement : bool
-        Whether a box action holds the place in the D of a cue ball in hand.
-    physics : str, dict, Physics or None
-        As ``Physics.of`` takes it, with snooker's ball radius.
-    table : str or Table
-        "match", "tight", or a table with snooker's bed.
-    fidelity : str
-        "fast", "standard", "reference" or "euler:N": how impacts are solved.
-    opponent : str, path or callable
-        Of a frame: "none", "random", "ghost_ball", a model's ``.zip``, or ``opponent(observation, rng) -> action``.
-    miss : {"off", "clear_path"}
-        Of a frame: the rule for a foul and a miss (``snooker_env.game.frame``).
-    decision : bool
-        Of a frame: whether a box action holds the decision after a foul of the other player.
-    max_strokes : int, optional
-        Of a frame: after how many strokes of both players together the referee stops it; None: never.
-    trust : bool
-        Of a frame: whether the code in an opponent's ``.zip`` may run.
+        "pots:medium" or "pots:hard". "default": "opened" in a visit, "break_off" in a frame.
+    action : {"box", "discrete"}, optional
+        "box" (default): numbers in [-1, 1]. "discrete": one integer in [0, 540) that means a pot, a speed, a side and a top.
+    aim : {"absolute", "target"}, optional
+        Reference direction of the aim in a box action: +x (default), or the best potting line.
+    observation : {"flat", "balls"}, optional
+        "flat" (default): one array. "balls": a dict of two arrays.
+    noise : str, dict or Noise, optional
+        Execution errors: the name of a level, or standard deviations, see ``snooker_env.tasks.Noise``. Default "none".
+    reward : {"points", "points_and_fouls", "pots", "legal", "win"}, optional
+        Default "points". The first four are available in a visit, "points" and "win" in a frame.
+    elevation : bool, optional
+        Whether a box action holds the elevation of the cue; default False.
+    placement : bool, optional
+        Whether a box action holds the place in the D for a cue ball in hand; default False.
+    physics : str, dict, Physics or None, optional
+        Physical constants, as ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
+    table : str or Table, optional
+        "match" (default), "tight", or a ``Table`` whose noses are where snooker's are.
+    fidelity : str, optional
+        How impacts are solved: "fast", "standard" (default), "reference" or "euler:N".
+    opponent : str, Path or callable, optional
+        In a frame: "none" (default), "random", "ghost_ball", a model's ``.zip``, or ``opponent(observation, rng) -> action``.
+    miss : {"off", "clear_path"}, optional
+        In a frame: the rule for a foul and a miss (``snooker_env.game.frame``). Default "off".
+    decision : bool, optional
+        In a frame: whether a box action holds the decision after a foul of the opponent; default False.
+    max_strokes : int or None, optional
+        In a frame: number of strokes of both players after which the referee stops it; default 1000, None for never.
+    one_stroke : bool, optional
+        In a visit: whether it ends after its first stroke; default False.
+    trust : bool, optional
+        In a frame: whether code in an opponent's ``.zip`` may run; default False.
 
     Attributes
     ----------
     rules : Rules
-        The same as the kernels need it, made when the options are.
+        The same options in the form that the kernels need.
 
     Raises
     ------
     ValueError
-        For whatever is unknown, of the wrong type, or does not go with another. The message names the field.
+        If an option is unknown, has the wrong type, or conflicts with another. The message names the field.
 
     Examples
     --------
@@ -132,7 +136,7 @@ class Options:
     aim: Literal["absolute", "target"] = "absolute"
     observation: ObservationKind = "flat"
     noise: NoiseLike = "none"
-    reward: Literal["points", "points_and_fouls", "pots", "win"] = "points"
+    reward: Literal["points", "points_and_fouls", "pots", "legal", "win"] = "points"
     elevation: bool = False
     placement: bool = False
     physics: PhysicsLike = "paper"
@@ -142,6 +146,7 @@ class Options:
     miss: MissRule = "off"
     decision: bool = False
     max_strokes: int | None = MAX_STROKES
+    one_stroke: bool = False
     trust: bool = False
     rules: Rules = field(init=False, repr=False, compare=False)
 
@@ -150,7 +155,7 @@ class Options:
         physics, table = self._physics(), table_of(self.table)
         fidelity, noise = parse_fidelity(self.fidelity), Noise.of(self.noise)
         for name, read in (("physics", physics), ("noise", noise)):
-            if isinstance(getattr(self, name), dict):  # which may change later
+            if isinstance(getattr(self, name), dict):  # a dict may change later
                 object.__setattr__(self, name, read)
         actions = self._actions(physics)
         default = isinstance(self.layout, str) and self.layout == "default"
@@ -158,14 +163,17 @@ class Options:
         choice("observation", self.observation, OBSERVATIONS)
         truth("trust", self.trust)
         choice("reward", self.reward, FRAME_REWARDS if frame else REWARDS)
+        one_stroke = truth("one_stroke", self.one_stroke)
         miss, limit, opponent = False, NEVER, None
         if frame:
             miss = choice("miss", self.miss, MISS_RULES) == "clear_path"
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             opponent = opponent_of(self.opponent, self.observation, actions, self.trust)
+            if one_stroke:
+                raise refuse("one_stroke", True, 'must be False with task="frame"; it belongs to task="visit"')
         else:
             self._check_visit()
-        read = Rules(actions, noise, physics, table, fidelity, plan, self.reward, self.observation, miss, limit, opponent)
+        read = Rules(actions, noise, physics, table, fidelity, plan, self.reward, self.observation, miss, limit, opponent, one_stroke)
         object.__setattr__(self, "rules", read)
 
     def _physics(self) -> Physics:
@@ -181,11 +189,11 @@ class Options:
         for name in ("elevation", "placement", "decision"):
             if getattr(self, name) is not False:
                 raise refuse(name, getattr(self, name), 'must be False with action="discrete"')
-        choice("aim", self.aim, AIMS)  # it has no say: the aim is solved
+        choice("aim", self.aim, AIMS)  # checked but unused: the aim is solved
         return Choices(physics)
 
     def _check_visit(self) -> None:
-        """Raise ValueError unless what belongs to a frame is left as it is."""
+        """Raise ValueError if an option of frames is changed in a visit."""
         usual = {f.name: f.default for f in fields(self)}
         for name in FRAME_ONLY:
             value = getattr(self, name)
@@ -193,7 +201,7 @@ class Options:
                 raise refuse(name, value, f'must be {usual[name]!r} with task="visit"; it belongs to task="frame"')
 
     def but(self, **changes: Any) -> "Options":
-        """The same with some options changed.
+        """Return a copy with some options changed.
 
         Parameters
         ----------
@@ -203,24 +211,31 @@ class Options:
         Returns
         -------
         Options
+            The new options, validated.
 
         Raises
         ------
         ValueError
-            As for the options themselves.
+            For the same reasons as ``Options``.
+
+        Examples
+        --------
+        >>> from snooker_env import Options
+        >>> Options().but(layout="line_up").layout
+        'line_up'
         """
         return replace(self, **changes)
 
 
 FRAME_ONLY = ("opponent", "trust", "miss", "decision", "max_strokes")
-"""Options that mean something in the frame task only."""
+"""Options that have a meaning in the frame task only."""
 NAMES = tuple(f.name for f in fields(Options) if f.init)
 
 
 def options_of(options: Options | None, given: Mapping[str, Any]) -> Options:
-    """The ``Options`` of an environment that was given ``options`` (None or some) and the keywords ``given``.
+    """The ``Options`` of an environment that was given ``options`` (None or an ``Options``) and the keywords ``given``.
 
-    Raises ValueError for what is not sound, TypeError for a keyword that is unknown.
+    Raises ValueError for invalid values, TypeError for an unknown keyword.
     """
     if options is None:
         for name in given:

@@ -1,4 +1,4 @@
-"""What is kept of a stroke that was played? How it was struck, the shot, what the referee said of it, and the table that it left."""
+"""What is recorded of a stroke? The strike, the shot, the referee's decision, and the table after it."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,50 +12,63 @@ from .stroke import BREAK, COST, CUE_SPEED, FIRST, FOULS, FREE, PLAYER, SCORED, 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Played:
-    """One stroke as it was played and judged, and the table after it.
+    """One stroke as it was played and judged, and the table after it: an element of ``env.history``.
 
     Attributes
     ----------
     shot : Shot
-        With its path, if that was wanted.
+        The simulated shot, with its path if that was recorded.
     cue : dict of str to float
-        The strike, errors of execution included: "speed" [m/s], "side", "top" (tip offset over R, right and up), "aim", "elevation" [rad].
+        The strike, execution errors included: "speed" [m/s], "side", "top" (tip offset over R, right and up), "aim", "elevation" [rad].
     player : int
-        Who played it: 0, in a frame 0 or 1.
+        Who played it: 0, or in a frame 0 or 1.
     ball_on : BallOn
         What was on.
     free_ball : bool
-        Whether he had a free ball.
+        Whether the player had a free ball.
     first : tuple of int
-        The balls struck first: one, none, or those struck at the same instant.
-    points, penalty : int
-        What it scored; what it gave to the other player.
+        Ids of the balls struck first: one, none, or those struck at the same instant.
+    points : int
+        Points scored.
+    penalty : int
+        Penalty points given to the opponent.
     fouls : Foul
-        The rules that it broke.
-    positions : float64 (22, 2)
-        The balls after it [m], colours respotted and a cue ball in hand placed.
-    on_table : bool (22,)
-        Which balls are on the table then.
+        The rules that the stroke broke.
+    positions : numpy.ndarray
+        float64 (22, 2). The balls after the stroke [m], with colours respotted and a cue ball in hand placed.
+    on_table : numpy.ndarray
+        bool (22,). Which balls are on the table then.
     next_on : BallOn
-        What is on next; NOTHING when it is over.
+        What is on next; NOTHING when the visit or frame is over.
     next_free_ball : bool
         Whether the next player has a free ball.
     next_player : int
         Whose turn it is next.
     scores : tuple of int
-        Of a frame, after the stroke; of a visit its points so far.
+        In a frame, both scores after the stroke; in a visit, its points so far.
     break_before : int
         Points of the break before this stroke.
     break_points : int
-        Points of the break with this stroke, 0 if it scored nothing; of a visit its points so far.
+        Points of the break with this stroke; in a frame 0 if it scored nothing; in a visit its points so far.
     in_hand : bool
         Whether the cue ball is in hand next.
     choice : bool
-        Whether the next player may first say what he wants, after a foul.
+        Whether the next player has a decision to make, after a foul.
     over : bool
         Whether the visit or frame has ended.
-    winner : int, or None
+    winner : int or None
         Who has won the frame.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> env = sn.SnookerEnv(action="discrete")
+    >>> env.keep_history = True
+    >>> _ = env.reset(seed=1)
+    >>> _ = env.step(67)
+    >>> played = env.history[0]
+    >>> played.player, played.ball_on.name, played.positions.shape
+    (0, 'RED', (22, 2))
     """
 
     shot: Shot
@@ -82,7 +95,7 @@ class Played:
 
 
 def judged(seen: list[int]) -> dict[str, Any]:
-    """The fields of ``Played`` that are in a row of ``ShotBuffers.seen``."""
+    """The fields of ``Played`` that a row of ``ShotBuffers.seen`` holds."""
     return {
         "player": seen[PLAYER], "ball_on": BallOn(seen[WAS_ON]), "free_ball": bool(seen[FREE]), "first": ids_of(seen[FIRST]),
         "points": seen[SCORED], "penalty": seen[COST], "fouls": Foul(seen[FOULS]),
@@ -91,5 +104,5 @@ def judged(seen: list[int]) -> dict[str, Any]:
 
 
 def struck(buffers: ShotBuffers, j: int) -> dict[str, float]:
-    """The field ``cue`` of ``Played``, of shot j."""
+    """The field ``cue`` of ``Played``, for shot j."""
     return dict(zip(("speed", "side", "top", "aim", "elevation"), buffers.shots[j, CUE_SPEED:].tolist(), strict=True))

@@ -1,9 +1,9 @@
-"""Where must the cue ball be sent to pot a ball? The line of a pot, corrected for throw, swerve and the object ball's own curve.
+"""In which direction must the cue ball leave to pot a ball? The line of a pot, corrected for throw, swerve and the object ball's own curve.
 
-The geometric line (``game.pots``) sends the cue ball's centre straight to the ghost ball. Side spin under an elevated cue or spin
-across the path bends that line, friction throws the object ball off the line of centres, and the spin it then has bends its path. All of it
-follows from the models themselves: the two balls alone are played on unbounded cloth until the object ball rolls, and the direction is
-corrected by how far the ball then passes the pocket's aim point, in secant steps. One trial costs a microsecond, not a shot.
+The geometric line (``game.pots``) sends the cue ball's centre straight to the ghost ball. Side spin under an elevated cue, or spin across
+the path, bends that line. Friction throws the object ball off the line of centres, and its spin then bends its path. All of this follows
+from the models themselves: the two balls alone are played on unbounded cloth until the object ball rolls, and secant steps correct the
+direction by how far the ball passes the pocket's aim point. One trial takes a microsecond instead of a whole shot.
 """
 
 from math import atan2, hypot, pi
@@ -21,7 +21,7 @@ _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve
 
 @kernel
 def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_mass_ratio, fidelity, n_steps, motion, state, work):
-    """By which angle [rad] the object ball at b, hit by a cue ball sent in the direction ``aim``, passes p on the left; 9 if missed.
+    """Angle [rad] by which the object ball at b, hit by a cue ball sent in the direction ``aim``, passes p on the left; 9 if missed.
 
     motion (2, cloth.COLUMNS), state (2,), work: work space.
     """
@@ -54,7 +54,7 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
     qx, qy = px - bx, py - by
     away = hypot(qx, qy)
     T = 0.0
-    while state[1] == cloth.BEND:  # by the nap: the chord of the piece that ends past the pocket is near enough
+    while state[1] == cloth.BEND:  # by the nap: the chord of the piece that ends past the pocket is accurate enough
         T = motion[1, cloth.T_END] - motion[1, cloth.T0]
         (x, y), _v, _w = cloth.evaluate(motion, state, 1, motion[1, cloth.T_END], phys)
         if (x - bx) * qx + (y - by) * qy >= away * away:
@@ -63,12 +63,12 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
         T = 0.0
     gx, gy = motion[1, cloth.X] - bx, motion[1, cloth.Y] - by
     ux, uy = motion[1, cloth.VX] + 0.5 * motion[1, cloth.AX] * T, motion[1, cloth.VY] + 0.5 * motion[1, cloth.AY] * T
-    if T == 0.0 and gx * qx + gy * qy > 0.9 * away * away:  # still sliding at the pocket: its chord is near enough
+    if T == 0.0 and gx * qx + gy * qy > 0.9 * away * away:  # still sliding at the pocket: its chord is accurate enough
         ux, uy = gx, gy
     else:
         qx, qy = qx - gx, qy - gy
     ahead = qx * ux + qy * uy
-    # seen from where the ball lay, however near the pocket it begins to roll: so the correction's slope hardly changes
+    # relative to where the ball lay, even if it begins to roll near the pocket: so the correction's slope hardly changes
     return (qx * uy - qy * ux) / (hypot(ux, uy) * away) if ahead > 0.0 else 9.0
 
 
@@ -76,7 +76,7 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
 def solved_aim(positions, ball, px, py, gx, gy, speed, side, top, elevation, phys, end_mass_ratio, fidelity, n_steps, motion, state, work):
     """Direction [rad] in which the cue ball must leave to send ``ball`` to the aim point p; (gx, gy): the straight line's ghost ball.
 
-    Where no direction does (a stroke too soft to arrive, a cut too thin) the best one tried is returned.
+    If no direction succeeds (the stroke is too soft to arrive or the cut too thin), the best one tried is returned.
     """
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)
@@ -95,7 +95,7 @@ def solved_aim(positions, ball, px, py, gx, gy, speed, side, top, elevation, phy
             best, least = aim, off
         if abs(off) <= _ENOUGH:
             break
-        if off == 9.0:  # missed, or it never arrived: towards the ball's middle
+        if off == 9.0:  # missed, or it never arrived: turn towards the ball's middle
             middle = atan2(by - cy, bx - cx)
             turn = middle - aim
             turn -= 2.0 * pi * round(turn / (2.0 * pi))

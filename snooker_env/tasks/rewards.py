@@ -1,36 +1,42 @@
-"""What is a stroke worth to the learner? Named rewards, of the referee's verdict on a visit's stroke, or of a step in a frame."""
+"""What is the reward? Named rewards of a stroke in a visit, or of a step in a frame."""
 
 from .._jit import kernel
 
-REWARDS = ("points", "points_and_fouls", "pots")
-"""``"points"``: points scored, 0 for a miss or foul, range [0, 15]. ``"points_and_fouls"``: less the penalty, [-7, 15]. ``"pots"``: 1 for a
-scoring stroke, else 0."""
+REWARDS = ("points", "points_and_fouls", "pots", "legal")
+"""Rewards of a visit. ``"points"``: points scored, 0 for a miss or foul, in [0, 15]. ``"points_and_fouls"``: minus the penalty, in
+[-7, 15]. ``"pots"``: 1 for a scoring stroke, else 0. ``"legal"``: 1 for a stroke without a foul, else 0, as for escaping from a snooker.
+"""
 
 
 @kernel
 def reward_of(kind, points, penalty):
-    """The reward of a visit's stroke; ``kind`` is the place in ``REWARDS``."""
+    """The reward of a visit's stroke; ``kind`` is the index into ``REWARDS``."""
+    if kind == 3:
+        return 0.0 if penalty else 1.0
     if kind == 2:
         return 1.0 if points else 0.0
     return float(points - penalty) if kind == 1 else float(points)
 
 
 FRAME_REWARDS = ("points", "win")
-"""Of a whole frame: ``"points"``: the player's points less the other's in this step, pots and penalties of both. ``"win"``: +1 or -1 when
-the frame ends, else 0."""
+"""Rewards of a frame. ``"points"``: the player's points minus the opponent's in this step, pots and penalties of both. ``"win"``: +1 or -1
+when the frame ends, else 0.
+"""
 
 
 @kernel
 def frame_reward_of(kind, gained, winner, player):
-    """The reward of a step of a frame; ``kind`` is the place in ``FRAME_REWARDS``, ``gained`` what the player's lead has grown by,
-    ``winner`` -1 while there is none."""
+    """The reward of a step of a frame.
+
+    ``kind`` is the index into ``FRAME_REWARDS``, ``gained`` the growth of the player's lead, ``winner`` -1 while there is none.
+    """
     if kind == 0:
         return float(gained)
     return 0.0 if winner < 0 else 1.0 if winner == player else -1.0
 
 
 def frame_reward(name: str, gained: float, winner: int | None, player: int) -> float:
-    """The same for one player of a match, ``gained`` and ``winner`` (None while there is none) as player 0 sees them."""
+    """The same for one player of a match; ``gained`` and ``winner`` (None while there is none) are those of player 0."""
     if name == "points":
         return float(gained if player == 0 else -gained)
     return 0.0 if winner is None else 1.0 if winner == player else -1.0

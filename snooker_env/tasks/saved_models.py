@@ -1,8 +1,8 @@
-"""What may a model's file do to whoever loads it? Nothing without consent: it is read as plain data, and only then unpickled.
+"""How is a model's file read safely? As plain data first, without running anything; it is unpickled only with consent.
 
-A zip of Stable-Baselines3 or sb3-contrib holds weights and ``data``: JSON in which whatever is not a plain value is a pickle (of
-cloudpickle, in base64). To load it whole, as ``PPO.load`` does, is to run the code in these pickles, whatever it is. ``Saved`` reads what
-stands there in plain, which is enough to refuse a model that does not fit; ``SavedModel.network`` alone unpickles, and asks for consent.
+A zip of Stable-Baselines3 or sb3-contrib holds weights and ``data``: JSON in which everything but plain values is a pickle (of cloudpickle,
+in base64). Loading it whole, as ``PPO.load`` does, runs the code in these pickles, whatever it is. ``SavedModel`` reads only the plain
+values, which suffices to refuse a model that does not fit. ``SavedModel.network`` alone unpickles, and requires consent.
 """
 
 import json
@@ -18,10 +18,11 @@ from .._check import refuse
 __all__ = ["PLAIN", "SavedModel", "by_train", "entries", "outline", "part"]
 
 MOST = 2**26
-"""Bytes of JSON that are read at most (SB3 keeps the last observations there): a small zip can unpack to more than a machine has, and JSON
-to objects 25 times as large."""
+"""Largest number of bytes of JSON that are read (SB3 stores the last observations there). A small zip can unpack to more than a machine's
+memory, and JSON to objects 25 times as large.
+"""
 PLAIN = "model.json"
-"""What stands in place of ``data`` in the zips that ``agents.publish`` writes, which hold no pickles."""
+"""Name of the part that replaces ``data`` in zips written by ``agents.publish``, which hold no pickles."""
 
 _ALGORITHMS = (
     ("sb3_contrib", "TQC", {"top_quantiles_to_drop_per_net"}), ("sb3_contrib", "TRPO", {"cg_max_steps"}),
@@ -30,11 +31,50 @@ _ALGORITHMS = (
     ("stable_baselines3", "PPO", {"clip_range", "rollout_buffer_class"}),
     ("stable_baselines3", "A2C", {"gae_lambda", "rollout_buffer_class"}),
 )  # fmt: skip
-"""Library, class, and what only its models save besides that of those above; a recurrent one has no class of rollout buffers."""
+"""Library, class, and the names that only its models save, in addition to those of the classes above. A recurrent model has no class of
+rollout buffers.
+"""
 
 
 def part(path: str | Path, name: str, most: int = MOST) -> bytes:
-    """The bytes of one part of a zip file. Raises whatever ``zipfile`` does, and ValueError if there are more of them than ``most``."""
+    """Read one part of a zip file, unless it is too large.
+
+    Parameters
+    ----------
+    path : str or Path
+        The zip file.
+    name : str
+        Name of the part.
+    most : int, optional
+        Largest size [bytes]; default 64 MiB.
+
+    Returns
+    -------
+    bytes
+        The content of the part.
+
+    Raises
+    ------
+    ValueError
+        If the part is larger than ``most``.
+    KeyError
+        If there is no such part.
+    zipfile.BadZipFile
+        If the file is no zip.
+    OSError
+        If the file cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile, zipfile
+    >>> from pathlib import Path
+    >>> from snooker_env.tasks.saved_models import part
+    >>> file = Path(tempfile.mkdtemp()) / "model.zip"
+    >>> with zipfile.ZipFile(file, "w") as made:
+    ...     made.writestr("data", "{}")
+    >>> part(file, "data")
+    b'{}'
+    """
     with zipfile.ZipFile(path) as file:
         if file.getinfo(name).file_size > most:
             raise ValueError(f"{name} is larger than {most} bytes")
@@ -42,7 +82,36 @@ def part(path: str | Path, name: str, most: int = MOST) -> bytes:
 
 
 def entries(path: str | Path) -> dict[str, Any]:
-    """What a model's file says of itself, pickles left as text: a dict. Raises whatever ``zipfile`` and ``json`` do."""
+    """Read the description that a model's file holds of itself; pickles in it stay text.
+
+    Parameters
+    ----------
+    path : str or Path
+        The model's ``.zip``.
+
+    Returns
+    -------
+    dict
+        The JSON of the part ``PLAIN`` or, if there is none, of ``data``.
+
+    Raises
+    ------
+    ValueError
+        If the part is no JSON object, or too large.
+    KeyError, zipfile.BadZipFile, OSError
+        For the same reasons as ``part``.
+
+    Examples
+    --------
+    >>> import tempfile, zipfile
+    >>> from pathlib import Path
+    >>> from snooker_env.tasks.saved_models import entries
+    >>> file = Path(tempfile.mkdtemp()) / "model.zip"
+    >>> with zipfile.ZipFile(file, "w") as made:
+    ...     made.writestr("data", '{"gamma": 0.99}')
+    >>> entries(file)
+    {'gamma': 0.99}
+    """
     with zipfile.ZipFile(path) as file:
         name = PLAIN if PLAIN in file.namelist() else "data"
     found = json.loads(part(path, name))
@@ -52,12 +121,49 @@ def entries(path: str | Path) -> dict[str, Any]:
 
 
 def by_train(found: dict[str, Any]) -> bool:
-    """Whether these ``entries`` are of a model of ``train.py``, which tells what it needs in plain."""
+    """Return whether a model was written by the repository's ``train.py``, which stores what it needs as plain data.
+
+    Parameters
+    ----------
+    found : dict
+        The result of ``entries``.
+
+    Returns
+    -------
+    bool
+        True for a model of ``train.py``.
+
+    Examples
+    --------
+    >>> from snooker_env.tasks.saved_models import by_train
+    >>> by_train({"gamma": 0.99})
+    False
+    """
     return "recipe" in found
 
 
 def outline(space: spaces.Space[Any]) -> tuple[str, Any]:
-    """Kind and size of a space, as far as Stable-Baselines3 writes them in plain."""
+    """Return the kind and size of a space, as far as Stable-Baselines3 stores them as plain data.
+
+    Parameters
+    ----------
+    space : gymnasium.Space
+        A Box, Dict or Discrete space, or any other with a shape.
+
+    Returns
+    -------
+    kind : str
+        Name of the space's class.
+    size : str or list of int
+        The number of choices of a Discrete space as text, the spaces of a Dict as text, else the shape.
+
+    Examples
+    --------
+    >>> from gymnasium import spaces
+    >>> from snooker_env.tasks.saved_models import outline
+    >>> outline(spaces.Box(-1.0, 1.0, (4,))), outline(spaces.Discrete(540))
+    (('Box', [4]), ('Discrete', '540'))
+    """
     if isinstance(space, spaces.Dict):
         return "Dict", str(space.spaces)
     if isinstance(space, spaces.Discrete):
@@ -65,8 +171,8 @@ def outline(space: spaces.Space[Any]) -> tuple[str, Any]:
     return type(space).__name__, list(space.shape or ())
 
 
-def _told(described):
-    """``outline`` of a space by what stands beside its pickle."""
+def _described_outline(described):
+    """The ``outline`` of a space, from the plain data beside its pickle."""
     kind = described[":type:"].rpartition(".")[2].removesuffix("'>")
     if kind == "Dict":
         return kind, described["spaces"]
@@ -75,7 +181,29 @@ def _told(described):
 
 @dataclass(frozen=True)
 class SavedModel:
-    """A file of Stable-Baselines3, nothing of it unpickled. ``field``: what the complaints about it name."""
+    """A model's file of Stable-Baselines3 or sb3-contrib, read without unpickling anything. Made by ``SavedModel.of``.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    field : str
+        Name of the argument that error messages refer to.
+    data : dict
+        The JSON of its ``data``, in which pickles are text.
+    observation : (str, str or list of int)
+        ``outline`` of the observation space, as the file describes it.
+    action : (str, str or list of int)
+        ``outline`` of the action space, as the file describes it.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from snooker_env.tasks.saved_models import SavedModel
+    >>> saved = SavedModel(Path("ppo.zip"), "opponent", {"clip_range": 0.2, "rollout_buffer_class": {}}, ("Box", [121]), ("Box", [4]))
+    >>> saved.algorithm
+    ('stable_baselines3', 'PPO')
+    """
 
     path: Path
     field: str
@@ -87,25 +215,54 @@ class SavedModel:
 
     @classmethod
     def of(cls, path: str | Path, field: str) -> "SavedModel":
-        """Read a file. Raises ValueError if it is none of Stable-Baselines3."""
+        """Read a model's file.
+
+        Parameters
+        ----------
+        path : str or Path
+            The model's ``.zip``.
+        field : str
+            Name of the argument that error messages refer to.
+
+        Returns
+        -------
+        SavedModel
+            The plain data in the file.
+
+        Raises
+        ------
+        ValueError
+            If the file is no model of Stable-Baselines3, or one of ``train.py``, whose agents observe more than the environment shows.
+        """
         try:
             data = entries(path)
             ours = by_train(data)
-            told = [] if ours else [_told(data[key]) for key in ("observation_space", "action_space")]
-        except Exception as error:  # whatever zip and JSON make of a file that is something else
+            outlines = [] if ours else [_described_outline(data[key]) for key in ("observation_space", "action_space")]
+        except Exception as error:  # zipfile and json raise many kinds for other files
             raise refuse(field, str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
         if ours:
-            allowed = "must be a model that sees what the environment shows and nothing else; the agents of train.py see more"
+            allowed = "must be a model that observes what the environment shows and nothing else; the agents of train.py observe more"
             raise refuse(field, str(path), allowed)
-        return cls(Path(path), field, data, *told)
+        return cls(Path(path), field, data, *outlines)
 
     def refused(self, allowed: str) -> ValueError:
-        """The complaint about this file."""
+        """Make the error that refuses this file.
+
+        Parameters
+        ----------
+        allowed : str
+            What the file must be.
+
+        Returns
+        -------
+        ValueError
+            The error, not raised.
+        """
         return refuse(self.field, str(self.path), allowed)
 
     @property
     def algorithm(self) -> tuple[str, str]:
-        """Library and class that saved it, told by the names of what it holds. Raises ValueError for any other."""
+        """Library and class that saved the model, (str, str), recognised by the names in ``data``; ValueError for an unknown one."""
         held = {name for name, value in self.data.items() if value is not None}
         for library, name, own in _ALGORITHMS:
             if own <= held:
@@ -115,9 +272,26 @@ class SavedModel:
         raise self.refused("must be a model of MaskablePPO, " + ", ".join(name for _, name, _ in _ALGORITHMS))
 
     def network(self, trust: bool, consent: str) -> Any:
-        """Its network (an SB3 policy), loaded: the code in its pickles runs. ``consent``: how a user says that he wants that.
+        """Load the model's policy network. This runs the code in its pickles.
 
-        Raises ValueError, before anything runs, without ``trust``; ValueError, too, if it cannot be loaded, ImportError without SB3.
+        Parameters
+        ----------
+        trust : bool
+            Whether that code may run.
+        consent : str
+            How a user gives this consent, for the error message, as "trust=True".
+
+        Returns
+        -------
+        stable_baselines3.common.policies.BasePolicy
+            The policy, on the CPU.
+
+        Raises
+        ------
+        ValueError
+            Without ``trust``, before anything runs; or if the model cannot be loaded.
+        ImportError
+            Without Stable-Baselines3 or sb3-contrib.
         """
         library, name = self.algorithm
         if not trust:
@@ -131,9 +305,9 @@ class SavedModel:
         except ImportError as error:
             line = 'pip install -e ".[train]"'
             raise ImportError(f"{self.field} = {str(self.path)!r} needs {library}; in a clone of the repository: {line}") from error
-        only_played = {"seed": None, "n_envs": 1, "buffer_size": 1}  # the caller's random numbers stay, nothing is to be learned
+        only_played = {"seed": None, "n_envs": 1, "buffer_size": 1}  # keep the caller's random state; no learning
         try:
             return getattr(module, name).load(self.path, device="cpu", **only_played).policy
-        except Exception as error:  # it is the file's own code
+        except Exception as error:  # the file's own code may raise anything
             why = str(error).partition("\n")[0]
             raise self.refused(f"must be a model that {name} can load ({type(error).__name__}: {why})") from error

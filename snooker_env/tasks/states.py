@@ -1,4 +1,4 @@
-"""Is a saved state sound? Checks every part of what ``get_state`` gave, of a visit and of a frame, before any of it is taken over."""
+"""Is a saved state valid? Checks every part of the result of ``get_state``, for visits and frames, before any of it is used."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -14,13 +14,14 @@ from ..game.in_hand import within_d
 from ..physics.table import Table
 
 MOST = 2**53 - 1
-"""The highest score and the most strokes of a saved frame: a float, as observations and infos give them, still holds every integer."""
+"""Largest score and number of strokes in a saved frame. A float, as in observations and infos, still represents every integer up to here.
+"""
 FAR = 1000.0
-"""A ball off the table counts for nothing, but its coordinates are within this [m], so that nothing overflows."""
+"""Limit of the coordinates of a ball off the table [m]. They have no meaning, but must not overflow."""
 
 
 class State(NamedTuple):
-    """A sound state of a visit: what ``SnookerEnv`` is made of between two shots."""
+    """A valid state of a visit: everything of a ``SnookerEnv`` between two shots."""
 
     positions: Floats
     on_table: Bools
@@ -34,7 +35,7 @@ class State(NamedTuple):
 
 
 class FrameState(NamedTuple):
-    """A sound state of a frame, in ``SnookerEnv`` or a match."""
+    """A valid state of a frame, in ``SnookerEnv`` or a match."""
 
     frame: Frame
     positions: Floats
@@ -56,11 +57,11 @@ def check_keys(state: Any, keys: Collection[str]) -> None:
 
 
 def checked_layout(names: tuple[str, str], positions: Any, on_table: Any, table: Table, R: float) -> tuple[Floats, Bools]:
-    """The arrays positions (22, 2) and on_table (22,); ValueError, by one of the two ``names``, unless they are a sound layout."""
+    """The arrays positions (22, 2) and on_table (22,); ValueError, with one of the two ``names``, unless they are a valid layout."""
     field = names[0]
     places, present = array(field, positions, (N_BALLS, 2)), flags(names[1], on_table, (N_BALLS,))
     for i, place in enumerate(positions):
-        if any(isinstance(x, bool | np.bool_) for x in place):  # numpy reads them as 0 and 1
+        if any(isinstance(x, bool | np.bool_) for x in place):  # NumPy converts them to 0 and 1
             raise refuse(f"{field}[{i}]", list(place), "must be two real numbers")
     if len(far := np.flatnonzero(np.abs(places).max(axis=1) > FAR)):
         raise refuse(f"{field}[{far[0]}]", places[far[0]].tolist(), f"must be within {FAR:g} m, also off the table")
@@ -69,14 +70,14 @@ def checked_layout(names: tuple[str, str], positions: Any, on_table: Any, table:
 
 
 def check_in_hand(field: str, in_hand: bool, name: str, positions: Floats) -> None:
-    """Raise ValueError if a cue ball in hand does not lie in the D, where it is to be seen until it is placed."""
+    """Raise ValueError if a cue ball in hand does not lie in the D, where it is shown until it is placed."""
     if in_hand and not within_d(*positions[CUE]):
         x, y = positions[CUE].tolist()
         raise refuse(field, in_hand, f"must be False with the cue ball at {name}[{CUE}] = ({x:g}, {y:g}), outside the D")
 
 
 def _check_like(field, value, known):
-    """Raise ValueError unless ``value`` is built like ``known``: dicts with the same keys, and in them values of the same types."""
+    """Raise ValueError unless ``value`` has the structure of ``known``: dicts with the same keys, and values of the same types."""
     if not isinstance(known, dict):
         if type(value) is not type(known):
             raise refuse(field, value, f"must be of type {type(known).__name__}")
@@ -88,7 +89,7 @@ def _check_like(field, value, known):
 
 
 def check_rng(rng: Any, generator: np.random.Generator) -> None:
-    """Raise ValueError unless ``rng`` is a state that the numpy ``generator`` could take over; the generator is left as it is."""
+    """Raise ValueError unless ``rng`` is a state that the NumPy ``generator`` could take. The generator is not changed."""
     trial = type(generator.bit_generator)()
     _check_like("state.rng", rng, trial.state)
     try:
@@ -105,16 +106,16 @@ def check_stream(stream: Any) -> list[int]:
 
 
 def checked(state: Any, table: Table, R: float, generator: np.random.Generator, *, to_play: bool = False) -> State:
-    """The ``State`` that a dict describes; ValueError names the first part that is wrong, or says that there is no shot ``to_play``.
+    """The ``State`` that a dict describes; ValueError names the first invalid part, or says that no shot is left with ``to_play``.
 
-    ``generator``: the numpy Generator that is to take over the part "rng"; it is left as it is.
+    ``generator``: the NumPy generator for the part "rng"; it is not changed.
     """
     check_keys(state, State._fields)
     positions, on_table = checked_layout(("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
     ball_on = BallOn(integer("state.ball_on", state["ball_on"], BallOn.NOTHING, BallOn.BLACK))
     balls = mask_of_present(on_table)
-    if not over:  # then a shot is to be played from here
+    if not over:  # then there must be a shot to play
         lowest = next_on(balls)
         if not on_table[CUE]:
             raise refuse("state.on_table", on_table.tolist(), "must hold the cue ball while the visit goes on")
@@ -136,9 +137,9 @@ def checked(state: Any, table: Table, R: float, generator: np.random.Generator, 
 
 
 def checked_frame(state: Any, miss: MissRule, table: Table, R: float, generator: np.random.Generator) -> FrameState:
-    """The ``FrameState`` that a dict describes, played by the rule ``miss``; ValueError names the first part that is wrong.
+    """The ``FrameState`` that a dict describes, under the miss rule ``miss``; ValueError names the first invalid part.
 
-    ``generator``: the numpy Generator that is to take over the part "rng"; it is left as it is.
+    ``generator``: the NumPy generator for the part "rng"; it is not changed.
     """
     check_keys(state, FrameState._fields)
     positions, on_table = checked_layout(("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R)
@@ -162,7 +163,7 @@ def checked_frame(state: Any, miss: MissRule, table: Table, R: float, generator:
 
 
 def _checked_saved(frame, table, R):
-    """The position to which a frame may return, its layout checked as that of the state itself."""
+    """The position to which a frame may return, with its layout checked like that of the state itself."""
     saved, field = frame.saved, "state.frame.saved.layout"
     if saved.layout is None and not frame.miss_called:
         return saved

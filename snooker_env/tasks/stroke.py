@@ -1,7 +1,7 @@
-"""How is one stroke played, on one table or on thousands? From the action to the balls at rest and what the referee sees of it.
+"""How is one stroke played, on one table or on thousands? From the action to the balls at rest, and the facts for the referee.
 
-Visits and frames play their strokes here: ``address`` (placement, action, execution error, strike), then ``engine.run_batch``, then each
-its own referee. Kernels go over the tables named by ``which``; row j of the ``ShotBuffers`` is the shot on table which[j]. Each table
+Visits and frames play their strokes here: ``address`` (placement, action, execution error, strike), then ``engine.run_batch``; each task
+has its own referee. Kernels loop over the tables named by ``which``; row j of the ``ShotBuffers`` is the shot on table which[j]. Each table
 draws from its own stream (``game.philox``), so that no table's result depends on another, on their number or on the threads.
 """
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._jit import entry, kernel
+from .._shots import count
 from .._types import Bools, Floats, Ints
 from ..game.balls import CUE, N_BALLS, TOUCH, bits
 from ..game.frame_columns import IN_HAND, strikeable
@@ -29,14 +30,14 @@ if TYPE_CHECKING:
     from .options import Rules
 
 AT_ONCE = 1e-9
-"""Contacts nearer than this [s] are simultaneous."""
+"""Contacts within this time [s] are simultaneous."""
 
-# Columns of what is kept of a strike: the five numbers after it, the speed that was intended, and the strike itself, errors included.
+# Columns of a strike: the cue ball's velocity and spin after it, the intended speed, and the strike itself, errors included.
 (VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
 STRIKE_COLUMNS = 11
 
-# Columns of what the referee sees of a stroke: masks of balls, then the paths before it (only where misses are called); and of what he
-# says of it: who played, on which ball (a ``BallOn``), with a free ball or not, his break with it, what it scored, cost, the fouls.
+# Columns of the referee's facts of a stroke: masks of balls, then the clear paths before it (only where misses are called); and of his
+# decision: the player, the ball on (a ``BallOn``), whether he had a free ball, his break with it, points, penalty, fouls.
 (FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS) = range(13)
 SEEN_COLUMNS = 13
 
@@ -61,8 +62,10 @@ def touching_balls(positions, on_table):
 
 @kernel
 def first_struck(event_time, event_what, n_events, touching, speed):
-    """From the log of a shot played at cue speed ``speed`` [m/s]: the masks of the balls that the cue ball struck first, and of those of
-    the balls ``touching`` it before that it moved in leaving."""
+    """From the log of a shot played at cue speed ``speed`` [m/s]: the masks of the balls struck first, and of touching balls moved.
+
+    The second mask holds those of the balls ``touching`` the cue ball before the shot that it moved in leaving.
+    """
     first, start = 0, np.inf
     for e in range(n_events):
         if event_time[e] > start + AT_ONCE:
@@ -77,7 +80,7 @@ def first_struck(event_time, event_what, n_events, touching, speed):
 
 @kernel
 def place(positions, on_table, x, y):
-    """Put the cue ball in hand on the free place of the D nearest to (x, y); it stays where it is if there is none."""
+    """Put a cue ball in hand on the free place of the D nearest to (x, y); it stays where it is if there is none."""
     on_table[CUE] = False
     x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS)
     on_table[CUE] = True
@@ -124,7 +127,7 @@ def address(which, actions, positions, on_table, game, streams, options, noise, 
 
 @kernel
 def see(j, event_time, event_what, n_events, potted, positions, on_table, speed, seen):
-    """What the referee sees of shot j, played from ``positions`` and ``on_table`` (as before it): its row of ``seen``."""
+    """Extract the referee's facts of shot j, played from ``positions`` and ``on_table`` (as before it), into its row of ``seen``."""
     touching = touching_balls(positions, on_table)
     first, moved = first_struck(event_time[j], event_what[j], n_events[j], touching, speed)
     down = 0
@@ -136,13 +139,13 @@ def see(j, event_time, event_what, n_events, potted, positions, on_table, speed,
 
 @kernel
 def write_ruling(j, player, ball_on, free_ball, before, result, seen):
-    """Write down what the referee says of shot j: ``result`` is his ``Ruling``; ``before``: points of the break until then."""
+    """Record the referee's decision on shot j: ``result`` is his ``Ruling``; ``before``: points of the break until then."""
     seen[j, PLAYER], seen[j, WAS_ON], seen[j, FREE] = player, ball_on, free_ball
     seen[j, BREAK], seen[j, SCORED], seen[j, COST], seen[j, FOULS] = before + result.points, result.points, result.penalty, result.fouls
 
 
 class ShotBuffers:
-    """Work space for up to m shots at once, each with a log of ``log`` events and, if wanted, its path."""
+    """Work space for up to m shots at once, each with a log of ``log`` events and optionally its path."""
 
     log: int
     r: Floats
@@ -155,19 +158,19 @@ class ShotBuffers:
     shots: Floats
     """(m, STRIKE_COLUMNS) of each strike, columns ``VX`` to ``ELEVATION``."""
     seen: Ints
-    """(m, SEEN_COLUMNS) what the referee sees and says, columns ``FIRST`` to ``FOULS``."""
+    """(m, SEEN_COLUMNS) facts for the referee and his decision, columns ``FIRST`` to ``FOULS``."""
     event_time: Floats
     event_what: NDArray[np.int32]
     """(m, log) [s] and (m, log, 3): time; kind, i, j of each event."""
     segments: Floats
-    """The paths, if wanted."""
+    """The paths, if they are recorded."""
     status: Ints
     n_events: Ints
     n_segments: Ints
     duration: Floats
     """(m,) how each shot ended, and how long it took [s]."""
     enlarged: "dict[int, ShotBuffers]"
-    """Where the shots of the last run are that needed more room, alone each: row -> its own buffers."""
+    """Shots of the last run that needed a longer log: row -> their own buffers."""
 
     def __init__(self, m: int, log: int = 512, *, path: bool = False):
         self.log = log
@@ -184,7 +187,7 @@ class ShotBuffers:
         return len(self.duration)
 
     def again(self, j: int, log: int) -> "ShotBuffers":
-        """Work space for shot j alone with a log of that length: struck as before, ``r`` and ``here`` to be filled in."""
+        """Work space for shot j alone with a log of that length: struck as before, ``r`` and ``here`` still to be filled."""
         one = ShotBuffers(1, log, path=self.segments.shape[1] > 0)
         one.shots[0], one.seen[0] = shot, _ = self.shots[j], self.seen[j]
         one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
@@ -204,6 +207,12 @@ class ShotBuffers:
 
 def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
     """Play the first m shots of the buffers until all balls are at rest; ``phys``: the packed ``rules.physics``."""
+    count(m)
+    _simulated(buffers, m, rules, phys)
+
+
+def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
+    """The same without counting them."""
     table, (fidelity, n_steps) = rules.table, rules.fidelity
     buffers.enlarged = {}
     engine.run_batch(
@@ -214,15 +223,15 @@ def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
 
 
 def run_again(buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats) -> ShotBuffers:
-    """Shot j, on table k, whose log was full: play it once more with more room, from the table as it lies. Returns its own buffers.
+    """Play shot j, on table k, once more with a longer log, from the table as it lies. Returns its own buffers.
 
-    Raises SimulationError if that is not why it did not end.
+    Raises SimulationError if a full log is not why it did not end.
     """
     one, status = buffers, buffers.status[j]
     while status == Status.LOG_FULL:
         one = buffers.again(j, 4 * one.log)
         one.r[0], one.here[0] = positions, on_table
-        run(one, 1, rules, phys)
+        _simulated(one, 1, rules, phys)  # counted already
         status = one.status[0]
     if status != Status.OK:
         raise SimulationError(f"the shot on table {k} {_WHY[Status(status)]}")

@@ -1,4 +1,4 @@
-"""Do the layouts fit a table? Snooker-v0 deals balls on snooker's bed: a table of one's own must have that bed, with any pockets."""
+"""Do the layouts fit a table? Snooker-v0 deals balls on snooker's bed: a custom table must have that bed, with any pockets."""
 
 from functools import lru_cache
 
@@ -11,15 +11,15 @@ from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike
 
 ROUNDING = 1e-9
-"""Noses, jaws and falls may be off by this [m]."""
+"""Tolerance of noses, jaws and falls [m]."""
 
 
 def table_of(table: TableLike) -> Table:
     """The ``Table`` of an environment's argument. Raises ValueError unless every place that a layout may deal is free on it.
 
-    Spots, rack, D, sprinkled balls and respotted ones all lie where a ball's centre is between the noses, |x| <= 0.86275 and
-    |y| <= 1.75825. So the noses must be where snooker's are, and no jaw or fall may reach a ball there. Only the opened tables hold balls
-    in the mouths of pockets: see ``fitted``.
+    Spots, rack, D, random balls and respotted balls all lie where a ball's centre is between the noses, |x| <= 0.86275 and |y| <= 1.75825.
+    So the noses must be where snooker's are, and no jaw or fall may reach a ball there. Only the opened tables have balls in the mouths of
+    pockets: see ``fitted``.
     """
     cloth = Table.of(table)
     if cloth is UNBOUNDED:
@@ -57,14 +57,14 @@ def _check_pockets(cloth: Table) -> None:
 
 
 def fitted(layout: str, cloth: Table) -> Plan:
-    """The ``Plan`` of a layout on a table that ``table_of`` has passed: without the opened tables that do not fit its pockets."""
+    """The ``Plan`` of a layout on a table that passed ``table_of``: without the opened tables that do not fit its pockets."""
     plan = plan_of(layout)
     return plan_of(layout, _unfit(cloth)) if len(plan.tables) else plan
 
 
 @lru_cache(8)
 def _unfit(cloth: Table) -> tuple[int, ...]:
-    """Which tables of the bank have a ball, dealt as they are or mirrored, in a jaw or over a fall."""
+    """Indices of stored tables with a ball, as dealt or mirrored, in a jaw or over a fall."""
     if cloth is Table.preset("match"):
-        return ()  # the bank was played on it
+        return ()  # the stored tables were played on it
     return tuple(sorted({*cloth.unfit(bank(), BALL_RADIUS), *cloth.unfit(bank() * (-1.0, 1.0), BALL_RADIUS)}))

@@ -1,6 +1,6 @@
-"""What do visits and frames share? n tables side by side: reset, step, infos, states. What differs is in ``visit`` and ``frame``.
+"""What do visits and frames share? n tables side by side: reset, step, infos, states. ``visit`` and ``frame`` hold the differences.
 
-A step of n tables is the same whoever asks: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads.
+A step of n tables is the same for every caller: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads.
 """
 
 from abc import ABC, abstractmethod
@@ -20,21 +20,21 @@ from .played import Played, judged, struck
 
 REALS = ("points", "break", "seconds")
 COUNTS = ("penalty", "pots", "fouls", "ball_on", "first_ball", "events")
-"""What the info of a step says of a stroke in floats and in integers; and "foul", whether ``fouls`` is not 0."""
+"""Entries of a step's info: floats and integers. "foul", whether ``fouls`` is not 0, is added to them."""
 (I_POINTS, I_BREAK, I_SECONDS) = range(3)
 (I_PENALTY, I_POTS, I_FOULS, I_BALL_ON, I_FIRST, I_EVENTS) = range(6)
 
 
 @kernel
 def copy_row(row, to):
-    """Copy one row into another."""
+    """Copy one row to another."""
     for c in range(len(row)):
         to[c] = row[c]
 
 
 @kernel
 def keep_last(k, out):
-    """Keep what table k's rows of the outputs hold where a new episode cannot overwrite it, if there is room; ``out``: six arrays."""
+    """Save table k's rows of the outputs, if there is room, before a new episode overwrites them; ``out``: six arrays."""
     observations, reals, counts, last_observations, last_reals, last_counts = out
     if last_observations.shape[0]:
         copy_row(observations[k], last_observations[k])
@@ -43,8 +43,8 @@ def keep_last(k, out):
 
 
 @kernel
-def tell_stroke(j, k, result, ball_on, seen, duration, n_events, reals, counts):
-    """Write what the info of table k says of shot j, on which the referee gave the ``Ruling`` result."""
+def write_stroke_info(j, k, result, ball_on, seen, duration, n_events, reals, counts):
+    """Write the info of table k for shot j, on which the referee made the ``Ruling`` result."""
     reals[k, I_POINTS], reals[k, I_SECONDS] = result.points, duration[j]
     pots, lowest = 0, -1
     for i in range(N_BALLS - 1, 0, -1):
@@ -55,8 +55,8 @@ def tell_stroke(j, k, result, ball_on, seen, duration, n_events, reals, counts):
 
 
 @kernel
-def tell_nothing(k, ball_on, reals, counts):
-    """Write the info of table k where no stroke was played."""
+def write_empty_info(k, ball_on, reals, counts):
+    """Write the info of table k if no stroke was played."""
     for c in range(reals.shape[1]):
         reals[k, c] = 0.0
     for c in range(counts.shape[1]):
@@ -65,16 +65,17 @@ def tell_nothing(k, ball_on, reals, counts):
 
 
 Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
-"""What is done for some tables, which it is given, in the buffers that it is given."""
+"""Work on some tables, called as ``task(which, buffers)``."""
 
 
 Watch: TypeAlias = Callable[[int, stroke.ShotBuffers, int, bool], None]
-"""Called as ``watch(k, buffers, j, own)`` after each stroke on table k: it is shot j of the buffers, ``own``: the agent's, in a match
-anybody's."""
+"""Called as ``watch(k, buffers, j, own)`` after each stroke on table k, which is shot j of the buffers. ``own``: it is the agent's; in a
+match, either player's.
+"""
 
 
 class StepOutput:
-    """What a step or a reset of n tables returns, in fresh arrays; ``last`` only if one step both ends episodes and starts new ones."""
+    """The results of a step or reset of n tables, in new arrays; ``last`` only if one step both ends and starts episodes."""
 
     observations: Singles
     """(n, size)"""
@@ -84,11 +85,11 @@ class StepOutput:
     """(n,) each"""
     reals: Floats
     counts: Ints
-    """What the infos say: a column for each of ``REALS`` and ``COUNTS``."""
+    """The data of the infos: one column for each of ``REALS`` and ``COUNTS``."""
     last_observations: Singles
     last_reals: Floats
     last_counts: Ints
-    """The same of the episodes that ended where new ones were started; without rows otherwise."""
+    """The same for the episodes that ended where new ones were started; otherwise without rows."""
 
     def __init__(self, n: int, size: int, reals: Sequence[str], counts: Sequence[str], *, last: bool = False):
         self.observations = np.zeros((n, size), np.float32)
@@ -101,19 +102,19 @@ class StepOutput:
 
     @property
     def rows(self) -> tuple[Singles, Floats, Ints, Singles, Floats, Ints]:
-        """What an episode's start overwrites, and where its end is kept."""
+        """The arrays that an episode's start overwrites, and those that keep its end."""
         return self.observations, self.reals, self.counts, self.last_observations, self.last_reals, self.last_counts
 
 
 class Crew:
-    """Who plays: hands the tables out to threads, or not; ``crew(which, task)`` calls ``task(part, buffers)`` for parts of ``which``.
+    """Runs tasks on tables, possibly on several threads: ``crew(which, task)`` calls ``task(part, buffers)`` for parts of ``which``.
 
-    This one plays all in one go. ``generators``: of each table, for an opponent that is asked in Python.
-    ``watch``: who is told of the strokes, if anybody.
+    This class runs everything in one call. ``generators``: one for each table, for an opponent in Python. ``watch``: called after each
+    stroke, or None.
     """
 
     buffers: Any
-    """``ShotBuffers``, or None of a crew that hands out its own."""
+    """``ShotBuffers``, or None for a crew that allocates its own."""
     generators: Sequence[Any]
     watch: Watch | None
 
@@ -121,12 +122,12 @@ class Crew:
         self.buffers, self.generators, self.watch = buffers, generators, watch
 
     def __call__(self, which: Ints, task: Task) -> None:
-        """Do it."""
+        """Run the task."""
         if len(which):
             task(which, self.buffers)
 
     def saw(self, which: Ints, buffers: stroke.ShotBuffers, own: bool) -> None:
-        """The strokes of the tables ``which`` have just been played."""
+        """Report the strokes just played on the tables ``which``."""
         if self.watch is not None:
             for j, k in enumerate(which.tolist()):
                 alone = buffers.enlarged.get(j)
@@ -137,7 +138,7 @@ _T = TypeVar("_T", bound="Tables")
 
 
 class Tables(ABC):
-    """n tables, each in the middle of its own episode, played by the same ``Rules``; ``limit``: steps after which one is truncated."""
+    """n tables, each in the middle of its own episode, with common ``Rules``; ``limit``: steps after which an episode is truncated."""
 
     REALS: tuple[str, ...] = REALS
     COUNTS: tuple[str, ...] = COUNTS
@@ -146,7 +147,7 @@ class Tables(ABC):
     SIZE = 0
     """Numbers in an observation."""
     COLUMNS = 0
-    """Of ``game``."""
+    """Columns of ``game``."""
 
     rules: Rules
     n: int
@@ -158,9 +159,9 @@ class Tables(ABC):
     game: Ints
     """(n, COLUMNS): of ``game.frame_columns``."""
     streams: Words
-    """(n, 2) key and counter of each table's random numbers."""
+    """(n, 2) Key and counter of each table's random stream."""
     begun: Bools
-    """(n,) which tables have an episode, that has perhaps ended."""
+    """(n,) Which tables have an episode, possibly one that has ended."""
     packed: tuple[Floats, Floats, Floats]
     """For the kernels: options of the action, deviations of the noise, physical parameters."""
 
@@ -174,11 +175,11 @@ class Tables(ABC):
         self.packed = rules.packed()
 
     def seed(self, k: int, rng: np.random.Generator) -> None:
-        """Give table k a new stream, its key drawn from a numpy Generator."""
+        """Give table k a new stream with a key drawn from a NumPy generator."""
         self.streams[k] = stream_of(rng)
 
     def output(self, *, last: bool = False, given: Mapping[str, Any] | None = None) -> StepOutput:
-        """Fresh arrays for what a step or reset returns, but for those that are ``given`` by their names."""
+        """New arrays for the results of a step or reset, except for those ``given`` by name."""
         out = StepOutput(self.n, self.SIZE, self.REALS, self.COUNTS, last=last)
         for name, array in (given or {}).items():
             array[...] = 0
@@ -193,7 +194,7 @@ class Tables(ABC):
         return info | {"foul": info["fouls"] != 0}
 
     def infos(self, reals: Floats, counts: Ints, there: Bools) -> dict[str, Any]:
-        """Infos as Gymnasium's vector environments give them: an array a key, and a mask of the tables that it is about."""
+        """Infos in the format of Gymnasium's vector environments: one array for each key, and a mask of the tables that it holds for."""
         infos: dict[str, Any] = {name: column * there for name, column in zip(self.REALS, reals.T, strict=True)}
         infos |= {name: column * there for name, column in zip(self.COUNTS, counts.T, strict=True)}
         infos |= {name: infos[name] != 0 for name in self.FLAGS}
@@ -201,10 +202,10 @@ class Tables(ABC):
         return infos | {f"_{name}": there.copy() for name in infos}
 
     def played(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
-        """The stroke that table k has just seen, shot j of the buffers, and the table as it left it."""
+        """The stroke just played on table k, shot j of the buffers, and the table after it."""
         game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
         if seen[stroke.SCORED]:
-            standing["break_points"] = seen[stroke.BREAK]  # with the stroke that ended the frame, too
+            standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
         return Played(
             shot=buffers.shot(j, self.rules), cue=struck(buffers, j), positions=self.positions[k].copy(), on_table=self.on_table[k].copy(),
             next_on=BallOn(game[BALL_ON]), in_hand=bool(game[IN_HAND]), over=bool(game[OVER]), **judged(seen), **standing,
@@ -215,18 +216,18 @@ class Tables(ABC):
         return balls_on(int(self.game[k, BALL_ON]), mask_of_present(self.on_table[k]))
 
     def action_masks(self, which: Ints | None = None) -> Bools:
-        """Which discrete actions there are on the tables ``which`` (all if None): bool (len(which), discrete_actions.SIZE)."""
+        """Available discrete actions on the tables ``which`` (all if None): bool (len(which), discrete_actions.SIZE)."""
         which = np.arange(self.n) if which is None else which
         out = np.empty((len(which), discrete_actions.SIZE), np.bool_)
         discrete_actions.masks(which, self.positions, self.on_table, self.game, out)
         return out
 
     def ended(self) -> Bools:
-        """On which tables there is nothing more to play: bool (n,)."""
+        """Which tables have no stroke left to play: bool (n,)."""
         return ~self.begun | (self.game[:, OVER] != 0)
 
     def view(self: _T, k: int) -> _T:
-        """Table k as tables of their own, of which there is one; they share its state."""
+        """Table k as a ``Tables`` with one table that shares its state."""
         one = object.__new__(type(self))
         here = slice(k, k + 1)
         for name, value in vars(self).items():
@@ -235,7 +236,7 @@ class Tables(ABC):
         return one
 
     def _columns(self) -> tuple[str, ...]:
-        """Names of the attributes that hold a row a table."""
+        """Names of the attributes that hold one row for each table."""
         return ("positions", "on_table", "game", "streams", "begun")
 
     def interrupted(self) -> None:
@@ -251,30 +252,30 @@ class Tables(ABC):
         )  # fmt: skip
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
-        """Play the shots of the tables ``which`` that have been struck; returns rows of shots that need ``again``, as a list."""
+        """Play the shots of the tables ``which`` that have been struck; returns the rows of shots that need ``again``."""
         m = len(which)
         stroke.run(buffers, m, self.rules, self.packed[2])
         status = buffers.status[:m]
         return np.flatnonzero(status).tolist() if status.any() else []
 
     def again(self, which: Ints, j: int, buffers: stroke.ShotBuffers) -> stroke.ShotBuffers:
-        """Shot j once more with a longer log: its buffers."""
+        """Play shot j once more with a longer log; returns its own buffers."""
         k = which[j]
         return stroke.run_again(buffers, j, k, self.positions[k], self.on_table[k], self.rules, self.packed[2])
 
-    # what each task says for itself ------------------------------------------------------------------------------------------
+    # what each task implements ------------------------------------------------------------------------------------------------
 
     @abstractmethod
     def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
-        """One step of all tables: actions (n, k) float64 that were checked, results into ``out``."""
+        """One step of all tables: checked actions (n, k) float64, results into ``out``."""
 
     @abstractmethod
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
-        """New episodes on the tables ``wanted`` (n,) bool; what a reset returns of all tables into ``out``."""
+        """New episodes on the tables ``wanted`` (n,) bool; the results of the reset for all tables into ``out``."""
 
     @abstractmethod
     def observe(self, which: Ints, player: int = 0) -> Singles:
-        """What ``player`` sees of the tables ``which``: float32 (len(which), SIZE), fresh. A visit has one player."""
+        """The observations of ``player`` on the tables ``which``: float32 (len(which), SIZE), a new array. A visit has one player."""
 
     @abstractmethod
     def get_state(self, k: int) -> dict[str, Any]:
@@ -282,20 +283,20 @@ class Tables(ABC):
 
     @abstractmethod
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> Any:
-        """The sound state that a dict describes, for ``set_state``; ValueError if it is none."""
+        """The valid state that a dict describes, for ``set_state``; ValueError if it is invalid."""
 
     @abstractmethod
     def set_state(self, k: int, state: Any) -> None:
-        """Take over a sound state on table k."""
+        """Restore a valid state on table k."""
 
     @abstractmethod
     def standing(self, k: int) -> dict[str, Any]:
-        """Of a ``Played`` on table k what only the task knows: next_player, next_free_ball, scores, break_points, choice, winner."""
+        """The fields of ``Played`` that the task determines: next_player, next_free_ball, scores, break_points, choice, winner."""
 
     @abstractmethod
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin an episode on table k with a sound position, ``game`` being the row of a visit; its random numbers go on."""
+        """Begin an episode on table k with a valid position; ``game`` is the row of a visit. The random stream goes on."""
 
     @abstractmethod
     def text(self, k: int) -> str:
-        """One line for the pictures."""
+        """One line of text for pictures."""

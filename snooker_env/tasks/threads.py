@@ -1,4 +1,4 @@
-"""How are many tables shared out among threads? In chunks, each thread with work space of its own; whoever asks, the same comes out."""
+"""How are many tables divided among threads? In chunks, with separate work space for each thread; results do not depend on it."""
 
 import os
 import threading
@@ -10,24 +10,30 @@ from .stroke import ShotBuffers
 from .tables import Crew, Task, Watch
 
 CHUNK = 128
-"""Most tables played in one go: few enough for a work space that stays in the cache, enough to make the calls from Python cheap."""
+"""Largest number of tables in one call: few enough for the work space to stay in the cache, enough to make calls from Python cheap."""
 LEAST = 8
-"""Fewest tables that are worth a thread or a chunk of their own."""
+"""Smallest number of tables for which another thread or chunk is worth its cost."""
 
 
 def processors() -> int:
-    """How many processors this process may use: fewer than the machine has, where a scheduler or a container says so.
+    """Return how many processors this process may use: fewer than the machine has if a scheduler or container limits it.
 
     Returns
     -------
     int
+        At least 1.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import processors
+    >>> processors() >= 1
+    True
     """
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 class Threads(Crew):
-    """The crew of many tables: chunks of them, shared out among threads; strokes that somebody watches keep their paths. It may
-    be asked from several threads at once."""
+    """The crew of many tables: chunks divided among threads. Watched strokes keep their paths. Several threads may call it."""
 
     def __init__(self, threads: int, *, watch: Watch | None = None):
         super().__init__(watch=watch)
@@ -36,7 +42,7 @@ class Threads(Crew):
         self._lock = threading.Lock()
 
     def __call__(self, which: Ints, task: Task) -> None:
-        """Share the tables out, a chunk at a time."""
+        """Run the task, one chunk at a time."""
         n = len(which)
         threads = max(1, min(self.threads, n // LEAST))
         even = n if threads == 1 else max(LEAST, -(-n // (4 * threads)))  # shots differ in length
@@ -45,7 +51,7 @@ class Threads(Crew):
 
         def play():
             desk = self._desk(size)
-            for start in starts:  # a range's iterator gives each start once, whichever thread asks
+            for start in starts:  # the threads share one iterator, which yields each start once
                 task(which[start : start + size], desk)
             self._desks.append(desk)
 
@@ -60,12 +66,12 @@ class Threads(Crew):
             play()
         finally:
             for other in others:
-                other.exception()  # wait for all of them, whatever happened
+                other.exception()  # wait for all of them, even after an error
         for other in others:
             other.result()
 
     def _desk(self, size: int) -> ShotBuffers:
-        """Work space for so many shots that nobody else uses."""
+        """Unused work space for that many shots."""
         try:
             desk = self._desks.pop()
         except IndexError:

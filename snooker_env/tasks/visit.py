@@ -1,7 +1,7 @@
 """How is a visit played, on one table or on thousands? Strokes until the first miss, foul or clearance, each table on its own.
 
-A step is ``stroke.address`` and ``stroke.run``, then ``_conclude`` (the referee, reward, observation, info), and for tables that start
-anew ``layouts.deal_tables`` and ``_begin``.
+A step is ``stroke.address`` and ``stroke.run``, then ``_conclude`` (the referee, reward, observation, info); tables that start anew also go
+through ``layouts.deal_tables`` and ``_begin``.
 """
 
 from typing import Any
@@ -21,15 +21,15 @@ from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
 from .states import State, checked
 from .stroke import DOWN, FIRST, MOVED, SPEED, TOUCHING, ShotBuffers, see, write_ruling
-from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, tell_nothing, tell_stroke
+from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, write_empty_info, write_stroke_info
 
 _OK = int(Status.OK)
 
 
 @entry(what="the referee of visits", seconds=4)
 def _conclude(which, positions, on_table, game, r, potted, status, duration, event_time, event_what, n_events, shots, seen, reward, limit,
-              observations, rewards, terminated, truncated, reals, counts):  # fmt: skip
-    """Judge the shots that came to rest and put their tables in order; write everything that a step returns."""
+              one_stroke, observations, rewards, terminated, truncated, reals, counts):  # fmt: skip
+    """Judge the shots that came to rest and update their tables; write all results of the step."""
     for j in range(which.shape[0]):
         if status[j] != _OK:
             continue
@@ -44,20 +44,20 @@ def _conclude(which, positions, on_table, game, r, potted, status, duration, eve
         state[BALL_ON], state[IN_HAND] = ruling.ball_on, ruling.in_hand
         state[POINTS] += ruling.points
         state[STEPS] += 1
-        state[OVER] = ruling.visit_end != VISIT.CONTINUES
+        state[OVER] = one_stroke or ruling.visit_end != VISIT.CONTINUES
         rewards[k] = reward_of(reward, ruling.points, ruling.penalty)
         terminated[k], truncated[k] = state[OVER], state[STEPS] >= limit
         mask = bits(on)
         observe_into(observations[k], p, on, state[BALL_ON], balls_on_kernel(state[BALL_ON], mask), state[IN_HAND], state[POINTS])
-        tell_stroke(j, k, ruling, ball_on, seen, duration, n_events, reals, counts)
+        write_stroke_info(j, k, ruling, ball_on, seen, duration, n_events, reals, counts)
         reals[k, I_BREAK] = state[POINTS]
 
 
 @entry(what="the start of a visit", seconds=1)
 def _begin(which, fresh, in_hand, positions, on_table, game, out):
-    """Write what a reset returns of the tables ``which``; ``fresh``: start visits on them, for which they were dealt.
+    """Write the results of a reset for the tables ``which``; with ``fresh``, start visits on them (already dealt).
 
-    ``out``: ``StepOutput.rows``, whose last arrays get what the rows of these tables held before.
+    ``out``: ``StepOutput.rows``, whose last arrays keep the previous rows of these tables.
     """
     observations, reals, counts, _, _, _ = out
     for j in range(which.shape[0]):
@@ -69,13 +69,13 @@ def _begin(which, fresh, in_hand, positions, on_table, game, out):
             state[POINTS] = state[OVER] = state[STEPS] = 0
         on = balls_on_kernel(state[BALL_ON], mask)
         observe_into(observations[k], positions[k], on_table[k], state[BALL_ON], on, state[IN_HAND], state[POINTS])
-        tell_nothing(k, state[BALL_ON], reals, counts)
+        write_empty_info(k, state[BALL_ON], reals, counts)
         reals[k, I_BREAK] = state[POINTS]
 
 
 @entry
 def observe(which, positions, on_table, game, out):
-    """The flat observations of the tables ``which``: a row of ``out`` each."""
+    """The flat observations of the tables ``which``: one row of ``out`` each."""
     for j in range(which.shape[0]):
         k = which[j]
         on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
@@ -89,11 +89,13 @@ class Visits(Tables):
     COLUMNS = VISIT_COLUMNS
 
     def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
-        """One step of all tables: actions (n, k) float64 that were checked, results into ``out``.
+        """One step of all tables: checked actions (n, k) float64, results into ``out``.
 
-        ``waiting`` (n,) bool: tables that begin a new visit instead of playing; ``same_step``: those whose visit ends begin a new one at
-        once. Raises SimulationError if a shot cannot be computed: its balls are left as they lay, but for a cue ball that was placed; other
-        tables may have been played.
+        ``waiting`` (n,) bool: tables that begin a new visit instead of playing. ``same_step``: tables whose visit ends begin a new one at
+        once.
+
+        Raises SimulationError if a shot cannot be computed. Its balls are then left as they lay, except for a cue ball that was placed;
+        other tables may have been played.
         """
         anew = bool(waiting.any())
 
@@ -119,8 +121,8 @@ class Visits(Tables):
     def _conclude(self, which: Ints, b: ShotBuffers, out: StepOutput) -> None:
         _conclude(
             which, self.positions, self.on_table, self.game, b.r, b.potted, b.status, b.duration, b.event_time, b.event_what, b.n_events,
-            b.shots, b.seen, REWARDS.index(self.rules.reward), self.limit, out.observations, out.rewards, out.terminated, out.truncated,
-            out.reals, out.counts,
+            b.shots, b.seen, REWARDS.index(self.rules.reward), self.limit, self.rules.one_stroke, out.observations, out.rewards,
+            out.terminated, out.truncated, out.reals, out.counts,
         )  # fmt: skip
 
     def _begin(self, which: Ints, out: StepOutput, *, fresh: bool = True) -> None:
@@ -131,7 +133,7 @@ class Visits(Tables):
             _begin(which, fresh, plan.in_hand, self.positions, self.on_table, self.game, out.rows)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
-        """New visits on the tables ``wanted`` (n,) bool; what a reset returns of all tables into ``out``."""
+        """New visits on the tables ``wanted`` (n,) bool; the results of the reset for all tables into ``out``."""
 
         def begin(which, buffers):
             self._begin(which[wanted[which]], out)
@@ -141,13 +143,13 @@ class Visits(Tables):
         crew(np.arange(self.n), begin)
 
     def observe(self, which: Ints, player: int = 0) -> Singles:
-        """What is seen of the tables ``which``: float32 (len(which), SIZE), fresh."""
+        """The observations of the tables ``which``: float32 (len(which), SIZE), a new array."""
         rows = np.empty((len(which), SIZE), np.float32)
         observe(which, self.positions, self.on_table, self.game, rows)
         return rows
 
     def get_state(self, k: int) -> dict[str, Any]:
-        """Table k as JSON types: the parts of a ``states.State`` but "rng"."""
+        """Table k as JSON types: the fields of a ``states.State`` except "rng"."""
         ball_on, in_hand, points, over, _ = self.game[k].tolist()
         return {
             "positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist(), "ball_on": ball_on, "in_hand": bool(in_hand),
@@ -155,27 +157,27 @@ class Visits(Tables):
         }  # fmt: skip
 
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> State:
-        """The ``states.State`` that a dict describes; ValueError if it is not sound, or if it is ``to_play`` and there is no shot left."""
+        """The ``states.State`` that a dict describes; ValueError if it is invalid, or if no shot is left with ``to_play``."""
         return checked(state, self.rules.table, self.rules.physics.R, generator, to_play=to_play)
 
     def set_state(self, k: int, state: State) -> None:
-        """Take over a sound ``states.State`` on table k; its steps are counted from 0."""
+        """Restore a valid ``states.State`` on table k; its steps are counted from 0."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         self.game[k] = state.ball_on, state.in_hand, state.points, state.over, 0
         self.streams[k] = np.array(state.stream, np.uint64)
         self.begun[k] = True
 
     def standing(self, k: int) -> dict[str, Any]:
-        """Of a ``Played`` on table k: there is one player, whose break is his score."""
+        """The fields of ``Played`` for table k: there is one player, whose break is his score."""
         points = int(self.game[k, POINTS])
         return {"next_player": 0, "scores": (points,), "break_points": points, "choice": False, "winner": None, "next_free_ball": False}
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin a visit on table k with a sound position, ``game`` being its row; its random numbers go on."""
+        """Begin a visit on table k with a valid position; ``game`` is its row. The random stream goes on."""
         self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
         self.begun[k] = True
 
     def text(self, k: int) -> str:
-        """One line for the pictures."""
+        """One line of text for pictures."""
         on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
         return f"break {self.game[k, POINTS]}   on: {on}   reds: {int(self.on_table[k, 1:16].sum())}"

@@ -1,8 +1,8 @@
 /**
- * How does the page play? It shows the server's game, moves the balls of each stroke, and sends what the player decides.
+ * How does the page play? It shows the server's game, animates each stroke, and sends the player's strokes and decisions.
  *
- * The server has the game: every answer holds its state, and one request always waits for the next change, whoever makes it. Strokes come as
- * in a replay and are moved by `table.js`; what is shown between strokes is the state.
+ * The server holds the game. Every answer contains its state, and one request always waits for the next change. Strokes arrive in the format of
+ * replays and are animated by `table.js`; between strokes the page shows the state.
  */
 
 import { decode, TableView } from "./table.js";
@@ -51,7 +51,7 @@ class Page {
     act("undo", () => ask("undo", {}));
     act("redo", () => ask("redo", {}));
     by("concede").onclick = () => this.sure("Concede the frame?", "Concede", () => this.try(() => ask("concede", {})));
-    by("new").onclick = () => this.sure("Leave this frame and begin a new one? It cannot be undone.", "New frame", () => this.begin());
+    by("new").onclick = () => this.sure("Leave this frame and begin a new one? This cannot be undone.", "New frame", () => this.begin());
     by("again").onclick = () => this.again();
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", JSON.stringify(await ask("save", {})), "application/json"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
@@ -71,9 +71,9 @@ class Page {
     document.addEventListener("keydown", event => this.key(event));
   }
 
-  // ------------------------------------------------------------------------------------------------------- what the server says
+  // ------------------------------------------------------------------------------------------------------- the server's answers 
 
-  /** Do something that gives the next state, and say so if it is refused. */
+  /** Run a request that returns the next state; show the error if it is refused. */
   async try(what) {
     try {
       const found = await what();
@@ -89,7 +89,7 @@ class Page {
   /** Always wait for the next change. */
   async watch() {
     for (;;) {
-      if (document.hidden) await new Promise(done => document.addEventListener("visibilitychange", done, { once: true })); // another page's turn
+      if (document.hidden) await new Promise(done => document.addEventListener("visibilitychange", done, { once: true })); // another tab is visible
       try {
         this.take(await ask("state", undefined, this.state ? `?after=${this.state.revision}&wait=20` : ""));
       } catch (error) {
@@ -99,7 +99,7 @@ class Page {
     }
   }
 
-  /** A state, if it is newer than what is known. */
+  /** Use a state, if it is newer than the current one. */
   take(state) {
     if (this.state && state.revision <= this.state.revision) return;
     const before = this.state;
@@ -110,7 +110,7 @@ class Page {
     this.catchUp();
   }
 
-  /** Move the balls of all strokes that have not been shown yet, one after the other. */
+  /** Animate all strokes that have not been shown yet, one after the other. */
   async catchUp() {
     if (this.busy) return;
     this.busy = true;
@@ -137,13 +137,13 @@ class Page {
     }
   }
 
-  /** Do two agents play, with a stroke to come? They go on by themselves, each when the stroke before has been seen. */
+  /** Do two agents play, with a stroke to come? The page lets them go on, each after the previous stroke has been shown. */
   get agentsAlone() { return this.state.players.every(name => name !== "person") && this.state.phase !== "over"; }
 
   /** Does the game wait for Continue? Otherwise, between two agents, the button is Pause. */
   get waits() { return this.agentsAlone && this.held || !this.behind && this.state.paused; }
 
-  /** Are there strokes that have not been seen yet? What came of them is not told before. */
+  /** Are there strokes that have not been shown yet? Their results are not shown before. */
   get behind() { return Boolean(this.moving || this.busy || this.played < this.state.strokes); }
 
   goOn() {
@@ -152,7 +152,7 @@ class Page {
     this.show();
   }
 
-  /** Ask before strokes that were played are left behind. */
+  /** Ask for confirmation before a game with strokes is discarded. */
   async sure(question, yes, then) {
     if (!this.state?.strokes || await confirmed(question, yes)) then();
   }
@@ -167,7 +167,7 @@ class Page {
     else by("help").showModal();
   }
 
-  /** The balls as the state has them, and a first aim. */
+  /** Show the balls of the state, and set a first aim. */
   settle() {
     if (this.moving || this.busy) return;
     const { state } = this;
@@ -187,7 +187,7 @@ class Page {
     this.redraw();
   }
 
-  /** A first aim where the table is another one; not while the player places the ball: then what was advised from its own place stays. */
+  /** Set a first aim on a new table; not while the player places the cue ball: then advice for its own place stays. */
   firstAim(state) {
     const key = JSON.stringify([state.ball_on, state.striker, state.strokes, Object.entries(state.positions).filter(([name]) => name !== "cue")]);
     if (key === this.aimed && (this.placing.busy || this.chosen === state.revision || this.aim.held === "ball")) {
@@ -204,10 +204,10 @@ class Page {
 
   // --------------------------------------------------------------------------------------------------------------------- motion
 
-  /** Move the balls of a stroke; resolves when they rest or are skipped. */
+  /** Animate a stroke; resolves when the balls rest or the motion is skipped. */
   move(data) {
     this.last = data;
-    this.told = { ...this.told, player: data.player, on: data.ball_on };
+    this.board = { ...this.board, player: data.player, on: data.ball_on };
     const stroke = decode({ format: "snooker-replay", version: 1, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
     return new Promise(done => {
       this.moving = { stroke, start: null, done };
@@ -218,14 +218,14 @@ class Page {
 
   skip() {
     if (!this.moving) return;
-    const { done } = this.moving, { score, words, player, pots } = this.last, reds = this.told.reds - pots.filter(ball => ball < 16).length;
+    const { done } = this.moving, { score, words, player, pots } = this.last, reds = this.board.reds - pots.filter(ball => ball < 16).length;
     this.moving = null;
-    this.told = { ...this.told, scores: score, break: this.last.break, reds, last: `${this.state.labels[player]}: ${words}` };
+    this.board = { ...this.board, scores: score, break: this.last.break, reds, last: `${this.state.labels[player]}: ${words}` };
     this.show();
     done();
   }
 
-  /** Show no more motion of what has been played. */
+  /** Skip all motion of strokes already played. */
   still() {
     this.played = this.state.strokes;
     this.known.clear();
@@ -245,14 +245,14 @@ class Page {
 
   // ----------------------------------------------------------------------------------------------------------------- the player
 
-  /** May this person play a stroke now? */
+  /** Can this person play a stroke now? */
   get aiming() {
     const { state } = this;
     return Boolean(state) && !this.behind && this.kind === "play" && state.phase === "stroke" && state.players[state.striker] === "person";
   }
 
   async play() {
-    if (!this.aiming || this.sending) return;  // one stroke for one press, however slow the answer
+    if (!this.aiming || this.sending) return;  // one stroke for each press, even if the answer is slow
     const { speed, side, top, aim, elevation } = this.aim.wish, body = { revision: this.state.revision, speed, side, top, aim, elevation };
     if (this.state.in_hand) body.place = [this.balls.x[0], this.balls.y[0]];
     if (by("nominate").value && this.state.nominations.includes(by("nominate").value)) body.nominate = by("nominate").value;
@@ -265,7 +265,7 @@ class Page {
   async send(body) {
     try {
       const { stroke, state, stale } = await ask("stroke", body);
-      if (stale) throw new Error("The table has changed: look, and play again.");
+      if (stale) throw new Error("The table has changed. Check it and play again.");
       if (stroke) this.known.set(state.strokes - 1, stroke);
       this.take(state);
     } catch (error) { this.trouble(error); }
@@ -281,7 +281,7 @@ class Page {
     return saved.format === undefined ? ask("position", { position: saved }) : ask("load", { saved });
   }
 
-  /** Who sits where; an agent that sits down gets the advisor's errors, a person none. */
+  /** Send the players; a new agent gets the advisor's errors, a person none. */
   seats(changed = -1) {
     if (changed >= 0) by(`noise-${changed}`).value = by(`who-${changed}`).value === "person" ? "none" : by("errors").value;
     const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
@@ -302,7 +302,7 @@ class Page {
       if (!(key === "Enter" && event.target.type === "range")) return;
     }
     if ((key === "Enter" || key === " ") && ["BUTTON", "SUMMARY"].includes(tag)) return;
-    if (event.repeat && (key === "Enter" || key === " " || "urv".includes(key))) return;  // a key held down acts once
+    if (event.repeat && (key === "Enter" || key === " " || "urv".includes(key))) return;  // once for a key held down
     if (event.altKey && !key.startsWith("Arrow")) return;
     const turn = event.shiftKey ? 1 : event.altKey ? 0.01 : 0.1, push = event.shiftKey ? 0.5 : 0.1, { side, top } = aim.wish;
     const acts = document.querySelector("dialog[open]") ? key === "?" ? { "?": () => by("help").close() } : {} : this.setup.open ? { Escape: () => this.setup.end() } : {
@@ -320,16 +320,16 @@ class Page {
     event.preventDefault();
   }
 
-  // ---------------------------------------------------------------------------------------------------------------- what is seen
+  // ---------------------------------------------------------------------------------------------------------------- what is shown
 
   /** Words, score and controls. */
   show(before) {
     const { state } = this, busy = this.behind, mine = this.aiming, setup = this.setup.open;
     for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
-    if (!busy) this.told = { scores: state.scores, break: state.break, player: state.striker, last: state.last, reds: state.reds, left: state.available, on: state.ball_on?.replace("_", " ") };
-    const { told } = this, who = state.labels[told.player];
-    by("asked").textContent = setup ? "Set up a position" : !busy ? state.words : this.moving ? `${who} ${who === "You" ? "play" : "plays"}: ${told.on}` : by("asked").textContent;
-    if (by("last").className !== "trouble") by("last").textContent = told.last;
+    if (!busy) this.board = { scores: state.scores, break: state.break, player: state.striker, last: state.last, reds: state.reds, left: state.available, on: state.ball_on?.replace("_", " ") };
+    const { board } = this, who = state.labels[board.player];
+    by("asked").textContent = setup ? "Set up a position" : !busy ? state.words : this.moving ? `${who} ${who === "You" ? "play" : "plays"}: ${board.on}` : by("asked").textContent;
+    if (by("last").className !== "trouble") by("last").textContent = board.last;
     const choosing = state.phase === "choice" && !busy && !setup && state.players[state.striker] === "person";
     by("choices").hidden = !choosing;
     if (choosing && by("choices").dataset.for !== String(state.revision)) {
@@ -358,26 +358,26 @@ class Page {
       if (before !== undefined) { by(`who-${k}`).value = state.players[k]; by(`noise-${k}`).value = state.noise[k]; by("practice").checked = state.practice; }
       const side = by(`side-${k}`);
       side.querySelector(".name").textContent = state.labels[k];
-      side.querySelector("b").textContent = told.scores[k];
-      side.classList.toggle("turn", told.player === k && (busy || state.phase !== "over"));
+      side.querySelector("b").textContent = board.scores[k];
+      side.classList.toggle("turn", board.player === k && (busy || state.phase !== "over"));
     }
     this.score(busy);
   }
 
   score(busy) {
-    const { state, told } = this, dot = name => { const one = make("i"); one.style.background = `rgb(${this.scene.balls[this.names.indexOf(name)].rgb})`; return one; };
-    const put = (id, ...parts) => by(id).replaceChildren(...parts), { on } = told;
-    put("n-break", "break ", make("b", { textContent: told.break }));
+    const { state, board } = this, dot = name => { const one = make("i"); one.style.background = `rgb(${this.scene.balls[this.names.indexOf(name)].rgb})`; return one; };
+    const put = (id, ...parts) => by(id).replaceChildren(...parts), { on } = board;
+    put("n-break", "break ", make("b", { textContent: board.break }));
     if (!on) put("n-on", "frame over");
     else {
       const dots = on === "red" ? ["red 1"] : this.names.includes(on) ? [on] : this.names.slice(16);
       put("n-on", "on ", ...dots.map(dot), make("b", { textContent: on + (!busy && state.free_ball ? " + free ball" : "") }));
     }
-    put("n-reds", "reds ", make("b", { textContent: told.reds }));
-    put("n-left", "left ", make("b", { textContent: told.left }));
+    put("n-reds", "reds ", make("b", { textContent: board.reds }));
+    put("n-left", "left ", make("b", { textContent: board.left }));
   }
 
-  /** What is wrong, beside a place on the table. */
+  /** An error message beside a place on the table. */
   bubble(text, x, y) {
     const bubble = by("bubble");
     bubble.hidden = !text;

@@ -1,5 +1,5 @@
 /**
- * How is a stroke aimed? By pointer, wheel, keys and controls; `Aim` keeps what is asked for and tells of every change.
+ * How is a stroke aimed? By pointer, wheel, keys and controls; `Aim` holds the intended stroke and reports every change.
  *
  * `wish`: {speed [m/s], side, top (tip offset over R, right and up), aim [rad], elevation [rad]}.
  */
@@ -10,7 +10,7 @@ const DEGREE = Math.PI / 180;
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 
 export class Aim {
-  /** app: `view`, `balls` (as shown), `state`, `aiming` (may this person play now?), `scene`, `limits`; changed(event): tell of a change. */
+  /** app: `view`, `balls` (as shown), `state`, `aiming` (can this person play now?), `scene`, `limits`; changed(event): called at every change. */
   constructor(app, changed, place) {
     Object.assign(this, { app, changed, place });
     this.wish = { speed: 2.5, side: 0, top: 0, aim: Math.PI / 2, elevation: 0 };
@@ -45,14 +45,14 @@ export class Aim {
     this.show();
   }
 
-  /** Change some of the wish, and tell. */
+  /** Change parts of the stroke, and report it. */
   set(part, event) {
     Object.assign(this.wish, part);
     this.show();
     this.changed(event);
   }
 
-  /** Turn the aim by so many degrees; more is anticlockwise on screen, too. */
+  /** Turn the aim by degrees, anticlockwise for positive ones. */
   turn(degrees, event) { this.set({ aim: this.wish.aim + degrees * DEGREE }, event); }
 
   tip(side, top, event) {
@@ -92,7 +92,7 @@ export class Aim {
     }
   }
 
-  // ------------------------------------------------------------------------------------------------------------- what is seen
+  // ------------------------------------------------------------------------------------------------------------- what is shown
 
   show() {
     const { wish } = this, around = ((90 - wish.aim / DEGREE) % 360 + 360) % 360;
@@ -117,9 +117,9 @@ export class Aim {
       pen.beginPath(); pen.arc(x, y, r, 0, 2 * Math.PI); pen.fill();
     };
     pen.clearRect(0, 0, size, size);
-    const look = pen.createRadialGradient(c - 0.3 * R, c - 0.35 * R, 0.1 * R, c, c, R);
-    look.addColorStop(0, "#fffdf2"); look.addColorStop(0.7, "#efe9d6"); look.addColorStop(1, "#a49d89");
-    disc(c, c, R, look);
+    const shade = pen.createRadialGradient(c - 0.3 * R, c - 0.35 * R, 0.1 * R, c, c, R);
+    shade.addColorStop(0, "#fffdf2"); shade.addColorStop(0.7, "#efe9d6"); shade.addColorStop(1, "#a49d89");
+    disc(c, c, R, shade);
     pen.strokeStyle = "#0003"; pen.lineWidth = ratio;
     pen.beginPath(); pen.moveTo(c - R, c); pen.lineTo(c + R, c); pen.moveTo(c, c - R); pen.lineTo(c, c + R); pen.stroke();
     pen.setLineDash([3 * ratio, 3 * ratio]); pen.strokeStyle = "#0006";
@@ -129,7 +129,7 @@ export class Aim {
     disc(x, y, 0.15 * R, "#2c5f93"); disc(x, y, 0.06 * R, "#9cc4ea");
   }
 
-  /** What is drawn of the aim: straight line, ring at first contact, where the ball struck would go, the cue. */
+  /** Drawing of the aim: straight line, ring at the first contact, direction of the object ball, the cue. */
   overlay() {
     const { app, wish } = this, { balls, scene: { extent }, view: { R } } = app, met = firstContact(balls, 0, wish.aim, extent, R);
     const lines = [{ points: [[balls.x[0], balls.y[0]], [met.x, met.y]], colour: [255, 255, 255], width: 0.003 }];

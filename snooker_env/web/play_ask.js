@@ -1,8 +1,8 @@
 /**
- * What does the advisor say, and where would the balls stop? Its list of strokes, and the clouds of where cue ball and object ball rest.
+ * What does the advisor say, and where would the balls stop? Its list of strokes, and clouds of the stopping points of cue ball and object ball.
  *
- * While a stroke is dragged one question is under way at a time, and the latest waits. `times` keeps how long it took from an input to the
- * picture that shows its clouds [ms].
+ * While a stroke is dragged, one request is sent at a time, and the latest waits. `times` holds the times from an input to the picture that
+ * shows its clouds [ms].
  */
 
 import { ask, by, fill, Latest, make, pairs } from "./play_parts.js";
@@ -11,7 +11,7 @@ const CUE_CLOUD = [255, 255, 255], BALL_CLOUD = [255, 196, 60];
 const CELL = 0.02;
 const RAIL = 0.1;
 
-/** Places as a smooth map: counts in cells, each spread over its neighbours. */
+/** Points as a smooth map: counts in cells, each spread over its neighbours. */
 export function cloud(places, extent, rgb) {
   const [[x0, x1], [y0, y1]] = extent, nx = Math.ceil((x1 - x0) / CELL), ny = Math.ceil((y1 - y0) / CELL);
   let values = new Float32Array(nx * ny);
@@ -42,13 +42,13 @@ export class Advisor {
     by("advise").onclick = () => this.advise();
   }
 
-  /** The choices that the server has. */
+  /** Fill in the choices that the server offers. */
   offer(facts) {
     fill(by("agent"), facts.agents);
     fill(by("errors"), facts.noise, by("errors").value || "professional");
   }
 
-  /** The table is another one: what was said is no longer about it. */
+  /** The table has changed: earlier advice no longer applies. */
   clear() {
     this.list = [];
     this.hover = this.found = null;
@@ -58,7 +58,7 @@ export class Advisor {
     by("odds").textContent = "";
   }
 
-  /** The cue ball in hand lies elsewhere: suggestions that come with their own place still hold. */
+  /** The cue ball in hand was moved: suggestions with their own place remain valid. */
   placed() {
     this.found = null;
     if (!this.list.every(one => one.place)) this.clear();
@@ -75,7 +75,7 @@ export class Advisor {
     });
   }
 
-  /** The stroke has changed, or who is to play it. */
+  /** The stroke or its player has changed. */
   changed(event) {
     const { app } = this;
     if (!app.aiming || !by("map").checked) { this.found = null; this.wait.drop(); this.say(); app.redraw(); return; }
@@ -120,7 +120,7 @@ export class Advisor {
   async advise() {
     const button = by("advise"), { app } = this, { revision } = app.state;
     button.disabled = true;
-    button.textContent = "Looking …";
+    button.textContent = "Thinking …";
     try {
       const { suggestions } = await ask("advise", { agent: by("agent").value, noise: by("errors").value, n: 5, revision });
       if (suggestions && revision === app.state.revision) this.show(suggestions);
@@ -137,10 +137,10 @@ export class Advisor {
       const [low, high] = one.points_interval.map(value => value.toFixed(1));
       const button = make("button", { type: "button" }, one.words, make("small", { textContent: `points ${low} to ${high} (95 % interval)` }));
       button.setAttribute("aria-pressed", "false");
-      button.onpointerenter = event => event.pointerType === "mouse" && this.look(k, event);
-      button.onfocus = event => this.look(k, event);
-      button.onpointerleave = event => event.pointerType === "mouse" && this.look(-1, event);
-      button.onblur = event => this.look(-1, event);
+      button.onpointerenter = event => event.pointerType === "mouse" && this.preview(k, event);
+      button.onfocus = event => this.preview(k, event);
+      button.onpointerleave = event => event.pointerType === "mouse" && this.preview(-1, event);
+      button.onblur = event => this.preview(-1, event);
       button.onclick = event => this.adopt(k, event);
       return make("li", {}, button);
     });
@@ -150,8 +150,8 @@ export class Advisor {
     this.app.redraw();
   }
 
-  /** Show a suggestion and its clouds; -1: the own stroke again. */
-  look(k, event) {
+  /** Show a suggestion and its clouds; -1: the player's stroke again. */
+  preview(k, event) {
     const one = this.list[k] ?? null;
     if (one === this.hover) return;
     this.hover = one;
@@ -161,7 +161,7 @@ export class Advisor {
     this.app.redraw();
   }
 
-  /** Take a suggestion's stroke as one's own. */
+  /** Take over the stroke of a suggestion. */
   adopt(k, event) {
     const one = this.list[k], { app } = this;
     by("advice").querySelectorAll("button").forEach((button, j) => button.setAttribute("aria-pressed", String(j === k)));
@@ -174,7 +174,7 @@ export class Advisor {
     app.aim.set({ speed: one.speed, side: one.side, top: one.top, aim: one.aim, elevation: one.elevation }, event);
   }
 
-  /** What is drawn of it: the clouds, paths without errors, all suggestions' lines while none is looked at. */
+  /** Drawing of the advice: the clouds, paths without errors, and the lines of all suggestions while none is previewed. */
   overlay() {
     const out = { heat: this.found?.heat ?? [], lines: [], rings: [] }, { balls } = this.app.scene;
     const tint = ball => balls[ball].rgb.map(value => Math.round(value + (255 - value) / 3));

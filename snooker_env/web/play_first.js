@@ -1,7 +1,7 @@
 /**
- * Where does a first aim point? At the ball on with the widest pot, else at one that the cue ball can reach, thinly while the pack is whole.
+ * Where does a first aim point? At the ball on with the widest pot, else at a reachable one, thinly while the pack is whole.
  *
- * A player who only presses Play then commits no foul that could have been avoided.
+ * So a player who only presses Play commits no avoidable foul.
  */
 
 import { firstContact } from "./play_parts.js";
@@ -9,7 +9,7 @@ import { firstContact } from "./play_parts.js";
 const OFFSETS = [0, 0.5, -0.5, 0.8, -0.8, 0.93, -0.93];
 const PACK = 12;
 
-/** The aim [rad] for a state, or `otherwise` where nothing is on. balls: as shown; names: of balls by their index. */
+/** The aim [rad] for a state, or `otherwise` if nothing is on. balls: as shown; names: of the balls by index. */
 export function firstAim(state, balls, names, extent, R, otherwise) {
   const [cx, cy] = state.positions.cue, on = new Set(state.balls_on.map(name => names.indexOf(name)));
   const met = aim => firstContact(balls, 0, aim, extent, R).ball;

@@ -1,19 +1,19 @@
 /**
- * What do the parts of the page share? Asking the server, elements by their id, and the straight lines of an aim.
+ * What do the parts of the page share? Requests to the server, elements by id, and the straight lines of an aim.
  *
  * Frame as in `table.js`: metres, origin at the table's centre, +x to the yellow side, +y to the black end; directions anticlockwise from +x.
  */
 
 export const by = id => document.getElementById(id);
 
-/** An element of its own. */
+/** Create an element. */
 export function make(tag, properties = {}, ...inside) {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...inside);
   return made;
 }
 
-/** Fill a list of choices, and keep what is chosen where it is still there. */
+/** Fill a list of choices, and keep the selection if it is still there. */
 export function fill(select, values, chosen = select.value, words = value => value.replaceAll("_", " ")) {
   const wanted = values.join("\n");
   if (select.dataset.values !== wanted) {
@@ -23,7 +23,7 @@ export function fill(select, values, chosen = select.value, words = value => val
   if (values.includes(chosen)) select.value = chosen;
 }
 
-/** Ask the player in the page; whether he says yes. */
+/** Ask the player for confirmation; resolves to true for yes. */
 export function confirmed(question, yes) {
   const box = by("confirm");
   by("confirm-words").textContent = question;
@@ -33,7 +33,7 @@ export function confirmed(question, yes) {
   return new Promise(done => { box.onclose = () => done(box.returnValue === "yes"); });
 }
 
-/** What the server said was wrong. */
+/** An error that the server reported. */
 export class ServerError extends Error {
   constructor(error) {
     super(error.field ? `${error.field}${error.value === null || String(error.value).length > 60 ? "" : ` = ${error.value}`}: ${error.message}` : error.message);
@@ -41,7 +41,7 @@ export class ServerError extends Error {
   }
 }
 
-/** Ask the server: with a body a POST, else a GET. */
+/** Send a request: POST with a body, else GET. */
 export async function ask(name, body, query = "") {
   const options = body === undefined ? {} : { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) };
   const reply = await fetch(`api/${name}${query}`, options);
@@ -51,13 +51,13 @@ export async function ask(name, body, query = "") {
   return found;
 }
 
-/** Asks one thing at a time: of what is asked meanwhile only the latest is asked next. `then(answer, about)`, `wrong(error, about)`. */
+/** Sends one request at a time; of those made meanwhile, only the latest is sent next. `then(answer, about)`, `wrong(error, about)`. */
 export class Latest {
   constructor(name, then, wrong = () => {}) {
     Object.assign(this, { name, then, wrong, busy: false, next: null });
   }
 
-  /** Ask with this body; `about` is handed back with the answer. */
+  /** Send a request with this body; `about` is passed on with the answer. */
   async ask(body, about) {
     if (this.busy) { this.next = [body, about]; return; }
     this.busy = true;
@@ -70,20 +70,20 @@ export class Latest {
     if (this.next) { const next = this.next; this.next = null; this.ask(...next); }
   }
 
-  /** Forget what waits. */
+  /** Drop the waiting request. */
   drop() { this.next = null; }
 }
 
 /** Numbers of 32 bits in base64, in pairs. */
 export const pairs = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 
-/** How far a point at c runs along (ux, uy) until it is R from the noses of a bed. */
+/** Distance from c along (ux, uy) to the points R away from the noses of a bed. */
 export function toCushion(cx, cy, ux, uy, [[x0, x1], [y0, y1]], R) {
   const along = (from, way, low, high) => (way > 1e-12 ? (high - R - from) / way : way < -1e-12 ? (low + R - from) / way : Infinity);
   return Math.max(0, Math.min(along(cx, ux, x0, x1), along(cy, uy, y0, y1)));
 }
 
-/** Where ball `which`, sent from its place at `aim`, first is when it meets a ball or a cushion: {x, y, ball (-1: cushion), run}. */
+/** Place of ball `which`, sent in the direction `aim`, when it first meets a ball or a cushion: {x, y, ball (-1: cushion), run}. */
 export function firstContact(balls, which, aim, extent, R) {
   const ux = Math.cos(aim), uy = Math.sin(aim), cx = balls.x[which], cy = balls.y[which];
   let run = toCushion(cx, cy, ux, uy, extent, R), ball = -1;
@@ -104,7 +104,7 @@ export function intoD(x, y, lines) {
   return far <= radius ? [x, ay - depth] : depth === 0 ? [Math.max(-radius, Math.min(radius, x)), ay] : [x * radius / far, ay - depth * radius / far];
 }
 
-/** A file for the user to keep. */
+/** Download a file. */
 export function keep(name, text, type) {
   const link = make("a", { href: URL.createObjectURL(new Blob([text], { type })), download: name });
   link.click();

@@ -1,5 +1,5 @@
 /**
- * How is a position set up? Balls are dragged on the table and off it, and the server says at once what cannot be.
+ * How is a position set up? Balls are dragged on the table and off it, and the server validates every change.
  */
 
 import { ask, by, fill, Latest, make, ServerError } from "./play_parts.js";
@@ -51,7 +51,7 @@ export class SetUp {
     this.app.mode("play");
   }
 
-  /** The position as the protocol takes it, and which ball each red in it is. */
+  /** The position in the format of the protocol; also records which ball each red in it is. */
   request() {
     const { x, y, on } = this.balls, position = { reds: [] };
     this.reds = [];
@@ -79,7 +79,7 @@ export class SetUp {
     } catch (error) { this.complain(error); }
   }
 
-  /** Say what is wrong, beside the ball that it is about. */
+  /** Show an error beside the ball that it is about. */
   complain(error) {
     if (!this.open) return;
     const red = /^reds\[(\d+)\]/.exec(error?.field ?? ""), named = this.names.indexOf((error?.field ?? "").replace(/\[.*/, ""));
@@ -91,7 +91,7 @@ export class SetUp {
     this.app.redraw();
   }
 
-  /** What is wrong, in plain words. */
+  /** The error in plain words. */
   plain(error) {
     const called = name => (/^reds?\b/.test(name) ? "red" : name === "cue" ? "cue ball" : name.replaceAll("_", " ")), ball = called(error.field ?? "");
     const said = error.said ?? error.message, on = String(error.value ?? "").replace(/'/g, ""), other = /^overlaps ([a-z]+(\[\d+\])?) at/.exec(said)?.[1];

@@ -1,18 +1,18 @@
 /**
  * How is a table drawn in a browser, and how does a replay play? By one module on a 2-D canvas; it loads nothing.
  *
- * `decode` makes strokes that know where every ball is at any time: each phase of its motion is a closed form, in the arithmetic of
- * `physics/cloth.py`: places equal the simulation's. `TableView` draws a table from its scene, `mount` makes a `Player` of a replay.
+ * `decode` makes strokes that give every ball's place at any time: each phase of motion is a closed form, in the arithmetic of
+ * `physics/cloth.py`, so places equal the simulation's. `TableView` draws a table from its scene, `mount` makes a `Player`.
  *
  * Frame: origin at the table's centre, +x to the yellow side, +y to the black end, SI units. On screen +y goes right and +x down.
  *
- * Beyond the obvious: a frame may have `depth` (0 on the cloth to 1 gone into a pocket), a line a `path` (Path2D in metres); a player's options are
+ * A frame may have `depth` (0 on the cloth, 1 gone into a pocket), a line a `path` (Path2D in metres). A player's options are
  * `autoplay`, `speed`, `paths`, `ghosts`, `spin` ("cue", "all", "off"), `labels`, `fill` (as high as its parent), `keys` (what listens),
  * `onstroke(stroke)`, `ontime(t, stroke)`, `onend()`.
  */
 
 const GONE = 0, ROLL = 2, SLIDE = 3, FALLING = 4, BEND = 5, BALL_BALL = 0;
-/** Words for events, by kind; one without is no stop for a step. */
+/** Words for events, by kind; a kind without is no stop for a step. */
 const EVENTS = ["touches", "meets a cushion", "meets a jaw", "is potted", "rolls", "rests", "drops", "comes back"];
 const { PI, abs, atan2, ceil, cos, floor, hypot, max, min, round, sign, sin, sqrt } = Math, TURN = 2 * PI;
 
@@ -21,7 +21,7 @@ const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
 const css = (rgb, alpha = 1) => (rgb.map ? `rgba(${rgb.map(round)},${alpha})` : rgb);
 /** A colour, darker or lighter. */
 const lit = (rgb, light) => rgb.map(value => min(255, value * light));
-/** A colour on the way from one to another. */
+/** A colour between two. */
 const mix = (a, b, share) => a.map((value, k) => value + (b[k] - value) * share);
 
 /** Numbers from base64. */
@@ -87,7 +87,7 @@ class Stroke {
 	/** The table at rest. */
 	get end() { return this.at(this.duration); }
 
-	/** The orientation of a ball at time t, a quaternion: the same whichever way a time is come to. */
+	/** The orientation of a ball at time t, a quaternion that depends on t alone. */
 	turn(ball, t) {
 		const k = this.find(ball, t), log = this.logs[ball], before = this.previous, known = this.turns.get(ball) ?? []; // at the start, then of each segment
 		this.turns.set(ball, known);
@@ -111,7 +111,7 @@ class Stroke {
 		return step(start.steps[whole], t0 + whole * STEP, t);
 	}
 
-	/** Add a ball's way until time t to two paths in metres. A parabola is a quadratic curve, exactly. */
+	/** Add a ball's path until time t to two paths in metres. A parabola is a quadratic curve, exactly. */
 	trace(ball, t, slide, roll) {
 		this.logs[ball].forEach((segment, j, log) => {
 			const { t0, x, y, vx, vy, state } = segment, end = min(t, log[j + 1]?.t0 ?? this.duration), half = (end - t0) / 2;
@@ -135,7 +135,7 @@ function sheet(width, height) {
 	return [canvas, canvas.getContext("2d")];
 }
 
-/** Grain for cloth and wood, always the same. */
+/** Grain for cloth and wood, reproducible. */
 function unrest(strength) {
 	const [canvas, pen] = sheet(256, 256), image = pen.createImageData(256, 256);
 	for (let k = 0, seed = 1; k < 65536; k++) {
@@ -170,7 +170,7 @@ function disc(pen, x, y, radius, filling, ...stops) {
 /** A disc with a gradient from its middle to its edge. */
 function glow(pen, x, y, radius, ...stops) { disc(pen, x, y, radius, pen.createRadialGradient(x, y, 0, x, y, radius), ...stops); }
 
-/** A pen that draws such lines from here on. */
+/** Set a pen's line style. */
 const nib = (pen, strokeStyle, lineWidth) => Object.assign(pen, { strokeStyle, lineWidth });
 
 function polyline(pen, points, width, colour) {
@@ -180,7 +180,7 @@ function polyline(pen, points, width, colour) {
 	nib(pen, colour, width).stroke();
 }
 
-/** Draws a table; what never moves, once for each size. */
+/** Draws a table; its constant parts once for each size. */
 export class TableView {
 	constructor(canvas, scene) {
 		Object.assign(this, { canvas, scene, R: scene.ball_radius });
@@ -199,7 +199,7 @@ export class TableView {
 		return [y1 - y0 + out, x1 - x0 + out];
 	}
 
-	/** Fit the canvas as it is laid out now. */
+	/** Fit the canvas to its layout. */
 	resize() {
 		const { canvas, scene } = this, [[x0, x1], [y0, y1]] = scene.extent, [wide, high] = TableView.size(scene);
 		this.ratio = min(devicePixelRatio, 3);
@@ -220,7 +220,7 @@ export class TableView {
 	/** The canvas's own pixels of a place [m]. */
 	pixel(x, y) { return [this.left + this.scale * y, this.top + this.scale * x]; }
 
-	/** From here on a pen draws in metres. */
+	/** Let a pen draw in metres. */
 	metres(pen) { pen.setTransform(0, this.scale, this.scale, 0, this.left, this.top); }
 
 	/** The table without balls, as a canvas. */
@@ -356,7 +356,7 @@ export class TableView {
 		fill(pen, colour);
 	}
 
-	/** Draw the table with what lies on it now; of a frame only x, y and on must be there. */
+	/** Draw the table with a frame, of which only x, y and on are required. */
 	draw(frame) {
 		this.still ??= this.paint();
 		const { pen, scene, ink, ratio, scene: { extent: [[x0, x1], [y0, y1]] } } = this, radius = this.R * this.scale;
@@ -389,7 +389,7 @@ export class TableView {
 		this.pen.drawImage(image, px - wide, py - wide, 2 * wide, 2 * wide);
 	}
 
-	/** A ball on its way into the pocket at hand: darker, smaller, further in. */
+	/** A ball falling into the nearest pocket: darker, smaller, further in. */
 	falling(x, y, depth, rgb) {
 		const [u, v] = this.scene.falls.find(fall => hypot(fall[0] - x, fall[1] - y) < 0.2) ?? [x, y];
 		const part = sqrt(depth) / 2;
@@ -433,7 +433,7 @@ export class TableView {
 		pen.resetTransform();
 	}
 
-	/** Cells, ny rows along y of nx along x, the stronger the more is in them. */
+	/** Cells, ny rows along y of nx along x, stronger for larger values. */
 	heat({ x0, y0, cell, nx, ny, values, rgb }) {
 		const [canvas, p] = sheet(nx, ny), image = p.createImageData(nx, ny), most = values.reduce((a, b) => max(a, b), 0) || 1;
 		for (let k = 0; k < nx * ny; k++) image.data.set([...rgb, 225 * sqrt(values[k] / most)], 4 * k);
@@ -474,7 +474,7 @@ const COMMANDS = [
 	["s", "spots that show spin", "spin", "flip", "spin"], ["l", "letters on balls", "labels", "flip", "labels"],
 	["Home", "first moment", "", "seekTotal", 0], ["End", "last moment", "", "seekTotal", Infinity], ["?", "help", "?", "help"], ["Esc", "close this", "", "help", true],
 ];
-/** What keys are called above. */
+/** Names of keys above. */
 const NAMES = { " ": "Space", Escape: "Esc", ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓" };
 const ICONS = { play: "M7 4v16l13-8z", pause: "M6 4h4v16H6zM14 4h4v16h-4z", on: "M4 5l8 7-8 7zM12 5l8 7-8 7z", next: "M9 5l8 7-8 7z",
 	back: "M20 5l-8 7 8 7zM12 5l-8 7 8 7z", last: "M15 5l-8 7 8 7z" };
@@ -691,7 +691,7 @@ export class Player {
 		this.options.ontime?.(this.t, this.k);
 	}
 
-	/** Words and buttons, left alone while they stay the same. */
+	/** Update words and buttons if they have changed. */
 	say() {
 		const { k, playing, speed, show, t, replay: { scene: { balls }, title } } = this, stroke = this.strokes[k], { cue } = stroke, over = t >= stroke.duration;
 		const event = !playing && stroke.events.findLast(one => one[0] === t && EVENTS[one[1]]), reds = this.shown.on.slice(1, 16).filter(Boolean).length;
@@ -704,8 +704,8 @@ export class Player {
 		for (const name in show) this.buttons[name].setAttribute("aria-pressed", ![false, "off"].includes(show[name]));
 		const about = [`${k + 1} of ${this.strokes.length}`, cue && `${cue.speed.toFixed(2)} m/s`, cue?.elevation > 0.1 && `raised ${round(cue.elevation * 360 / TURN)}°`];
 		this.part("about").lastChild.textContent = about.filter(Boolean).join(" · ");
-		const told = event && `${t.toFixed(3)} s: ${balls[event[2]].name} ${EVENTS[event[1]]} ${event[1] === BALL_BALL ? balls[event[3]].name : ""}`;
-		this.part("words").textContent = (over && stroke.words) || told || title || "";
+		const what = event && `${t.toFixed(3)} s: ${balls[event[2]].name} ${EVENTS[event[1]]} ${event[1] === BALL_BALL ? balls[event[3]].name : ""}`;
+		this.part("words").textContent = (over && stroke.words) || what || title || "";
 		this.drawTip(cue);
 		if (this.who.length) this.score(stroke, over, reds);
 	}

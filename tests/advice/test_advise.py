@@ -154,7 +154,7 @@ def test_advice_is_json_and_a_sequence():
     assert advice[0].words == str(advice[0])
 
 
-def test_the_world_may_be_chosen():
+def test_physics_table_and_fidelity_may_be_chosen():
     usual, slow = (sn.advise(ENDGAME, n=1, options=o, **QUICK)[0] for o in (None, {"physics": {"mu_r": 0.02}, "table": "tight"}))
     assert usual.to_dict() != slow.to_dict()
     env = sn.SnookerEnv(physics={"mu_r": 0.02}, table="tight")

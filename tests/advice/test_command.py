@@ -13,10 +13,10 @@ def test_the_command_prints_advice(tmp_path, capsys):
     OPEN.save(file)
     few = ["--position", str(file), "--agent", "ghost_ball", "--n", "2", "--samples", "30", "--visits", "2"]
     assert main(few) == 0
-    told = capsys.readouterr().out.splitlines()
+    printed = capsys.readouterr().out.splitlines()
     advice = sn.advise(OPEN, agent="ghost_ball", n=2, samples=30, visits=2)
-    assert [line for line in told if not line.startswith("   ")] == str(advice).splitlines()
-    assert "(95 %); cue ball stops at (" in told[1] and len(told) == 2 * len(advice)
+    assert [line for line in printed if not line.startswith("   ")] == str(advice).splitlines()
+    assert "(95 %); cue ball stops at (" in printed[1] and len(printed) == 2 * len(advice)
     assert main([*few, "--json"]) == 0 and json.loads(capsys.readouterr().out) == advice.to_dict()
 
 

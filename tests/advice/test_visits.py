@@ -18,7 +18,7 @@ def action(at, pick):
     return np.array([[2.0 * (speed - 0.2) / (7.0 - 0.2) - 1.0, 0.0, 2.0 * top, turns]])
 
 
-def by_hand(position, visit, visits, seed, noise):
+def by_plain_python(position, visit, visits, seed, noise):
     """Points of the rest of one visit, number ``visit`` of so many, and its strokes."""
     at, exact, noisy = Positions.of(position), Planner({}), Planner({"noise": noise})
     spread, total, strokes = spread_of(LEVELS[noise]), 0.0, 0
@@ -45,7 +45,7 @@ def test_visits_are_played_on_stroke_by_stroke(noise):
     positions = [OPEN, ENDGAME, OPEN, ENDGAME, OPEN]
     numbers = np.array([0, 0, 1, 3, 2])
     found = played_on(practice_of(noise), Positions.of(positions), numbers, 7)
-    own = [by_hand(position, visit, 4, 7, noise) for position, visit in zip(positions, numbers.tolist(), strict=True)]
+    own = [by_plain_python(position, visit, 4, 7, noise) for position, visit in zip(positions, numbers.tolist(), strict=True)]
     assert found.tolist() == [total for total, _ in own]
     assert max(strokes for _, strokes in own) > 2 and len(set(found.tolist())) > 2
 

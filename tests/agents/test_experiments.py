@@ -29,9 +29,9 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
     recipes = [train.recipe_of(train.Settings(**train.parse(run)[1])) for run in runs]
     assert {recipe.name for recipe in recipes} == {"ppo_foresight", "ppo_mask", "ppo_absolute", "ppo_target", "tqc_target"}
     for comparison in comparisons:
-        told = parser().parse_args(comparison)
-        assert told.json.suffix == ".json" and told.markdown.with_suffix(".json") == told.json
-        for agent in told.agent:
+        parsed = parser().parse_args(comparison)
+        assert parsed.json.suffix == ".json" and parsed.markdown.with_suffix(".json") == parsed.json
+        for agent in parsed.agent:
             label, equals, folder = agent.partition("=")
             assert folder.startswith(f"{tmp_path}/") if equals else label in (*NAMES, "ppo_mask")
 

@@ -14,11 +14,12 @@ import pytest
 from sb3_contrib import MaskablePPO
 
 import train
-from agents.evaluation import rollouts, training_summary
+from agents.evaluation import training_summary
 from agents.learning import callback
 from agents.players.built_in import GhostBall, Random
 from agents.players.by_name import player_of
 from agents.players.trained import load_player
+from snooker_env.benchmark import play_visits, summary, tables_of
 
 ROOT = Path(__file__).resolve().parents[2]
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
@@ -81,7 +82,7 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
 
 @pytest.mark.parametrize("agent", AGENTS)
 def test_saved_model_plays_as_it_was_judged(finished, agent):
-    again = rollouts.summary(rollouts.play(load_player(finished / agent / "model.zip"), 4))
+    again = summary(play_visits(load_player(finished / agent / "model.zip"), 4))
     assert again == results(finished / agent)["evaluation"]["trained"]
 
 
@@ -169,12 +170,12 @@ def test_resume_refuses_other_settings(finished, capsys):
 
 def test_existing_run_is_not_overwritten(finished, tmp_path, capsys):
     before = (finished / "ppo_mask" / "checkpoint.pkl").read_bytes()
-    assert "--resume goes on with it" in refused(capsys, "--out", str(finished / "ppo_mask"))
+    assert "--resume continues it" in refused(capsys, "--out", str(finished / "ppo_mask"))
     assert (finished / "ppo_mask" / "checkpoint.pkl").read_bytes() == before
     (tmp_path / "thesis.txt").write_text("mine")
     assert "thesis.txt" in refused(capsys, "--out", str(tmp_path))
     assert "holds no checkpoint" in refused(capsys, "--resume", "--out", str(tmp_path))
-    assert "noise = 'pro'" in refused(capsys, "--noise", "pro", "--out", str(tmp_path))  # wrong options are told first
+    assert "noise = 'pro'" in refused(capsys, "--noise", "pro", "--out", str(tmp_path))  # wrong options are reported first
 
 
 @pytest.mark.parametrize(
@@ -238,7 +239,7 @@ def test_resume_refuses_a_broken_checkpoint(finished, tmp_path, capsys):
     for content in (b"junk", b"", whole[: len(whole) // 2], older, strange, pickle.dumps(3), pickle.dumps(state | {"model": b"x"})):
         (tmp_path / "checkpoint.pkl").write_bytes(content)
         error = refused(capsys, "--resume", "--out", str(tmp_path))
-        assert f"resume = '{tmp_path / 'checkpoint.pkl'}': must be a whole checkpoint" in error
+        assert f"resume = '{tmp_path / 'checkpoint.pkl'}': must be a complete checkpoint" in error
 
 
 def test_every_player_meets_the_same_tables():
@@ -249,30 +250,30 @@ def test_every_player_meets_the_same_tables():
             seen.append(observations[going])
             return super().act(tables, observations, going)
 
-    first, second = (rollouts.summary(rollouts.play(Watching(), 3)) for _ in range(2))
+    first, second = (summary(play_visits(Watching(), 3)) for _ in range(2))
     assert first == second
     assert all(np.array_equal(a, b) for a, b in zip(seen[: len(seen) // 2], seen[len(seen) // 2 :], strict=True))
 
 
-def test_evaluation_plays_in_the_world_trained_in(finished, monkeypatch):
+def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
     """All options but layout and reward, the environment's own noise where none is given; the action is each player's own."""
-    played, original = [], rollouts.play
+    played, original = [], play_visits
 
     def watched(player, n, **options):
         played.append((player.options, options))
         return original(player, n, **options)
 
-    monkeypatch.setattr(training_summary, "play", watched)
+    monkeypatch.setattr(training_summary, "play_visits", watched)
     settings = train.Settings(agent="ppo_mask")
     model = load_player(finished / "ppo_mask").model
     training_summary.evaluate(train.recipe_of(settings), model, 2)
-    world = {"noise": "club", "table": "tight", "physics": {"preset": "paper", "mu_bb": "marlow"}, "fidelity": "fast"}
-    given = str({"action": "discrete", "layout": "line_up", "reward": "pots", **world})
+    level = {"noise": "club", "table": "tight", "physics": {"preset": "paper", "mu_bb": "marlow"}, "fidelity": "fast"}
+    given = str({"action": "discrete", "layout": "line_up", "reward": "pots", **level})
     training_summary.evaluate(train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model, 2)
     bare = train.recipe_of(train.Settings(agent="ppo_mask", set=("env_kwargs={'action': 'discrete'}",)))
     training_summary.evaluate(bare, model, 2)
-    worlds = [{"noise": "professional"}] * 3 + [world] * 3 + [{"noise": "none"}] * 3
-    assert [options for _, options in played] == [{"first_seed": rollouts.tables_of("held_out", 2)} | one for one in worlds]
+    levels = [{"noise": "professional"}] * 3 + [level] * 3 + [{"noise": "none"}] * 3
+    assert [options for _, options in played] == [{"first_seed": tables_of("held_out", 2)} | one for one in levels]
     assert all(own == {"action": "discrete"} for own, _ in played)
 
 
@@ -281,14 +282,14 @@ def test_random_play_is_the_same_for_every_agent(finished):
     of_each = [results(finished / agent)["evaluation"] for agent in AGENTS]
     for name in ("random", "ghost_ball"):
         assert all(figures[name] == of_each[0][name] for figures in of_each)
-    assert of_each[0]["random"] == rollouts.summary(rollouts.play(player_of("random"), 4))
+    assert of_each[0]["random"] == summary(play_visits(player_of("random"), 4))
 
 
 def test_agents_with_longer_actions_are_judged(tmp_path):
     out, given = tmp_path / "run", "env_kwargs={'aim': 'target', 'elevation': True, 'placement': True}"
     assert run(out, "--agent", "ppo_target", "--steps", "128", "--set", given) == 0
     assert load_player(out).options == {"aim": "target", "elevation": True, "placement": True}
-    again = rollouts.summary(rollouts.play(load_player(out), 4, noise="none"))
+    again = summary(play_visits(load_player(out), 4, noise="none"))
     assert again == results(out)["evaluation"]["trained"]
 
 
@@ -296,10 +297,10 @@ def test_imitation_comes_first_and_is_kept(tmp_path):
     assert train.main([*TINY[:-1], "256", "--agent", "ppo_foresight", "--out", str(tmp_path / "run")]) == 0
     found = results(tmp_path / "run")
     assert found["settings"]["imitate"] == 256 and found["imitation"][-1]["states"] == 256
-    assert "after imitating the search in 256 positions" in found["learned"]
+    assert "after 256 positions of imitation, ppo_" in found["learned"]
     assert train.main(["--resume", "--no-progress", "--steps", "1024", "--out", str(tmp_path / "run")]) == 0
     assert results(tmp_path / "run")["imitation"] == found["imitation"]
-    assert "after imitating the search in 256 positions" in results(tmp_path / "run")["learned"]
+    assert "after 256 positions of imitation, ppo_" in results(tmp_path / "run")["learned"]
 
 
 def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, capsys):
@@ -308,7 +309,7 @@ def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, capsys):
     assert np.array_equal(weights(tmp_path / "run"), weights(finished / "ppo_mask"))
     found = results(tmp_path / "run")
     assert found["start"] == {"model": start, "shots": 512, "imitated": 0, "start": None}
-    assert found["learned"].startswith(f"In 512 shots, on top of what {start} had learned in 512, ppo_mask learned")
+    assert found["learned"].startswith(f"With 512 shots of training on top of the 512 of {start}, ppo_mask ")
     with pytest.raises(SystemExit) as stop:
         run(tmp_path / "other", "--agent", "ppo_foresight", "--start", start)
     assert stop.value.code == 2 and "must be a model of ppo_foresight" in capsys.readouterr().err
@@ -343,7 +344,7 @@ def test_hyperparameters_can_be_changed(tmp_path):
     assert results(tmp_path / "run")["command"].endswith("--agent ppo_mask --steps 512 --envs 2 --imitate 0 --set gamma=0 n_steps=32")
 
 
-def test_an_interruption_before_the_first_save_is_told_in_one_line(tmp_path):
+def test_an_interruption_before_the_first_save_is_reported_in_one_line(tmp_path):
     code = f"""
 import runpy, sys, snooker_env
 def stop(): raise KeyboardInterrupt
@@ -352,7 +353,7 @@ runpy.run_path("train.py", run_name="__main__")
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
     assert done.returncode == 130
-    assert done.stderr == "Interrupted. Nothing was saved yet: begin the run anew.\n"
+    assert done.stderr == "Interrupted. Nothing was saved yet: start the run again.\n"
 
 
 @pytest.mark.parametrize("agent", ["ppo_mask", "tqc_target"])
@@ -364,7 +365,7 @@ def test_whole_rollouts_are_announced_and_a_finished_run_says_so(tmp_path, capsy
     assert f": 0 of {steps:,} shots played (1 asked for; whole rollouts of {whole:,})" in capsys.readouterr().out
     assert steps == whole
     assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
-    assert f": {steps:,} of {steps:,} shots played\nNothing is left to train." in capsys.readouterr().out
+    assert f": {steps:,} of {steps:,} shots played\nAll steps are done: nothing left to train." in capsys.readouterr().out
 
 
 @pytest.mark.slow
@@ -374,6 +375,6 @@ def test_whole_rollouts_are_announced_and_a_finished_run_says_so(tmp_path, capsy
 def test_it_learns(tmp_path, agent, steps, least):
     assert run(tmp_path / "run", "--agent", agent, "--steps", steps, "--envs", "64", "--eval-visits", "300") == 0
     trained = results(tmp_path / "run")["evaluation"]["trained"]
-    chance = rollouts.summary(rollouts.play(Random(load_player(tmp_path / "run").options), 300))  # any action of its own
+    chance = summary(play_visits(Random(load_player(tmp_path / "run").options), 300))  # any action of its own
     gain = trained["points_a_visit"] - chance["points_a_visit"]
     assert gain > least and gain > 3 * trained["points_a_visit_se"]

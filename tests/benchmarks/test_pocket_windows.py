@@ -10,44 +10,44 @@ from snooker_env.game import pots
 from tests.kernels import from_python
 
 ANGLES = {CORNER: (0, 20, 40), MIDDLE: (0, 30, 45, 60)}
-WORLDS, TABLES = ("paper", "match"), ("match", "tight")
+PRESETS, TABLES = ("paper", "match"), ("match", "tight")
 SPEEDS = (0.5, 1.0, 6.0)
 
 
-def widths(world, table, pocket, speeds=SPEEDS, rolling=True):
+def widths(preset, table, pocket, speeds=SPEEDS, rolling=True):
     """Lateral windows [mm] by angle and speed, from 0.3 m."""
     here, angles = alone(sn.Table.preset(table), pocket), np.radians(ANGLES[pocket])[:, None]
-    return 1e3 * windows(here, angles, 0.3, np.array(speeds), rolling, False, sn.Physics.preset(world)).width
+    return 1e3 * windows(here, angles, 0.3, np.array(speeds), rolling, False, sn.Physics.preset(preset)).width
 
 
 @pytest.mark.parametrize("rolling", [True, False])
-@pytest.mark.parametrize("world", WORLDS)
+@pytest.mark.parametrize("preset", PRESETS)
 @pytest.mark.parametrize(("table", "pocket"), [("match", CORNER), ("tight", CORNER), ("match", MIDDLE)])
-def test_a_firm_shot_has_a_narrower_window_than_a_soft_one(world, table, pocket, rolling):
-    """Every window here is wider than the clean opening, or asks for a jaw."""
-    slowest, slow, firm = widths(world, table, pocket, (1.0, 2.0, 6.0) if not rolling else SPEEDS, rolling).T
+def test_a_firm_shot_has_a_narrower_window_than_a_soft_one(preset, table, pocket, rolling):
+    """Every window here is wider than the clean opening, or needs a jaw."""
+    slowest, slow, firm = widths(preset, table, pocket, (1.0, 2.0, 6.0) if not rolling else SPEEDS, rolling).T
     assert (firm < slow - (1.5 if rolling else 0.5)).all() and (firm < slowest - 3.0).all()
 
 
-@pytest.mark.parametrize("world", WORLDS)
-def test_a_firm_ball_that_meets_a_jaw_of_a_middle_pocket_may_come_out_again(world):
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_firm_ball_that_meets_a_jaw_of_a_middle_pocket_may_come_out_again(preset):
     """Dropped at once at the edge, these are 0.93 to 0.98."""
-    slow, _, firm = widths(world, "match", MIDDLE).T
+    slow, _, firm = widths(preset, "match", MIDDLE).T
     assert (firm < 0.85 * slow).all()
 
 
-@pytest.mark.parametrize("world", WORLDS)
-def test_the_tight_corners_are_never_wider(world):
+@pytest.mark.parametrize("preset", PRESETS)
+def test_the_tight_corners_are_never_wider(preset):
     for rolling in (True, False):
         speeds = (1.0, 2.0, 4.0, 6.0, 9.0)
-        assert (widths(world, "tight", CORNER, speeds, rolling) < widths(world, "match", CORNER, speeds, rolling)).all()
+        assert (widths(preset, "tight", CORNER, speeds, rolling) < widths(preset, "match", CORNER, speeds, rolling)).all()
 
 
-@pytest.mark.parametrize("world", WORLDS)
+@pytest.mark.parametrize("preset", PRESETS)
 @pytest.mark.parametrize("pocket", [CORNER, MIDDLE])
 @pytest.mark.parametrize("table", TABLES)
-def test_the_clean_opening_is_the_same_at_all_speeds(world, table, pocket):
-    here, physics, speeds = alone(sn.Table.preset(table), pocket), sn.Physics.preset(world), (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0)
+def test_the_clean_opening_is_the_same_at_all_speeds(preset, table, pocket):
+    here, physics, speeds = alone(sn.Table.preset(table), pocket), sn.Physics.preset(preset), (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0)
     assert openings.all_clean_drop(here, speeds, physics)
     clean, free = openings.clean(here, physics.R), openings.untouched(here, speeds, True, physics)
     assert (free > clean - 5e-5).all()
@@ -126,16 +126,16 @@ def test_alciatore_s_target_sizes_by_his_formulas():
 
 def test_slow_mirrors_are_alciatore_s_pool_pockets():
     """0.1 m/s: the drop takes so long that it is as good as at once."""
-    world = sn.Physics(**pool_tables.MIRROR)
+    physics = sn.Physics(**pool_tables.MIRROR)
     for kind, angles in (("corner", (0, 10, 20)), ("side", (0, 15, 30, 45))):
         here = pool_tables.pocket(kind)
-        found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, world).width / pool_tables.INCH
+        found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, physics).width / pool_tables.INCH
         assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)
 
 
 def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():
     """The preset's own arrays: two of its pockets, each alone, aimed at through the middle of the mouth."""
-    table, world = sn.Table.preset("pool9"), sn.Physics(**pool_tables.MIRROR)
+    table, physics = sn.Table.preset("pool9"), sn.Physics(**pool_tables.MIRROR)
     for kind, k, angles in (("corner", 3, (0, 10, 20)), ("side", 2, (0, 15, 30, 45))):
         jaws, fall = table.jaws[4 * k : 4 * k + 4], table.falls[k]
         mouth = jaws[jaws[:, 2] == 0.0, :2].mean(axis=0)
@@ -145,5 +145,5 @@ def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():
         near = np.any([np.hypot(*(end - mouth).T) < 0.1 for end in ends], axis=0)
         assert near.sum() == 2
         here = LonePocket(sn.Table(kind, table.noses[near], jaws, fall[None]), tuple(mouth), float(axis))
-        found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, world).width / pool_tables.INCH
+        found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, physics).width / pool_tables.INCH
         assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)

@@ -100,7 +100,7 @@ def test_any_terminal_will_do(tmp_path):
     assert python("-m", "agents.report", "--show", name, PYTHONIOENCODING=encoding).returncode == 0
     done = python("train.py", *TINY, "--out", str(tmp_path / "\u2192"), PYTHONIOENCODING=encoding)
     assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
-    assert "A visit, over 4 held-out ones" in done.stdout
+    assert "Means of 4 held-out visits" in done.stdout
     assert (
         python("-m", "agents.curves", str(tmp_path / "\u2192"), "--out", str(tmp_path / "\u2192.png"), PYTHONIOENCODING=encoding).returncode
         == 0
@@ -118,7 +118,7 @@ def test_ctrl_c_is_one_line(capsys):
     assert stop.value.code == 130
 
 
-def test_only_a_full_disk_is_told_without_a_traceback():
+def test_only_a_full_disk_is_reported_without_a_traceback():
     def failing(error):
         @lifecycle.command("agents.x")
         def main(argv):
@@ -141,4 +141,4 @@ def test_a_reader_that_leaves_ends_a_command_in_one_line_at_most(arguments, tmp_
     with open(writing, "w") as nobody:
         done = subprocess.run([sys.executable, *arguments, *out], cwd=ROOT, stdout=nobody, stderr=subprocess.PIPE, text=True, timeout=300)
     assert done.returncode == 1 and "Traceback" not in done.stderr
-    assert done.stderr == ("train.py: nobody reads its output any more. Nothing was saved yet: begin the run anew.\n" if out else "")
+    assert done.stderr == ("train.py: its output was closed. Nothing was saved yet: start the run again.\n" if out else "")

@@ -1,5 +1,7 @@
 """Do Gymnasium's own vector environments play, bit for bit, what single ones play? (The native one: ``test_vector``.)"""
 
+import os
+
 import gymnasium
 import numpy as np
 import pytest
@@ -18,7 +20,7 @@ def test_vector_environments_play_as_single_ones(kind):
         vector = gymnasium.vector.SyncVectorEnv([make_noisy] * 2)
     else:
         sn.warmup()
-        vector = gymnasium.vector.AsyncVectorEnv([make_noisy] * 2, context="fork")
+        vector = gymnasium.vector.AsyncVectorEnv([make_noisy] * 2, context="fork" if hasattr(os, "fork") else "spawn")
     singles = [make_noisy() for _ in range(2)]
     try:
         got, infos = vector.reset(seed=10)

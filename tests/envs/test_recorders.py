@@ -100,7 +100,7 @@ def test_whoever_else_asks_gets_one_picture():
     assert recorder_asking() is None
 
 
-def test_a_recorder_that_is_being_handed_a_film_is_not_asked_again():
+def test_a_recorder_that_is_being_given_a_film_is_not_called_again():
     source, kept = PictureSource(), []
 
     class Recorder:

@@ -87,7 +87,7 @@ def attack(state, load, saved, root="state", play=lambda: None):
 
 
 def player(env, strokes=2):
-    """Plays a few strokes and looks at what is seen of them."""
+    """Plays a few strokes and reads what is shown of them."""
 
     def play():
         assert env.observation_space.contains(env._last_seen)
@@ -193,7 +193,7 @@ MISS = [
     ({"frame__saved__layout": None}, "state.frame.saved.layout", "None", "must be positions and on_table"),
     ({"frame__saved__layout": [[[5, 5]] * 22, [True] * 22]}, "state.frame.saved.layout[0][0]", "(5.0, 5.0)", "must be on the table"),
     ({"frame__saved__layout": [[[0, 0]] * 22, [True] * 22]}, "state.frame.saved.layout[0]", "balls 0 and 1", "overlap"),
-    ({"frame__saved__on_table": 1 << BLACK, "frame__saved__ball_on": 7}, "state.frame.saved", "a position", "must have the on_table"),
+    ({"frame__saved__on_table": 1 << BLACK, "frame__saved__ball_on": 7}, "state.frame.saved", "a position", "must have the balls on_table"),
     ({"frame__saved__in_hand": 1}, "state.frame.saved.in_hand", "1", "must be True or False"),
     ({"frame__saved": 3}, "state.frame.saved", "3", "must be a dict with the fields"),
     ({"frame__saved": {}}, "state.frame.saved", "on_table", "must have exactly the fields"),
@@ -236,7 +236,7 @@ def test_the_position_to_which_a_frame_returns_is_always_on_the_table(frame_stat
         except ValueError as error:
             assert str(error).startswith("state.frame.saved.")
             continue
-        env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))  # hands the table back, with the balls replaced
+        env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))  # gives the table back, with the balls replaced
         sn.Table.preset("match").check(env.positions, sn.Physics.preset("paper").R, on_table=env.on_table)
         moved += 1
     assert 20 < moved < 180

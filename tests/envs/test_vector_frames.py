@@ -15,7 +15,7 @@ from tests.refusals import refused
 
 
 def policy(observation, rng):
-    """An opponent in Python that draws from its generator and looks at what it sees."""
+    """An opponent in Python that draws from its generator and reads its observation."""
     return np.clip(rng.uniform(-1.0, 1.0, 7) * (1.0, 0.3, 0.3, 0.5, 1.0, 1.0, 1.0) + 0.01 * observation[0], -1.0, 1.0)
 
 
@@ -92,7 +92,7 @@ def test_any_number_of_threads_and_any_chunks_give_the_same(threads, opponent, m
     check_equal(50, AutoresetMode.SAME_STEP, 8, FULL | {"opponent": opponent, "layout": "random:3", "max_strokes": 9}, threads)
 
 
-def test_a_player_of_many_tables_is_asked_once_for_all_that_wait():
+def test_a_player_of_many_tables_is_called_once_for_all_that_wait():
     many = Many()
     options = FULL | {"task": "frame", "layout": "random:2", "autoreset_mode": AutoresetMode.SAME_STEP}
     one, other = native(40, opponent=many, **options), native(40, opponent=policy, **options)

@@ -16,6 +16,6 @@ and at zero slip the law is decided by the forces: the contact sticks if the fri
 the direction the other forces drive it. Cloth and ball obey ``N >= 0``, ``v_z >= 0``, ``N v_z = 0``. Restitution is energetic (Stronge
 2000, *Impact Mechanics*): the normal force gives back ``e^2`` of the work it took in.
 
-Units are SI. World frame: right-handed, z up; ``v`` [m/s] and ``w`` [rad/s] are arrays of shape (3,). R (radius) only scales ``w`` and
-M (mass) only scales the impulse, which is not returned: both cancel but are asked for, as every model of the package asks for them.
+Units are SI. Table frame: right-handed, z up; ``v`` [m/s] and ``w`` [rad/s] are arrays of shape (3,). R (radius) only scales ``w`` and
+M (mass) only scales the impulse, which is not returned: both cancel but are parameters, as of every model of the package.
 """

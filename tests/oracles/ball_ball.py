@@ -105,7 +105,7 @@ def ball_ball(v1, w1, v2, w2, normal, *, R: float, M: float, e: float, mu_bb: Fr
     ball 2's, friction presses ball 1 into the cloth and lifts ball 2 (downwards: the reverse); the cloth answers with a reaction that
     holds the pressed ball's height and with friction against its slip on the cloth. Energetic restitution.
 
-    v1, w1, v2, w2 : velocities [m/s] and spins [rad/s], shape (3,), world frame (z up); vertical velocities must be 0.
+    v1, w1, v2, w2 : velocities [m/s] and spins [rad/s], shape (3,), table frame (z up); vertical velocities must be 0.
     normal : horizontal unit vector from the centre of ball 1 to that of ball 2.
     R, M : radius [m] and mass [kg]. ``e`` : restitution, 0..1. ``mu_s`` : ball-cloth friction.
     mu_bb : ball-ball friction, a number or a callable of the slip speed [m/s] (with ``digits`` it is called with an mpmath number, and

@@ -182,7 +182,7 @@ def ball_cushion(v, w, normal, *, R: float, M: float, e: float, mu_w: float, mu_
     that holds it is within ``mu_w``; if not, it slips in the direction in which the other forces drive it. The cushion pushes the ball
     into the cloth (N' >= 0); where its friction would lift the ball instead, N' = 0 and the ball rises.
 
-    v, w : velocity [m/s] (horizontal) and spin [rad/s], shape (3,), world frame (z up).
+    v, w : velocity [m/s] (horizontal) and spin [rad/s], shape (3,), table frame (z up).
     normal : horizontal unit vector INTO the cushion.
     R, M : radius [m] and mass [kg]. ``e`` : energetic restitution. ``mu_w``, ``mu_s`` : friction of ball on cushion and on cloth.
     sin_theta : height of the cushion's nose above the ball's centre over R.

@@ -1,6 +1,6 @@
 """How is a frictional impact carried from first touch to parting, through every change of slip and stick? For both float oracles.
 
-Method. Twelve (cushion: six) velocities as 3D vectors in the world frame, with cross products. The independent variable is ``tau``,
+Method. Twelve (cushion: six) velocities as 3D vectors in the table frame, with cross products. The independent variable is ``tau``,
 ``dP/M = dtau / (1 + 1/s + 1/b)`` with ``P`` the normal impulse and ``s``, ``b`` the slip speeds of the contacts that slip: an approach of
 either to zero is then an exponential and not a singularity, so that an eighth-order Runge-Kutta method (scipy's DOP853, rtol 3e-14)
 passes it in ordinary steps. Each switch of regime is a located event, solved for by integrating again up to the trial point (no

@@ -25,7 +25,7 @@ def multiprecision(v1, w1, v2, w2, n, R, e, mu_bb, mu_s, digits):
             x, y, z = (mpf(float(c)) for c in a)
             return [x * ny - y * nx, x * nx + y * ny, z]
 
-        def to_world(x, y, z):
+        def to_table(x, y, z):
             return np.array([float(x * ny + y * nx), float(y * ny - x * nx), float(z)])
 
         radius = mpf(R)
@@ -33,7 +33,7 @@ def multiprecision(v1, w1, v2, w2, n, R, e, mu_bb, mu_s, digits):
         wc, wo = ([radius * c for c in to_frame(w)] for w in (w1, w2))  # R w
         law = mu_bb if callable(mu_bb) else (lambda _s: mu_bb)
         y = _PaperImpact(vc + wc + vo + wo + [mpf(0)], law, mpf(mu_s), mpf(e)).run()
-        return to_world(*y[0:3]), to_world(*y[3:6]) / R, to_world(*y[6:9]), to_world(*y[9:12]) / R
+        return to_table(*y[0:3]), to_table(*y[3:6]) / R, to_table(*y[6:9]), to_table(*y[9:12]) / R
 
 
 class _PaperImpact:

@@ -23,7 +23,7 @@ Forces per unit of mass, on a sphere of radius R whose centre is at ``r`` (momen
 Left out is the leather: the back of the pocket keeps what reaches it. Below its nose the cushion recedes: by default so far that nothing
 but the nose can be touched (``undercut`` 1), else as a plane face whose normal points down by the angle of that sine.
 
-Units are SI, spins in rad/s. World frame: right-handed, z up, the slate's top at z = 0; the centre of a ball at rest is at z = R, less the
+Units are SI, spins in rad/s. Table frame: right-handed, z up, the slate's top at z = 0; the centre of a ball at rest is at z = R, less the
 40 nm by which its weight presses it into the slate.
 """
 

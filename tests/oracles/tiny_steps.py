@@ -11,7 +11,7 @@ Forces (``shared/reference/physics.md`` 1.3; the cloth touches at ``-R z``): sli
 and ``w`` with ``v``; ``w_z`` towards 0 at ``spin_decel`` in every state. Balls stay on the cloth: vertical velocities after an impact are
 dropped.
 
-SI units; world frame, right-handed, z up.
+SI units; table frame, right-handed, z up.
 """
 
 from __future__ import annotations

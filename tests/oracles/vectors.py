@@ -1,4 +1,4 @@
-"""How are 3D vectors computed with in the float oracles? As tuples (x, y, z); world frame, right-handed, z up."""
+"""How are 3D vectors computed with in the float oracles? As tuples (x, y, z); table frame, right-handed, z up."""
 
 from __future__ import annotations
 

@@ -229,7 +229,7 @@ def test_invariants(fidelity):
 
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
-def test_the_world_may_be_turned_mirrored_or_renamed(fidelity):
+def test_everything_may_be_turned_mirrored_or_renamed(fidelity):
     turn = lambda a, x: np.array([np.cos(a) * x[0] - np.sin(a) * x[1], np.sin(a) * x[0] + np.cos(a) * x[1], x[2]])  # noqa: E731
     tol = 0.02 if fidelity.startswith("euler") else 1e-6  # rounding may move its last step
     for c in impacts(30, seed=29):

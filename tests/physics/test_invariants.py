@@ -23,7 +23,7 @@ angles = st.floats(-np.pi, np.pi)
 speeds = st.one_of(st.floats(0.01, 8), st.sampled_from([1e-6, 1e-3, 50.0]))
 spins = st.one_of(st.just(0.0), st.floats(0.1, 3), st.just(50.0))
 """Of R w over the speed."""
-worlds = st.builds(
+constants = st.builds(
     sn.Physics,
     mu_s=st.floats(0.02, 0.5), mu_bb=st.one_of(st.just("marlow"), st.floats(0, 0.5)),
     e_b=st.one_of(st.sampled_from([0.0, 1.0]), st.floats(0, 1)),
@@ -80,7 +80,7 @@ def far(got, want):
 
 
 @many
-@given(ball_impacts(), worlds, st.sampled_from(FIDELITIES))
+@given(ball_impacts(), constants, st.sampled_from(FIDELITIES))
 def test_two_balls_gain_no_energy_and_keep_their_momentum(case, physics, fidelity):
     """The pair's momentum changes by what the cloth's friction can give at the most, mu_s mu_bb of the impulse; its angular momentum
     about the line of centres not at all, but for the cloth; and the balls part."""
@@ -115,8 +115,8 @@ def test_without_friction_e_is_the_ratio_of_parting_to_closing(case, e, fidelity
 
 
 @many
-@given(ball_impacts(), worlds, st.sampled_from(FIDELITIES), angles)
-def test_an_impact_does_not_know_left_from_right_nor_north(case, physics, fidelity, by):
+@given(ball_impacts(), constants, st.sampled_from(FIDELITIES), angles)
+def test_an_impact_is_the_same_mirrored_turned_and_swapped(case, physics, fidelity, by):
     """Mirrored, turned, and with the balls' names swapped, the outcome is mirrored, turned and swapped."""
     out, size = sn.collide_balls(*case, physics, fidelity), size_of(case)
     v, w = np.array([-1, 1, 1]), np.array([1, -1, -1])  # spins are axial
@@ -131,8 +131,8 @@ def test_an_impact_does_not_know_left_from_right_nor_north(case, physics, fideli
 
 
 @many
-@given(ball_impacts(), worlds.filter(lambda p: p.mu_bb != "marlow"), st.sampled_from(FIDELITIES), st.sampled_from([0.25, 2.0, 1024.0]))
-def test_an_impact_does_not_know_how_fast_it_is(case, physics, fidelity, k):
+@given(ball_impacts(), constants.filter(lambda p: p.mu_bb != "marlow"), st.sampled_from(FIDELITIES), st.sampled_from([0.25, 2.0, 1024.0]))
+def test_an_impact_scales_with_its_speed(case, physics, fidelity, k):
     """With constant friction and restitution all speeds scale together: exactly, where k is a power of two."""
     out = sn.collide_balls(*case, physics, fidelity)
     faster = sn.collide_balls(*(k * a for a in case[:-1]), case[-1], physics, fidelity)
@@ -141,7 +141,7 @@ def test_an_impact_does_not_know_how_fast_it_is(case, physics, fidelity, k):
 
 @many
 @given(ball_impacts(), st.floats(0, 0.5), st.floats(0, 1), angles, st.floats(0, 5))
-def test_free_balls_do_not_know_who_moves(case, mu, e, direction, speed):
+def test_of_free_balls_only_the_relative_motion_matters(case, mu, e, direction, speed):
     """Seen from a moving train: "fast" has no cloth, so a common velocity changes nothing but itself."""
     v = speed * horizontal(direction)
     physics = {"mu_bb": mu, "e_b": e}
@@ -151,7 +151,7 @@ def test_free_balls_do_not_know_who_moves(case, mu, e, direction, speed):
 
 
 @many
-@given(ball_impacts(), worlds)
+@given(ball_impacts(), constants)
 def test_the_three_fidelities_agree_as_far_as_they_promise(case, physics):
     """standard and reference solve the same equations; fast leaves out the cloth, whose friction is at most mu_s mu_bb of the impulse."""
     fast, standard, reference = (sn.collide_balls(*case, physics, f) for f in FIDELITIES)
@@ -164,8 +164,8 @@ def test_the_three_fidelities_agree_as_far_as_they_promise(case, physics):
 
 
 @many
-@given(nose_impacts(), worlds, st.sampled_from(FIDELITIES), angles)
-def test_a_cushion_takes_energy_gives_none_and_knows_no_direction(case, physics, fidelity, by):
+@given(nose_impacts(), constants, st.sampled_from(FIDELITIES), angles)
+def test_a_cushion_takes_energy_gives_none_and_has_no_preferred_direction(case, physics, fidelity, by):
     v, w, n = case
     out, size = sn.collide_cushion(*case, physics, fidelity), size_of(case)
     tol = {"fast": 0.1, "standard": 1e-5, "reference": 1e-8}[fidelity]  # "fast" integrates with a loose tolerance here
@@ -268,7 +268,7 @@ def in_play(shot, t):
 
 
 @some
-@given(shots(), st.sampled_from(["match", "tight", None]), worlds, st.sampled_from([*FIDELITIES, "euler:1000"]))
+@given(shots(), st.sampled_from(["match", "tight", None]), constants, st.sampled_from([*FIDELITIES, "euler:1000"]))
 def test_a_shot_keeps_every_law(shot, table, physics, fidelity):
     """Between and at events: no overlap, no energy gained, nobody off the table but through a pocket; at the end everything rests."""
     end = sn.simulate(*shot, table, physics, fidelity)
@@ -294,7 +294,12 @@ def test_a_shot_keeps_every_law(shot, table, physics, fidelity):
 
 @some
 @given(
-    angles, st.tuples(part, part, part), st.floats(20, 400), worlds, st.sampled_from([None, "match"]), st.sampled_from([0.0, 1e-12, 1e-9])
+    angles,
+    st.tuples(part, part, part),
+    st.floats(20, 400),
+    constants,
+    st.sampled_from([None, "match"]),
+    st.sampled_from([0.0, 1e-12, 1e-9]),
 )
 def test_a_ball_held_by_its_spin_hops_at_the_spins_expense(angle, axis, spin, physics, table, gap):
     """A ball that spins on the spot against a frozen ball, or a cushion: a lasting contact. It ends, and no hop gains energy."""

@@ -27,7 +27,7 @@ TABLES = {name: Table.preset(name) for name in ("match", "tight", "uk8", "pool9"
 WITH_POCKETS = [name for name, table in TABLES.items() if len(table.falls)]
 
 
-def world(table, name="match"):
+def physics_of(table, name="match"):
     return sn.Physics.preset(name, **table.ball)
 
 
@@ -40,7 +40,7 @@ def rolling(v, R):
 def test_a_straight_roll_into_a_pocket_is_potted_there(name, speed):
     """For every index: along the pocket's axis, from 0.3 m in front of the slate's edge, and 5 mm to either side."""
     table = TABLES[name]
-    physics, names = world(table), {"left": -1, "right": 1, "bottom": -1, "middle": 0, "top": 1}
+    physics, names = physics_of(table), {"left": -1, "right": 1, "bottom": -1, "middle": 0, "top": 1}
     assert len(table.pockets) == len(table.falls)
     for k, (x, y, radius) in enumerate(table.falls):
         end, side = table.pockets[k].split()
@@ -54,7 +54,7 @@ def test_a_straight_roll_into_a_pocket_is_potted_there(name, speed):
 
 def random_shots(table, n_shots, n_balls, seed, top=6.0):
     """Sound positions anywhere between the noses, mouths included; the first ball struck, some of the others moving."""
-    rng, physics = np.random.default_rng(seed), world(table)
+    rng, physics = np.random.default_rng(seed), physics_of(table)
     high = table.bounds[:, 1] - physics.R
     positions = np.zeros((n_shots, n_balls, 2))
     for shot in positions:
@@ -109,7 +109,7 @@ def test_no_shot_leaves_the_table_gains_energy_or_ends_where_no_ball_may_lie(nam
 def test_wherever_balls_come_to_rest_they_may_lie_and_be_struck_again(name):
     """Soft shots at the pockets, many: some stop in the mouths. The positions are checked as input, those in the pockets left out."""
     table = TABLES[name]
-    rng, physics = np.random.default_rng(2), world(table)
+    rng, physics = np.random.default_rng(2), physics_of(table)
     b = 3000
     k = rng.integers(len(table.falls), size=b)
     start = rng.uniform(-0.6, 0.6, (b, 2)) * (table.bounds[:, 1] - physics.R)
@@ -131,7 +131,7 @@ def test_wherever_balls_come_to_rest_they_may_lie_and_be_struck_again(name):
 def test_a_three_cushion_shot_on_the_carom_table():
     """The cue ball meets one ball, at least three cushions, and then the other; nothing is potted on a table without pockets."""
     table = Table.preset("carom")
-    physics = world(table)
+    physics = physics_of(table)
     v, w = sn.strike(3.5, 2.84, side=0.3, top=0.2, physics=physics)
     balls = [(0.25, -0.9), (0.45, 0.35), (-0.4, -0.75)]
     shot = sn.simulate(balls, [v[:2], (0, 0), (0, 0)], [w, Z, Z], "carom", physics)
@@ -164,7 +164,7 @@ def test_a_table_is_played_with_the_balls_that_it_is_made_for(name):
     assert pickle.loads(pickle.dumps(table)) is table
 
 
-def test_a_table_of_ones_own_may_know_its_ball():
+def test_a_table_of_ones_own_may_name_its_ball():
     own = pickle.loads(pickle.dumps(TABLES["square, 4 pockets"]))
     assert own.ball == {"R": 0.025} and own.pockets == ("bottom left", "bottom right", "top right", "top left")
     refused(lambda: sn.simulate([(0, 0)], [(1, 0)], [Z], own), "physics.R", "0.02625", 'must be 0.025 on table "rectangular"')
@@ -173,7 +173,7 @@ def test_a_table_of_ones_own_may_know_its_ball():
 @pytest.mark.parametrize("field", ["R", "M"])
 @pytest.mark.parametrize("value", [[0.025, 0.026], (0.1, 0.2, 0.3), np.array([0.025, 0.025])])
 def test_balls_of_unequal_size_or_mass_are_refused_with_a_reason(field, value):
-    says = "must be one number: all balls of a shot are equal (docs/limits.md)"
+    says = "must be one number: all balls of a shot are equal (docs/physics/limits.md)"
     for call in (
         lambda: sn.Physics(**{field: value}),
         lambda: sn.Physics.preset("match", **{field: value}),
@@ -207,14 +207,14 @@ def test_snooker_is_played_on_a_rectangular_table_of_its_size():
     refused(lambda: SnookerEnv(table=Table.rectangular(3.569, 1.7)), "table", "'rectangular'", says)
 
 
-def test_a_flight_over_a_pocket_knows_nothing_of_the_jaws_of_the_others():
+def test_a_flight_over_a_pocket_ignores_the_jaws_of_the_others():
     """The same with the other pockets' jaws and without: a facing run on straight passes the opposite middle pocket of this table."""
     corner = Pocket.corner(mouth=0.15, shelf=0.03, fall_radius=0.075)
     table = Table.rectangular(2.0, 1.0, ball_radius=0.02625, corner=corner, middle=Pocket.middle(mouth=0.11, shelf=0.0, fall_radius=0.06))
     k = sn.POCKETS.index("middle right")
     arcs = table.jaws[:, :2] + table.jaws[:, 2:3] * table.jaws[:, 3:5]
     own = table.jaws[np.hypot(*(arcs - table.falls[k, :2]).T) < 0.3]
-    rng, physics, n = np.random.default_rng(0), world(table), 1500
+    rng, physics, n = np.random.default_rng(0), physics_of(table), 1500
     angle, off, speed = rng.uniform(-1.2, 1.2, n), rng.uniform(-0.035, 0.035, n), rng.uniform(1.5, 8, n)
     way = np.stack([np.cos(angle), np.sin(angle)], 1)
     p = (0.5, 0.0) - 0.25 * way + off[:, None] * np.stack([-way[:, 1], way[:, 0]], 1)

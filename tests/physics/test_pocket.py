@@ -79,11 +79,11 @@ IN_THE_AIR = (
 
 
 def test_what_a_ball_is_given_in_the_air_counts_as_no_gain():
-    world = sn.Physics.preset("match", nap=-0.05)
-    shot = sn.simulate(*IN_THE_AIR, physics=world)
+    physics = sn.Physics.preset("match", nap=-0.05)
+    shot = sn.simulate(*IN_THE_AIR, physics=physics)
     kinds = shot.events["kind"].tolist()
     assert kinds.index(EventKind.DROP) < kinds.index(EventKind.BALL_BALL) < kinds.index(EventKind.RETURN)
     p, v, w = (np.array([a]) for a in IN_THE_AIR)
     table, fidelity = sn.Table.preset("match"), contact.parse_fidelity("standard")
-    found = invariants.play(p, v, w, np.ones((1, 2), bool), world, table, fidelity)
+    found = invariants.play(p, v, w, np.ones((1, 2), bool), physics, table, fidelity)
     assert found.worst[0, invariants.ENERGY] < 1e-12

@@ -69,7 +69,7 @@ def random_table(rng, n):
 
 @pytest.mark.parametrize("seed", range(36))
 def test_agrees_with_tiny_steps(seed):
-    """2 to 4 balls on unbounded cloth with side, screw and curve: at rest within 1e-4 m of an integrator that knows no closed forms.
+    """2 to 4 balls on unbounded cloth with side, screw and curve: at rest within 1e-4 m of an integrator without closed forms.
 
     Every third shot starts with two balls moving, with spin. Shots whose course hangs on a hair (a grazing contact) are not drawn:
     the aim is at a ball, a third of it off centre at the most."""

@@ -33,7 +33,7 @@ def test_prospects_prefer_easy_pots_and_more_to_come():
 
     easy, chances = value(at, 1e-3)
     assert 0 < chances[1] <= chances[0] <= 1
-    assert value(at, 4e-3)[0] < easy  # a shakier hand
+    assert value(at, 4e-3)[0] < easy  # larger execution errors
     fewer = at[np.array([0])]
     fewer.on_table[0, 2] = False
     assert value(fewer, 1e-3)[0] < easy
@@ -42,7 +42,7 @@ def test_prospects_prefer_easy_pots_and_more_to_come():
     assert value(nothing, 1e-3)[0] == 0
 
 
-def by_hand(positions, on_table, ball_on, spread, follows, second, third, far):
+def by_plain_python(positions, on_table, ball_on, spread, follows, second, third, far):
     """The value of a position and the chances of its pots, from the pots of ``game.pots``."""
     there = [ball for ball in VALUE if on_table[ball]]
     balls = [ball for ball in there if (VALUE[ball] == 1) == (ball_on == BallOn.RED)]
@@ -68,7 +68,7 @@ def test_prospects_recomputed(ball_on, constants):
     for spread in (5e-4, 6e-3):
         values, chances = prospects.prospects_of(at, spread, constants, most=6)
         for k in range(30):
-            value, all_of = by_hand(at.positions[k], at.on_table[k], ball_on, spread, *constants)
+            value, all_of = by_plain_python(at.positions[k], at.on_table[k], ball_on, spread, *constants)
             assert values[k] == pytest.approx(value, rel=1e-9)
             assert chances[k] == pytest.approx(([*all_of, *[0.0] * 6])[:6], rel=1e-9)
     assert (chances[:, 2] > 0).sum() > 20  # there are third pots to count

@@ -154,13 +154,13 @@ def test_after_a_foul_the_choices_are_shown(shown):
     shown.until("page.state.phase === 'stroke'")
 
 
-def test_a_ball_is_dragged_in_set_up_and_a_wrong_place_is_told_beside_it(shown):
+def test_a_ball_is_dragged_in_set_up_and_a_wrong_place_is_reported_beside_it(shown):
     shown.set_up(EASY)
     shown.page.click("#set")
     shown.drag(EASY["reds"][1], (0.02, 0.90), steps=4)  # onto the pink
     shown.until("!document.getElementById('bubble').hidden")
     assert shown.page.inner_text("#bubble") == "The pink overlaps the red." and not shown.page.is_enabled("#set-done")
-    assert shown.page.inner_text("#set-wrong") == ""  # it is told once
+    assert shown.page.inner_text("#set-wrong") == ""  # it is reported once
     shown.drag((0.02, 0.90), (-0.3, 0.4))
     shown.until("document.getElementById('bubble').hidden && !document.getElementById('set-done').disabled")
     shown.page.select_option("#set-striker", "1")
@@ -270,12 +270,12 @@ def test_two_agents_play_on_by_themselves_until_paused(shown):
     shown.line("api/players", {"players": ["person", "person"], "noise": ["none", "none"]})
 
 
-def test_what_came_of_a_stroke_is_told_when_its_balls_rest(shown):
+def test_the_result_of_a_stroke_is_shown_when_its_balls_rest(shown):
     """Words, score, break and reds are those before the stroke until then: looked at with every change of the page."""
     shown.set_up(EASY)
     seen = "document.getElementById(%r).innerText"
     shown(
-        "(window.told = [], new MutationObserver(() => window.told.push([Boolean(page.moving || page.played < page.state.strokes), "
+        "(window.seen = [], new MutationObserver(() => window.seen.push([Boolean(page.moving || page.played < page.state.strokes), "
         + ", ".join(seen % one for one in ("side-0", "now", "asked", "last"))
         + "])).observe(document.body, {subtree: true, childList: true, characterData: true, attributes: true}), 0)"
     )
@@ -286,14 +286,14 @@ def test_what_came_of_a_stroke_is_told_when_its_balls_rest(shown):
     assert "reds 2" in shown.page.inner_text("#now") and "break 0" in shown.page.inner_text("#now")
     shown.played(1)
     assert "reds 1" in shown.page.inner_text("#now") and "break 1" in shown.page.inner_text("#now")
-    early = [row for row in shown("window.told") if row[0]]
+    early = [row for row in shown("window.seen") if row[0]]
     assert early
     for _, score, now, asked, last in early:
         assert "1" not in score.replace("Player 1", "") and "break 1" not in now and "reds 1" not in now, (score, now)
         assert "any colour" not in asked and "potted" not in last
 
 
-def test_the_first_aim_of_a_frame_is_no_foul_and_fouls_are_told(shown):
+def test_the_first_aim_of_a_frame_is_no_foul_and_fouls_are_shown(shown):
     shown.line("api/players", {"players": ["person", "person"], "noise": ["none", "none"], "practice": False})
     for seed in (1, 2, 3):
         _, state, _ = shown.line("api/new", {"layout": "break_off", "seed": seed})

@@ -1,4 +1,4 @@
-"""Does the protocol tell a program what it needs, and does it refuse what cannot be? Each route, as a request calls it."""
+"""Does the protocol give a program what it needs, and does it refuse what cannot be? Each route, as a request calls it."""
 
 import base64
 import json
@@ -42,7 +42,7 @@ def test_a_state_says_where_everything_is_and_what_may_be_done(game):
     assert state["words"] == "Player 1's stroke: red is on."
 
 
-def test_the_text_tells_a_blind_player_places_lines_and_what_is_in_the_way(game):
+def test_the_text_gives_a_blind_player_places_lines_and_what_is_in_the_way(game):
     game("players", noise=["club", "none"])
     text = game("position", position=EASY | {"blue": [0.75, 1.602]})["text"]
     for words in (
@@ -83,15 +83,14 @@ def test_places_in_words(ball, place, words):
     assert words in where(ball, *place)
 
 
-def test_a_stroke_is_played_and_told_as_a_replay_tells_it(game):
+def test_a_stroke_is_played_and_described_as_in_a_replay(game):
     game("position", position=EASY)
-    told = game("stroke", speed=2.0, aim=STRAIGHT)
-    assert told["stroke"]["points"] == 1 and told["stroke"]["pots"] == [1] and told["stroke"]["cue"]["speed"] == 2.0
-    assert (
-        told["state"]["scores"] == [1, 0] and told["state"]["ball_on"] == "any_colour" and told["state"]["nominations"] == ["pink", "black"]
-    )
-    assert "Red potted, 1" in told["state"]["last"]
-    assert game.get("strokes")["strokes"] == [told["stroke"]] and game.get("strokes", **{"from": 1})["strokes"] == []
+    answer = game("stroke", speed=2.0, aim=STRAIGHT)
+    assert answer["stroke"]["points"] == 1 and answer["stroke"]["pots"] == [1] and answer["stroke"]["cue"]["speed"] == 2.0
+    state = answer["state"]
+    assert state["scores"] == [1, 0] and state["ball_on"] == "any_colour" and state["nominations"] == ["pink", "black"]
+    assert "Red potted, 1" in state["last"]
+    assert game.get("strokes")["strokes"] == [answer["stroke"]] and game.get("strokes", **{"from": 1})["strokes"] == []
 
 
 def test_an_aim_may_be_given_by_a_pot_and_is_solved(game):
@@ -136,7 +135,7 @@ def test_a_request_that_is_refused_has_changed_nothing(game):
     assert game.get("state") == before
 
 
-def test_a_position_that_cannot_be_is_told_by_the_ball(game):
+def test_a_position_that_cannot_be_is_refused_by_the_ball(game):
     for change, field in (
         ({"blue": [0.33, 1.031]}, "blue"), ({"pink": [2.0, 0.0]}, "pink"), ({"reds": [[0.6, 1.4], [0.61, 1.4]]}, "reds[1]"),
         ({"on": "blue"}, "on"), ({"in_hand": True}, "in_hand"), ({"colour": [0, 0]}, "field of position"), ({"reds": "x"}, "reds"),
@@ -180,7 +179,7 @@ def test_two_agents_play_a_stroke_at_a_time(game):
     assert waited(game, lambda s: not s["thinking"])["strokes"] == 2
 
 
-def test_an_agent_that_fails_is_told_and_the_game_waits(game):
+def test_an_agent_that_fails_is_reported_and_the_game_waits(game):
     class Broken:
         def act(self, *given):
             raise AssertionError
@@ -230,7 +229,7 @@ def test_destinations_spread_with_the_errors(game):
     assert game.get("state")["strokes"] == 0
 
 
-def test_a_question_about_a_table_that_is_gone_is_told_so(game):
+def test_a_question_about_a_table_that_is_gone_is_refused(game):
     revision = game("position", position=EASY)["revision"]
     assert "cue" in game("destinations", speed=1.0, aim=0.0, samples=8, revision=revision)
     game("stroke", speed=1.0, aim=STRAIGHT)
@@ -274,7 +273,7 @@ def test_who_waits_hears_of_a_change_and_not_of_none(game):
 
 
 def test_every_route_and_field_is_documented():
-    page = (ROOT / "docs/protocol.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/play/protocol.md").read_text(encoding="utf-8")
     for method, table in (("GET", routes.GET), ("POST", routes.POST)):
         for name, route in table.items():
             assert f"`{method} api/{name}`" in page, name
@@ -284,5 +283,5 @@ def test_every_route_and_field_is_documented():
 
 
 def test_every_part_of_a_state_is_documented(game):
-    page = (ROOT / "docs/protocol.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/play/protocol.md").read_text(encoding="utf-8")
     assert not [name for name in game.get("state") if f"`{name}`" not in page]

@@ -183,7 +183,7 @@ def raw(line, *parts, wait=0.0):
         return found
 
 
-def test_what_is_no_http_is_refused_and_told_in_json(line):
+def test_what_is_no_http_is_refused_in_json(line):
     for request in (b"hello\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"GET  /  x HTTP/1.1\r\n\r\n"):
         found = raw(line, request)
         assert (b'{"error"' in found and b"HTTP/1.1 4" in found) or b"HTTP/1.1 505" in found
@@ -220,8 +220,8 @@ def test_connections_at_once_are_bounded(line):
     try:
         time.sleep(0.3)
         held[-1].settimeout(5)
-        told = held[-1].recv(1000)
-        assert told.startswith(b"HTTP/1.1 503 ") and b'"message": "busy: too many connections"' in told
+        reply = held[-1].recv(1000)
+        assert reply.startswith(b"HTTP/1.1 503 ") and b'"message": "busy: too many connections"' in reply
         assert closed(held[-1]) and not closed(held[0])
     finally:
         for one in held:

@@ -1,4 +1,4 @@
-"""Is the game in memory the game by the rules? Strokes, choices, nominations, hands, undo, files; against MatchEnv, stroke for stroke."""
+"""Is the game in memory the game by the rules? Strokes, choices, nominations, ball in hand, undo, files; against MatchEnv."""
 
 import json
 from dataclasses import replace

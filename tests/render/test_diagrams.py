@@ -113,8 +113,8 @@ def test_speeds_cut_and_tip_are_written(screw):
     inset, tip = circles(ax, "inset")[0], circles(ax, "tip")[0]
     assert (tip[1] - inset[1]) / inset[2] == pytest.approx(0.2, abs=1e-9)  # right is right
     assert (tip[0] - inset[0]) / inset[2] == pytest.approx(0.35, abs=1e-9)  # below is down
-    told = screw.plot(cue={"side": -0.1, "top": 0.4, "speed": 3.0, "elevation": 0.3})
-    assert "top 0.40 R, left side 0.10 R" in words(told) and "3.00 m/s, butt raised 17°" in words(told)
+    described = screw.plot(cue={"side": -0.1, "top": 0.4, "speed": 3.0, "elevation": 0.3})
+    assert "top 0.40 R, left side 0.10 R" in words(described) and "3.00 m/s, butt raised 17°" in words(described)
     bare = screw.plot(speeds=False, caption="none", title="a title")
     assert words(bare) == ["a title"]
 
@@ -289,7 +289,7 @@ def test_the_density_ends_at_the_cushions():
     assert max(image.get_extent()[2:]) <= 0.889 - R + 1e-12
 
 
-def test_points_that_are_none_are_left_out_and_told():
+def test_points_that_are_none_are_left_out_and_reported():
     points = np.random.default_rng(0).normal(0.2, 0.05, (100, 2))
     points[:25] = np.nan
     assert "stops on the table in 75 %" in words(density(points))

@@ -30,7 +30,7 @@ def at(picture, point):
     return picture[row, column].astype(int)
 
 
-def looks(picture, point, ball):
+def is_drawn(picture, point, ball):
     """The ball is nearer to its colour than to any other ball's, and near it; looked at beside the lamps that are mirrored in it."""
     far = np.abs(COLOURS.astype(int) - at(picture, np.add(point, (0.45 * BALL_RADIUS, 0.0)))).max(axis=1)
     return far[ball] == far.min() and far[ball] < 40
@@ -63,7 +63,7 @@ def test_picture_shows_every_ball_in_its_place():
     picture = rgb_array(scene("match", SPOTS, ALL))
     assert picture.shape == (1080, 1920, 3) and picture.dtype == np.uint8
     for ball in range(N_BALLS):
-        assert looks(picture, SPOTS[ball], ball), ball
+        assert is_drawn(picture, SPOTS[ball], ball), ball
     # Seen from baulk towards the black the yellow is on the right: black right, yellow below, green above.
     places = to_pixels(SPOTS)
     assert places[BLACK, 0] > places[PINK, 0] > places[BROWN, 0] and places[YELLOW, 1] > places[BROWN, 1] > places[GREEN, 1]
@@ -91,7 +91,7 @@ def test_balls_off_the_table_do_not_appear():
     empty = rgb_array(scene("match", SPOTS, ~ALL))
     for ball in (CUE, 8, YELLOW, BLACK):
         gone = rgb_array(scene("match", SPOTS, without(ball)))
-        assert not looks(gone, SPOTS[ball], ball)
+        assert not is_drawn(gone, SPOTS[ball], ball)
     alone = rgb_array(scene("match", SPOTS, without(*range(N_BALLS - 1))))
     changed = np.argwhere(np.any(alone != empty, axis=2))
     assert len(changed) and np.abs(changed[:, ::-1] - to_pixels(SPOTS[BLACK])).max() < 44  # with the lamps' shadows
@@ -107,7 +107,7 @@ def test_picture_of_the_table():
     assert at(picture, (0.6, SPOTS[BROWN, 1])).min() > at(picture, (0.6, SPOTS[BROWN, 1] + 0.03)).min() + 40  # the baulk line
     assert at(picture, (0.0, SPOTS[BROWN, 1] - 0.292)).min() > at(picture, (0.0, SPOTS[BROWN, 1] - 0.27)).min() + 40  # the D
     unbounded = rgb_array(scene(None, SPOTS, ALL))
-    assert unbounded.shape == picture.shape and looks(unbounded, SPOTS[BLACK], BLACK)
+    assert unbounded.shape == picture.shape and is_drawn(unbounded, SPOTS[BLACK], BLACK)
     assert at(unbounded, (0.889, 1.7845))[1] > 60  # no pocket
 
 
@@ -228,7 +228,7 @@ def test_demo_break_off(tmp_path):
     folder = os.environ.get("SNOOKER_RENDER_OUT", tmp_path)
     pygame.image.save(pygame.image.frombuffer(picture, picture.shape[1::-1], "RGB"), os.path.join(folder, "x.png"))
     for ball in np.flatnonzero(shot.on_table):
-        assert looks(picture, shot.positions[ball], ball), ball
+        assert is_drawn(picture, shot.positions[ball], ball), ball
     assert np.array_equal(at(picture, start), PALETTE["aim"])  # where the path and the line of aim begin
 
 

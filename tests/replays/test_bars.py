@@ -52,7 +52,7 @@ def test_a_break_is_the_sum_of_its_strokes(frame):
         run, last = run + played.points, played.player if played.points else None
 
 
-def test_the_end_is_told(frame):
+def test_the_end_is_shown(frame):
     env, seen = frame
     last, state = bars(env.history, ("Ada", "Bo"))[-1][1], seen[-1][1]
     if state.winner is not None:
@@ -67,7 +67,7 @@ def test_the_bar_of_a_table_as_it_stands():
     start = standing_bar(env.tables, 0, ("Ada",))
     assert (start.scores, start.break_points, start.ball_on, start.reds_left, start.points_on) == ((0,), 0, "red", 15, 147)
     env.step(67)
-    told = bars(env.history, ("Ada",))[-1][1]
-    now = standing_bar(env.tables, 0, ("Ada",), told)
-    assert now == told and now.scores == (1,) and now.potted == told.potted != () and env.ball_on == BallOn.ANY_COLOUR
+    kept = bars(env.history, ("Ada",))[-1][1]
+    now = standing_bar(env.tables, 0, ("Ada",), kept)
+    assert now == kept and now.scores == (1,) and now.potted == kept.potted != () and env.ball_on == BallOn.ANY_COLOUR
     assert standing_bar(env.tables, 0, ()).players == ()

@@ -22,7 +22,7 @@ def numbers(text, kind, columns):
 
 
 def places_at(stroke, t):
-    """Where the balls are at a time, by docs/replay.md alone."""
+    """Where the balls are at a time, by docs/play/replay.md alone."""
     places = numbers(stroke["start"], "f8", 2).copy()
     rows, which = numbers(stroke["paths"]["f8"], "f8", 7), numbers(stroke["paths"]["u1"], "u1", 2)
     assert len(rows) == len(which) == stroke["paths"]["count"]
@@ -90,7 +90,7 @@ def fouls():
     return kept
 
 
-def test_what_the_referee_said_is_told(strokes, fouls):
+def test_what_the_referee_said_is_recorded(strokes, fouls):
     strokes = strokes + fouls
     data = sn.replay(strokes, players=["Ada"]).to_dict()
     assert data["players"] == ["Ada"] and data["format"] == "snooker-replay"
@@ -108,7 +108,7 @@ def test_what_the_referee_said_is_told(strokes, fouls):
 
 
 def test_the_cue_as_struck_sets_the_cue_ball_off(strokes):
-    """Velocity and spin of the cue ball at time 0 are those of the strike that is told."""
+    """Velocity and spin of the cue ball at time 0 are those of the recorded strike."""
     noisy = visit(5, 10, noise="club")
     for played in strokes[:5] + noisy:
         v, w = sn.strike(**played.cue)
@@ -161,7 +161,7 @@ def test_spins_at_rest_are_kept():
     assert set(which[:, 0].tolist()) == {0} and numbers(stroke["paths"]["f4"], "f4", 3)[0, 2] == 50.0
 
 
-def test_a_frame_and_a_match_tell_both_players():
+def test_a_frame_and_a_match_name_both_players():
     env = sn.SnookerEnv(task="frame", opponent="ghost_ball", action="discrete", layout="pots:easy")
     env.keep_history = True
     env.reset(seed=1)
@@ -181,7 +181,7 @@ def test_a_frame_and_a_match_tell_both_players():
     assert len(sn.replay(match)) == len(match.history) > 0
 
 
-def test_history_is_kept_when_asked_and_starts_anew():
+def test_history_is_kept_on_request_and_starts_anew():
     env = sn.SnookerEnv(action="discrete")
     env.reset(seed=1)
     env.step(67)
@@ -235,7 +235,7 @@ def test_bad_arguments_are_refused(strokes, tmp_path):
     refused(lambda: sn.replay(strokes, players=["a", "b"]), "players", "2 names", "one for a visit")
     refused(lambda: sn.replay(strokes, title="\ud800"), "title", "ud800", "surrogate")
     slower = sn.simulate([(0.0, 0.0)], [(1.0, 0)], [(0, 0, 0)], physics={"spin_decel": 5.0})
-    refused(lambda: sn.replay([strokes[0], slower]), "strokes[1]", "another world", "spin_decel")
+    refused(lambda: sn.replay([strokes[0], slower]), "strokes[1]", "other physics", "spin_decel")
     refused(lambda: sn.replay(strokes, title=3), "title", "3", "must be a str")
     refused(lambda: sn.replay(strokes, tmp_path / "break.exe"), "suffix", ".exe", ".html")
     refused(lambda: sn.replay(strokes[0]).save(tmp_path / "a.html", fps=3), "path", "a.html", "must end in .mp4 or .gif")

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import tarfile
 import time
 import venv
 import zipfile
@@ -111,7 +112,7 @@ RUN_FILE = "import subprocess, sys; sys.exit(subprocess.run([sys.executable, 'wo
 
 
 def test_without_the_site_it_is_not_registered(installed):
-    """The control: neither Gymnasium nor anything else here knows the id by itself."""
+    """The control: neither Gymnasium nor anything else here has the id by itself."""
     paths = [str(installed.site), str(installed.cwd.parent / "libraries"), str(ROOT)]
     code = f"import sys; sys.path += {paths!r}\nimport gymnasium\nprint('Snooker-v0' in gymnasium.registry)"
     assert installed.run(code, "-S")[0] == "False\n"
@@ -157,17 +158,17 @@ def test_gymnasium_is_imported_whatever_happens_to_the_id(installed):
     finally:
         shutil.rmtree(installed.cwd / "snooker_env")
     assert out == "CartPole-v1\n" and err.count("\n") == 1
-    assert err.startswith("snooker_env: Snooker-v0 is not registered: FileNotFoundError: ")
+    assert err.startswith("snooker_env: its environments are not registered: FileNotFoundError: ")
 
 
 def test_the_module_keeps_its_source_and_its_loader(installed):
     """What tracers and debuggers ask for."""
-    look = "type(r.__loader__).__name__, r.__spec__.name, 'def make' in inspect.getsource(r)"
-    code = f"import gymnasium.envs.registration as r, inspect\nprint({look})"
+    found = "type(r.__loader__).__name__, r.__spec__.name, 'def make' in inspect.getsource(r)"
+    code = f"import gymnasium.envs.registration as r, inspect\nprint({found})"
     assert installed.run(code)[0] == "SourceFileLoader gymnasium.envs.registration True\n"
 
 
-def test_a_gymnasium_that_is_there_already_is_told_at_once():
+def test_a_gymnasium_that_is_there_already_has_the_id_at_once():
     """A ``.pth`` file that sorts before ours may have imported it."""
     code = (
         "import gymnasium, sys; sys.path.insert(0, 'snooker_env'); import _autoregister\n"
@@ -188,3 +189,24 @@ def test_the_wheel_holds_what_belongs_there(tmp_path, monkeypatch):
     }  # fmt: skip
     assert "snooker_env/_registration.py" in names and len(names) == len(set(names))
     assert [name for name in names if name.endswith(".pth")] == ["snooker_env_autoregister.pth"]
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="only a clone can say what belongs to it")
+def test_the_source_distribution_is_a_clone_and_gives_the_same_wheel(tmp_path, monkeypatch):
+    """Tests, agents, weights and documents come with it; what git ignores does not. Data files of the package are in the wheel."""
+    monkeypatch.chdir(ROOT)
+    with tarfile.open(tmp_path / hatchling.build_sdist(str(tmp_path))) as source:
+        source.extractall(tmp_path)
+    (tree,) = (path for path in tmp_path.iterdir() if path.is_dir())
+    there = {path.relative_to(tree).as_posix() for path in tree.rglob("*") if path.is_file()}
+    listed = subprocess.run(["git", "ls-files", "-z", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True)
+    here = {name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()}
+    assert there - here == {"PKG-INFO"} and here <= there, sorted(here ^ there)[:20]
+    wheels = []
+    for folder in (ROOT, tree):
+        monkeypatch.chdir(folder)
+        with zipfile.ZipFile(tmp_path / hatchling.build_wheel(str(tmp_path))) as wheel:
+            wheels.append({name: wheel.getinfo(name).CRC for name in wheel.namelist() if not name.endswith("RECORD")})
+    assert wheels[0] == wheels[1]
+    data = {name for name in here if name.startswith("snooker_env/") and not name.endswith(".py")} - {"snooker_env/_autoregister.pth"}
+    assert data <= set(wheels[0]) and {"snooker_env/py.typed", "snooker_env/game/opened.npz"} <= data

@@ -288,3 +288,15 @@ def test_equal_sources_share_their_machine_code_wherever_they_lie(toy, tmp_path)
     assert toy(PYTHONPATH=os.pathsep.join([str(tmp_path / "moved"), str(ROOT)])) == (LOADED, "")
     (tmp_path / "moved/toy.py").write_text(TOY + "\n# changed\n")
     assert toy(PYTHONPATH=os.pathsep.join([str(tmp_path / "moved"), str(ROOT)])) == (FRESH, "")
+
+
+@pytest.mark.parametrize("way", ["-c", "-"])
+def test_a_kernel_that_is_in_no_file_is_not_kept(tmp_path, way):
+    """Two versions of it have the same bytecode and place, and no hash that differs: the second would run the machine code of the first."""
+    env = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "0"}
+    for factor in ("2.0", "3.0"):
+        code = TOY.replace("2.0", factor) + "print(double(1.0))"
+        command, given = ([sys.executable, way, code], None) if way == "-c" else ([sys.executable, way], code)
+        done = subprocess.run(command, cwd=tmp_path, env=env, input=given, capture_output=True, text=True, check=True, timeout=120)
+        assert done.stdout.strip() == factor
+        assert "compiling a toy, about 3 s (for this process only;" in done.stderr

@@ -19,7 +19,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
-BASE = {"_jit", "_check", "_files", "_types", "geometry"}
+BASE = {"_jit", "_check", "_files", "_shots", "_types", "geometry"}
 ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
@@ -28,6 +28,7 @@ ALLOWED = {
     "_autoregister": set(),
     "_types": set(),
     "_files": set(),
+    "_shots": set(),
     "_check": {"_types"},
     "checks": {"_check", "physics"},
     "kernels": {"_jit", "game", "tasks"},
@@ -47,12 +48,13 @@ ALLOWED = {
     "match": {"_types", "envs", "tasks"},
     "widget": {"_check", "replays"},
     "play": BASE | {"physics", "shot", "simulation", "game", "tasks", "planning", "advice", "render", "replays"},
+    "benchmark": BASE | {"physics", "simulation", "game", "tasks", "planning", "advice", "envs", "play", "_warmup", "__version__"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
     "__init__": BASE | {"physics", "impacts", "shot", "simulation", "tasks", "planning", "advice", "envs", "match", "replays"},
 }
 ALLOWED["__init__"] |= {"_warmup", "_registration"}
 OUTSIDE = {
-    "gymnasium": {"envs", "tasks", "__init__", "sb3", "replays"},
+    "gymnasium": {"benchmark", "envs", "tasks", "__init__", "sb3", "replays"},
     "pygame": {"render"},
     "matplotlib": {"render"},
     "pettingzoo": {"envs"},
@@ -61,6 +63,7 @@ OUTSIDE = {
     "traitlets": {"widget"},
 }
 OUTSIDE |= {name: {"play"} for name in ("hmac", "http", "secrets", "socket", "urllib", "webbrowser")}  # the network, as well
+OUTSIDE |= {name: {"benchmark"} for name in ("datetime", "platform", "queue", "shlex")}
 OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
@@ -181,7 +184,7 @@ def test_each_file_says_first_which_question_it_answers(name):
     else:
         question, mark, rest = first.partition("?")
         assert mark and len(question.split()) >= 3, f"{name} starts with {first!r}, not with the question that it answers"
-        assert question[0].isupper() and rest.strip(), f"{name} asks {question!r}? but does not say more on the line"
+        assert question[0].isupper() and rest.strip(), f"{name} has the question {question!r}, but does not say more on the line"
 
 
 @pytest.mark.parametrize("name", NAMES)

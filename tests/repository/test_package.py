@@ -25,7 +25,7 @@ def test_the_import_is_light():
     out, _ = python(
         "import sys, json\n"
         "import gymnasium, numba, numpy\n"
-        "needed = set(sys.modules)\n"  # numba looks whether scipy is there; that is its own affair
+        "needed = set(sys.modules)\n"  # numba imports scipy where there is one
         "import snooker_env\n"
         "print(json.dumps(sorted(set(sys.modules) - needed)))\n",
     )
@@ -182,7 +182,7 @@ print(positions[balls.BLACK, 1], hits, _jit.CACHE_FOLDER)
 
 
 def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
-    """numba looks at the file of the entry kernel (spotting.py) only; the black's place is frozen in from geometry.py."""
+    """numba checks only the file of the entry kernel (spotting.py); the black's place is frozen in from geometry.py."""
     at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
     runs = [python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() for _ in range(2)]
     assert [run[:2] for run in runs] == [["1.4605", "0"], ["1.4605", "1"]]  # compiled once, then loaded
@@ -317,7 +317,7 @@ def test_fresh_and_cached_machine_code_give_the_same_bits(golden, tmp_path):
         assert python(code, NUMBA_CACHE_DIR=str(cache))[0].split() == [want]
 
 
-def test_a_pickled_shot_and_world_stay_what_they_are():
+def test_a_pickled_shot_and_physics_stay_what_they_are():
     import pickle
 
     shot = sn.simulate([(0.0, 0.0), (0.3, 0.0)], [(1.0, 0.0), (0.0, 0.0)], np.zeros((2, 3)), physics="match")

@@ -20,7 +20,7 @@ USERS = sorted(
     for path in [ROOT / name, *(ROOT / name).rglob("*.py")]
     if path.is_file()
 )
-README = "\n".join(re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL))
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def promised(path):
@@ -55,7 +55,7 @@ def private(source):
                     found.append(f"{node.module}: {name}")
     attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)]
     used = {node.attr for node in attributes if isinstance(node.value, ast.Name) and node.value.id in aliases}
-    found += [f"snooker_env.{name}" for name in used - {*ALL["snooker_env"], "__version__"} if f"snooker_env.{name}" not in ALL]
+    found += [f"snooker_env.{name}" for name in used - {*ALL["snooker_env"], "__version__", "__file__"} if f"snooker_env.{name}" not in ALL]
     return found + re.findall(r"\b(?:env|tables|venv)\.(?:frames|shooter|visits)\b", source)  # what environments are made of
 
 
@@ -77,9 +77,16 @@ def test_agents_commands_and_examples_use_public_names_only(path):
     assert private(path.read_text(encoding="utf-8")) == []
 
 
-def test_the_readme_uses_public_names_only():
-    assert private(README) == [] and README.count("snooker_env") > 5
-    assert len(USERS) > 40
+def examples(page):
+    """The Python of a page, that of its notebook cells included."""
+    return re.findall(r"```(?:python|\{code-cell\}[^\n]*)\n(?::\w.*?\n)*(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+
+
+def test_the_readme_and_the_documentation_use_public_names_only():
+    shown = {page.relative_to(ROOT).as_posix(): examples(page) for page in PAGES}
+    assert "snooker_env.physics.impact: inertia" in [name for block in shown.pop("docs/physics/derivation.md") for name in private(block)]
+    assert {page: found for page, blocks in shown.items() if (found := [name for block in blocks for name in private(block)])} == {}
+    assert len(USERS) > 40 and len(shown["README.md"]) >= 3 and sum(map(len, shown.values())) > 40
 
 
 def test_public_modules_are_those_that_the_package_names():

@@ -1,4 +1,4 @@
-"""May people use this, and how? Licence, authors, citation, change log, and the words that tell how to install it."""
+"""May people use this, and how? Licence, authors, citation, change log, and the instructions to install it."""
 
 import re
 import subprocess
@@ -28,9 +28,9 @@ def built(tmp_path_factory):
 
 
 def test_the_wheel_says_who_may_use_it(built):
-    told = built.metadata
-    assert told["License-Expression"] == "MIT" and told.get_all("License-File") == ["LICENSE", "snooker_env/render/fonts/OFL.txt"]
-    assert told["Author"] == "the snooker_env authors" and told["Version"] == sn.__version__
+    found = built.metadata
+    assert found["License-Expression"] == "MIT" and found.get_all("License-File") == ["LICENSE", "snooker_env/render/fonts/OFL.txt"]
+    assert found["Author"] == "the snooker_env authors" and found["Version"] == sn.__version__
     text = built.read_text("licenses/LICENSE")
     assert text == (ROOT / "LICENSE").read_text()
     assert "SIL OPEN FONT LICENSE" in built.read_text("licenses/snooker_env/render/fonts/OFL.txt").upper()
@@ -38,7 +38,7 @@ def test_the_wheel_says_who_may_use_it(built):
 
 
 def released():
-    """The versions that the change log tells of, newest first."""
+    """The versions in the change log, newest first."""
     return re.findall(r"^## (\d+\.\d+\.\d+)", (ROOT / "CHANGELOG.md").read_text(), re.M)
 
 
@@ -52,7 +52,7 @@ def test_the_citation_names_the_last_release():
     assert cited["authors"] == [{"name": "the snooker_env authors"}]
 
 
-def test_the_change_log_tells_of_this_version_and_of_every_one_before():
+def test_the_change_log_has_this_version_and_every_one_before():
     versions, text = released(), (ROOT / "CHANGELOG.md").read_text()
     assert versions[-1] == "0.1.0" and versions == sorted(versions, key=number, reverse=True)
     if ".dev" in sn.__version__:  # of the release to come
@@ -61,8 +61,8 @@ def test_the_change_log_tells_of_this_version_and_of_every_one_before():
         assert sn.__version__ == versions[0] and "## Unreleased\n" not in text
 
 
-def test_nobody_is_told_to_install_from_an_index_that_does_not_have_it():
+def test_no_text_says_to_install_from_an_index_that_does_not_have_it():
     """The package is on no index: a bare ``pip install snooker-env`` would fail, or fetch whatever takes that name."""
-    told = [f"{p.relative_to(ROOT)}: {line}" for p in TEXTS for line in p.read_text(encoding="utf-8").splitlines() if "pip install" in line]
-    assert len(told) > 5
-    assert not [line for line in told if re.search(r"pip install [\"'\w -]*snooker[-_]env", line)]
+    said = [f"{p.relative_to(ROOT)}: {line}" for p in TEXTS for line in p.read_text(encoding="utf-8").splitlines() if "pip install" in line]
+    assert len(said) > 5
+    assert not [line for line in said if re.search(r"pip install [\"'\w -]*snooker[-_]env", line)]

@@ -68,7 +68,7 @@ for n in (0, 1, 2, 5):  # lengths of one make numpy call a column contiguous
 for t in (*kinds([0, 1, 2]), *(x(1) for x in NUMBERS), [1], []):
     one.at(t)
 seen = pickle.loads(pickle.dumps(one, protocol=5, buffer_callback=(buffers := []).append), buffers=[bytes(b.raw()) for b in buffers])
-assert not seen.segments.flags.writeable  # as Ray hands arrays to its workers
+assert not seen.segments.flags.writeable  # as Ray passes arrays to its workers
 close(seen.at(1), one.at(1))
 preset = sn.Table.preset()
 own = sn.Table("own", np.asfortranarray(preset.noses), preset.jaws.tolist(), preset.falls.astype(">f8"))

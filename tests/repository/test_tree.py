@@ -1,4 +1,4 @@
-"""Is the tree of agents, benchmarks and commands what CONTRIBUTING.md says? Layers, names of classes, and what players do not load."""
+"""Is the tree of agents, benchmarks and commands what docs/develop/architecture.md says? Layers, class names, what players do not load."""
 
 import ast
 from collections import defaultdict
@@ -35,7 +35,7 @@ def imports(path):
 def test_the_reader_of_imports_sees_every_kind():
     seen = set(imports(ROOT / "agents/players/by_name.py"))
     assert {"agents.players.built_in.Random", "agents.players.trained.load_player", "importlib", "pathlib.Path"} <= seen
-    assert "benchmarks._common.provenance" not in seen and "commands.provenance" in set(imports(ROOT / "benchmarks/scene.py"))
+    assert "benchmarks._common.provenance" not in seen and "commands.provenance" in set(imports(ROOT / "benchmarks/scene/command.py"))
     assert [layer_of(m) for m in ("agents.players.search", "agents.curves.main", "numpy")] == ["agents.players", "agents", None]
     assert len(FILES) > 80
 

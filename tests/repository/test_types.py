@@ -1,4 +1,4 @@
-"""Are the annotations true? Pyright on right and wrong calls, what it knows of the package, hints that resolve, and what help() shows."""
+"""Are the annotations true? Pyright on right and wrong calls, what it finds in the package, hints that resolve, and what help() shows."""
 
 import dataclasses
 import inspect
@@ -41,7 +41,7 @@ GOOD = (
     "kinds = [sn.EventKind(kind).name for kind in shot.events['kind']]",
     "batch = sn.simulate_batch(np.zeros((3, 1, 2)), [[(1.0, 0.0)]] * 3, np.zeros((3, 1, 3)), events=True, threads=2)",
     "logs: int = 0 if batch.events is None else len(batch.events)",
-    # worlds
+    # physics and tables
     "physics = sn.Physics.preset('match', mu_s=0.2)",
     "law: tuple[float, float, float] = sn.Physics(mu_bb=(0.01, 0.1, 1.0), e_j=0.9).friction_law",
     "pocket = sn.Pocket.corner(mouth=0.115, shelf=0.03, fall_radius=0.07, cut=142.0)",
@@ -171,11 +171,11 @@ def test_calls_of_each_documented_kind_run(tmp_path):
     assert done.returncode == 0, done.stderr
 
 
-def test_the_checker_knows_the_types_of_public_names():
-    told = pyright("--verifytypes", "snooker_env", "--ignoreexternal")["typeCompleteness"]
-    assert Path(told["packageRootDirectory"]).parent == ROOT
-    unknown = [one["name"] for one in told["symbols"] if one["isExported"] and not one["isTypeKnown"]]
-    assert told["completenessScore"] >= LEAST, unknown
+def test_the_checker_finds_the_types_of_public_names():
+    report = pyright("--verifytypes", "snooker_env", "--ignoreexternal")["typeCompleteness"]
+    assert Path(report["packageRootDirectory"]).parent == ROOT
+    unknown = [one["name"] for one in report["symbols"] if one["isExported"] and not one["isTypeKnown"]]
+    assert report["completenessScore"] >= LEAST, unknown
 
 
 MODULES = (sn, planning, tasks, game, geometry, checks, render)
@@ -220,7 +220,7 @@ def test_annotations_can_be_resolved_when_the_program_runs(name):
 
 
 @pytest.mark.parametrize("name", [name for name, thing in PUBLIC.items() if callable(thing)])
-def test_docstrings_tell_parameters_returns_and_members(name):
+def test_docstrings_describe_parameters_returns_and_members(name):
     for thing in members(PUBLIC[name]):
         text = inspect.getdoc(thing)
         assert text, thing
@@ -229,13 +229,13 @@ def test_docstrings_tell_parameters_returns_and_members(name):
             if dataclasses.is_dataclass(thing):
                 shown = [f.name for f in dataclasses.fields(thing) if not f.name.startswith("_")]
             for member in shown:
-                assert re.search(rf"^(\w+, )*{member}\b", text, re.MULTILINE), f"{name} does not tell of {member}"
+                assert re.search(rf"^(\w+, )*{member}\b", text, re.MULTILINE), f"{name} does not describe {member}"
         elif inspect.isfunction(thing) and not is_property(PUBLIC[name], thing):
             parameters = [p for p in inspect.signature(thing).parameters.values() if p.name not in ("self", "cls", "args", "kwargs")]
             assert not parameters or re.search(r"^Parameters\n-{10}$", text, re.MULTILINE), thing.__qualname__
             for parameter in parameters:
                 listed = re.search(rf"^([\w*]+, )*\**{parameter.name}\b", text, re.MULTILINE)
-                assert listed, f"{thing.__qualname__} does not tell of {parameter.name}"
+                assert listed, f"{thing.__qualname__} does not describe {parameter.name}"
             if inspect.signature(thing).return_annotation not in (None, "None"):
                 assert re.search(r"^Returns\n-{7}$", text, re.MULTILINE), thing.__qualname__
 

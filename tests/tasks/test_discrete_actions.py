@@ -28,7 +28,7 @@ def test_the_numbers_count_pots_speeds_sides_and_tops():
 def test_the_object_ball_rolls_at_the_pocket(physics):
     """Judged by the engine, which the solver does not use: two balls on unbounded cloth, the aim as the environment struck it."""
     rng = np.random.default_rng(1)
-    world, worst, seen = sn.Physics.preset(physics), [], 0
+    constants, worst, seen = sn.Physics.preset(physics), [], 0
     while seen < 60:
         cue, ball = rng.uniform((-0.8, -1.6), (0.8, 1.6)), rng.uniform((-0.8, -1.6), (0.8, 1.6))
         positions, on_table = np.zeros((22, 2)), np.zeros(22, bool)
@@ -43,7 +43,7 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         env.step(choice_of(0, speed, side, top))
         v, w = env._record.buffers.v[0, 0], env._record.buffers.w[0, 0]
         start = env._record.buffers.shots[0]
-        shot = sn.simulate([cue, ball], [start[:2], (0, 0)], [start[2:5], (0, 0, 0)], table=None, physics=world)
+        shot = sn.simulate([cue, ball], [start[:2], (0, 0)], [start[2:5], (0, 0, 0)], table=None, physics=constants)
         hit = shot.events[shot.events["kind"] == sn.EventKind.BALL_BALL]
         rolls = shot.events[(shot.events["kind"] == sn.EventKind.ROLL) & (shot.events["i"] == 1)]
         assert len(hit) and v.shape == (2,) and w.shape == (3,)

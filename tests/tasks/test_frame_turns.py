@@ -38,7 +38,7 @@ def test_the_agent_stays_while_it_scores_and_the_opponent_comes_after_a_miss():
     assert info["points"] == 0.0 and info["opponent_strokes"] > 0
 
 
-def test_alone_a_miss_and_a_foul_hand_the_table_back():
+def test_alone_a_miss_and_a_foul_give_the_table_back():
     places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
     env = frame_state(frame_env(aim="absolute"), places, {})
     before = env.positions[BLUE].copy()
@@ -124,7 +124,7 @@ def test_points_add_up_to_the_difference_and_win_says_who_won(opponent):
         assert totals["win"] == (1.0 if info["winner"] == 0 else -1.0)
 
 
-# What a step tells
+# What a step returns
 
 
 ON_BLACK = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}

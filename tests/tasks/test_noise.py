@@ -48,11 +48,11 @@ def test_each_level_is_as_wide_as_written(name):
 
 @pytest.mark.parametrize(("name", "physics"), [*((name, "paper") for name in LEVELS), ("club", {"end_mass_ratio": 15.0})])
 def test_the_total_direction_error_is_that_of_the_balls_struck(name, physics):
-    """Aim and squirt together, as the balls leave; 4000 of them tell a standard deviation to 1.1 %."""
-    world = Physics.of(physics)
+    """Aim and squirt together, as the balls leave; 4000 of them give a standard deviation to 1.1 %."""
+    constants = Physics.of(physics)
     ways = []
     for speed, side, top, aim, elevation in drawn(LEVELS[name], 4000, 2.0, 0.0, 0.0, 0.0, 0.0).tolist():
-        v, _ = strike(speed, aim, side, top, elevation, world)
+        v, _ = strike(speed, aim, side, top, elevation, constants)
         ways.append(math.degrees(math.atan2(v[1], v[0])))
     assert np.std(ways) == pytest.approx(LEVELS[name].direction_deg(physics), rel=0.045, abs=1e-12)
 

@@ -15,7 +15,7 @@ from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.tasks.saved_models import SavedModel
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_POINTS, Crew
-from tests.bombs import bombed, rezipped, told
+from tests.bombs import bombed, edited, rezipped
 from tests.tables import PLACES, frame_env, frame_state
 
 
@@ -190,8 +190,8 @@ def test_nothing_of_a_model_runs_without_consent(saved, tmp_path, weights):
 
 @pytest.mark.parametrize("change", [{"_shape": [121]}, {":type:": "<class 'gymnasium.spaces.box.Box'>", "_shape": [121]}])
 def test_a_model_that_holds_other_than_it_says_is_refused_when_made(saved, tmp_path, change):
-    path = rezipped(saved / "pendulum.zip", tmp_path / "model.zip", data=told(lambda found: found["observation_space"].update(change)))
-    path = rezipped(path, tmp_path / "lie.zip", data=told(lambda found: found["action_space"].update({"_shape": [4]})))
+    path = rezipped(saved / "pendulum.zip", tmp_path / "model.zip", data=edited(lambda found: found["observation_space"].update(change)))
+    path = rezipped(path, tmp_path / "lie.zip", data=edited(lambda found: found["action_space"].update({"_shape": [4]})))
     with pytest.raises(ValueError, match=r"opponent = .*: must be a model that sees observation"):
         SnookerEnv(task="frame", opponent=path, trust=True)
 
@@ -204,7 +204,7 @@ def test_a_model_that_holds_other_than_it_says_is_refused_when_made(saved, tmp_p
         lambda found: found["action_space"].update(_shape=None), lambda found: found.update(action_space=None),
     ],
 )  # fmt: skip
-def test_a_file_that_tells_nothing_sound_is_refused(saved, tmp_path, change):
+def test_a_file_that_holds_nothing_sound_is_refused(saved, tmp_path, change):
     file = bombed(saved / "visit.zip", tmp_path / "model.zip", tmp_path / "mark", change=change)
     with pytest.raises(ValueError, match=r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \("):
         SnookerEnv(task="frame", opponent=str(file), trust=True)
@@ -233,7 +233,7 @@ def test_a_file_that_is_none_of_stable_baselines_is_refused(tmp_path, content):
 @pytest.mark.parametrize("name", ["ppo_mask", "ppo_target"])
 def test_the_agents_of_this_project_see_more_than_a_frame_shows(name):
     file = Path(__file__).parents[2] / f"agents/pretrained/{name}.zip"
-    with pytest.raises(ValueError, match=r"opponent = .*: must be a model that sees what the environment shows and nothing else"):
+    with pytest.raises(ValueError, match=r"opponent = .*: must be a model that observes what the environment shows and nothing else"):
         SnookerEnv(task="frame", opponent=file, trust=True)
 
 

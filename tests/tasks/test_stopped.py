@@ -57,7 +57,7 @@ def test_a_match_of_fouls_and_orders_to_play_again_ends_by_itself():
     env.reset(seed=1)
     state = env.get_state()
     env.reset(options={"state": state | {"frame": state["frame"] | {"scores": [9_990, 9_990]}}})
-    for _ in range(2000):  # a turn is a stroke, or hands the table over
+    for _ in range(2000):  # a turn is a stroke, or gives the table over
         env.step(FOUL)
         assert not any(env.terminations.values())
         if any(env.truncations.values()):

@@ -151,9 +151,11 @@ def test_a_foul_on_the_last_black_ends_it_too():
     assert (reward, terminated, info["penalty"]) == (-7.0, True, 7) and env.over
 
 
-@pytest.mark.parametrize(("name", "rewards"), [("points", (7, 0, 0)), ("points_and_fouls", (7, 0, -7)), ("pots", (1, 0, 0))])
+@pytest.mark.parametrize(
+    ("name", "rewards"), [("points", (7, 0, 0)), ("points_and_fouls", (7, 0, -7)), ("pots", (1, 0, 0)), ("legal", (1, 1, 0))]
+)
 def test_reward_kinds(name, rewards):
-    assert set(REWARDS) == {"points", "points_and_fouls", "pots"}
+    assert set(REWARDS) == {"points", "points_and_fouls", "pots", "legal"}
     env = SnookerEnv(reward=name)
     got = []
     for places, action in [

@@ -34,8 +34,8 @@ def visit():
     data = sn.replay(shots, title="A visit of tests").to_dict()
     places, on = shots[1].positions.copy(), shots[1].on_table.copy()
     places[[0, 21]], on[[0, 21]] = [(0.1, -1.2), (0.0, 1.4605)], True
-    told = [(0, 1, [2], "red", [1, 0], 1), (0, 7, [21], "black", [8, 0], 8), (1, 0, [], "red", [8, 0], 0)]
-    for k, (player, points, pots, on_words, score, run) in enumerate(told):
+    rows = [(0, 1, [2], "red", [1, 0], 1), (0, 7, [21], "black", [8, 0], 8), (1, 0, [], "red", [8, 0], 0)]
+    for k, (player, points, pots, on_words, score, run) in enumerate(rows):
         data["strokes"][k] |= {
             "player": player, "points": points, "pots": pots, "ball_on": on_words, "score": score, "break": run,
             "words": f"The referee's words after stroke {k + 1}.",

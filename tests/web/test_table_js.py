@@ -11,7 +11,7 @@ from snooker_env.replays.encode import packed
 from tests.web.chromium import WEB, chromium, module_page  # noqa: F401
 from tests.web.replay_data import MATCH, doubles, hit
 
-WORLDS = {  # table, physics, balls
+GAMES = {  # table, physics, balls
     "snooker": ("match", MATCH, 22),
     "paper, few balls": ("match", sn.Physics(), 5),
     "nap": ("match", sn.Physics.preset("match", nap=0.02), 22),
@@ -21,9 +21,9 @@ WORLDS = {  # table, physics, balls
 }
 
 
-def start_of(world, rng):
-    """Places (n, 2) and flags for a shot in a world: snooker's break-off with some balls gone, else balls strewn over the bed."""
-    table, physics, n = WORLDS[world]
+def start_of(game, rng):
+    """Places (n, 2) and flags for a shot of a game: snooker's break-off with some balls gone, else balls strewn over the bed."""
+    table, physics, n = GAMES[game]
     if n == 22:
         r, here = layout("break_off" if rng.random() < 0.5 else "random:9", rng)
         return r, here
@@ -36,17 +36,17 @@ def start_of(world, rng):
 
 
 def shots(count, rng):
-    """(world, shot, start, on_table) of ``count`` shots: hard and soft, with draw, side and a raised cue, in all worlds in turn."""
+    """(game, shot, start, on_table) of ``count`` shots: hard and soft, with draw, side and a raised cue, of all games in turn."""
     made = []
     for k in range(count):
-        world = list(WORLDS)[k % len(WORLDS)]
-        table, physics, _ = WORLDS[world]
-        r, here = start_of(world, rng)
+        game = list(GAMES)[k % len(GAMES)]
+        table, physics, _ = GAMES[game]
+        r, here = start_of(game, rng)
         other = rng.choice(np.flatnonzero(here)[1:])
         aim = np.arctan2(*(r[other] - r[0])[::-1]) + rng.normal(0, 0.01)
         side, top = rng.uniform(-0.33, 0.33, 2)
         shot = hit(r, here, rng.uniform(0.5, 9.0), aim, side, top, rng.choice([0.0, 0.1, 0.9]), table, physics)
-        made.append((world, shot, r, here))
+        made.append((game, shot, r, here))
     return made
 
 
@@ -63,8 +63,8 @@ AT = """({replay, times, names}) => {
 
 
 def in_browser(page, made, times, names):
-    """[(times, names, balls)] of shots of one world as the browser evaluates them."""
-    table = WORLDS[made[0][0]][0]
+    """[(times, names, balls)] of shots of one game as the browser evaluates them."""
+    table = GAMES[made[0][0]][0]
     replay = sn.replay([shot for _, shot, _, _ in made], table=table).to_dict()
     found = page.evaluate(AT, {"replay": replay, "times": [packed(t, "f8") for t in times], "names": names})
     return [doubles(text).reshape(len(t), len(names), -1) for text, t in zip(found, times, strict=True)]
@@ -90,8 +90,8 @@ def test_places_are_those_of_the_simulation_at_1000_times_of_100_shots(page):
         assert (kinds == kind).sum() >= 3, f"no {kind.name} among these shots"
     assert (states == cloth.BEND).sum() > 50
     worst, equal, total = 0.0, 0, 0
-    for world in WORLDS:
-        ours = [one for one in made if one[0] == world]
+    for game in GAMES:
+        ours = [one for one in made if one[0] == game]
         times = [np.append(rng.uniform(0, 1.05 * shot.duration, 998), (0.0, shot.duration)) for _, shot, _, _ in ours]
         times = [
             np.append(t[:-100], rng.choice(np.append(shot.events["time"], 0.0), 100))
@@ -109,8 +109,8 @@ def test_places_are_those_of_the_simulation_at_1000_times_of_100_shots(page):
 def test_velocities_spins_and_who_is_there(page):
     rng = np.random.default_rng(17)
     made = shots(18, rng)
-    for world in WORLDS:
-        ours = [one for one in made if one[0] == world]
+    for game in GAMES:
+        ours = [one for one in made if one[0] == game]
         times = [np.append(rng.uniform(0, 1.05 * shot.duration, 50), shot.events["time"][:20]) for _, shot, _, _ in ours]  # impacts, too
         names = ["vx", "vy", "wx", "wy", "wz", "on"]
         for (_, shot, _, here), t, found in zip(ours, times, in_browser(page, ours, times, names), strict=True):

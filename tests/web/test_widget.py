@@ -18,7 +18,7 @@ async ([source, state]) => {
   const { default: widget } = await import(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
   const handlers = {}, sent = [];
   let dirty = {};
-  const model = {  // as Backbone's: a change is told at once, to whoever listens; save_changes sends what was set
+  const model = {  // as Backbone's: a change is announced at once, to whoever listens; save_changes sends what was set
     get: name => state[name],
     set(name, value) {
       if (state[name] === value) return;
@@ -59,7 +59,7 @@ def hosted(browser, widget):
     return page
 
 
-def told(page):
+def shown_by(page):
     return page.evaluate("() => ({stroke: host.state.stroke, time: host.state.time, playing: host.state.playing})")
 
 
@@ -86,21 +86,21 @@ def test_the_state_is_json_and_the_module_is_whole(shots):
     assert "export default { render }" in state["_esm"] and "http" not in state["_esm"].replace("http://www.w3.org", "")
 
 
-def test_it_shows_the_time_that_python_asks_for_and_tells_what_a_viewer_does(shots, chromium):  # noqa: F811
+def test_it_shows_the_time_that_python_sets_and_reports_what_a_viewer_does(shots, chromium):  # noqa: F811
     page = hosted(chromium, replay_widget(shots))
     share, at_start = cloth_share(page)
     assert share > 0.4 and page.evaluate("host.el.querySelectorAll('button').length") > 5
     page.evaluate("host.model.set('time', 0.8)")
-    assert cloth_share(page)[1] != at_start and told(page) == {"stroke": 0, "time": 0.8, "playing": False}
+    assert cloth_share(page)[1] != at_start and shown_by(page) == {"stroke": 0, "time": 0.8, "playing": False}
     page.evaluate("host.model.set('time', 99)")  # beyond the end
-    assert shots[0].duration <= told(page)["time"] < shots[0].duration + 3  # some time is left to look
+    assert shots[0].duration <= shown_by(page)["time"] < shots[0].duration + 3  # some time is left to see it
     page.evaluate("host.model.set('stroke', 1)")
-    assert told(page) == {"stroke": 1, "time": 0.0, "playing": False}
+    assert shown_by(page) == {"stroke": 1, "time": 0.0, "playing": False}
     page.locator("button[aria-label='next event']").click()
     first = next(t for t in shots[1].events["time"] if t > 0)
-    assert told(page)["time"] == pytest.approx(first, abs=1e-8) and page.evaluate("host.sent.at(-1).time") == told(page)["time"]
+    assert shown_by(page)["time"] == pytest.approx(first, abs=1e-8) and page.evaluate("host.sent.at(-1).time") == shown_by(page)["time"]
     page.locator("button[aria-label='previous stroke']").click()
-    assert told(page)["stroke"] in (0, 1)
+    assert shown_by(page)["stroke"] in (0, 1)
     assert not page.faults
 
 
@@ -108,26 +108,26 @@ def test_play_and_pause_go_both_ways(shots, chromium):  # noqa: F811
     page = hosted(chromium, replay_widget(shots))
     page.evaluate("host.model.set('playing', true)")
     page.wait_for_timeout(400)
-    assert told(page)["playing"] and told(page)["time"] == page.evaluate("host.sent.filter(one => 'time' in one).at(-1)?.time ?? 0")
+    assert shown_by(page)["playing"] and shown_by(page)["time"] == page.evaluate("host.sent.filter(one => 'time' in one).at(-1)?.time ?? 0")
     messages = page.evaluate("host.sent.length")
     page.wait_for_timeout(300)
     assert page.evaluate("host.sent.length") <= messages + 1  # not one a frame
     page.locator("button[aria-label='pause']").click()
-    assert not told(page)["playing"] and page.evaluate("host.sent.at(-1).playing") is False
-    assert told(page)["time"] != 0.0
+    assert not shown_by(page)["playing"] and page.evaluate("host.sent.at(-1).playing") is False
+    assert shown_by(page)["time"] != 0.0
     page.locator("button[aria-label='play']").click()
-    assert told(page)["playing"]
+    assert shown_by(page)["playing"]
     page.evaluate("host.model.set('playing', false)")
-    before = told(page)
+    before = shown_by(page)
     page.wait_for_timeout(200)
-    assert told(page) == before and not page.faults
+    assert shown_by(page) == before and not page.faults
 
 
 def test_it_starts_where_the_traits_say_and_ends_cleanly(shots, chromium):  # noqa: F811
     widget = replay_widget(shots)
     widget.stroke, widget.time = 1, 0.5
     page = hosted(chromium, widget)
-    assert told(page) == {"stroke": 1, "time": 0.5, "playing": False}
+    assert shown_by(page) == {"stroke": 1, "time": 0.5, "playing": False}
     assert page.evaluate("host.el.dataset.lmSuppressShortcuts") == "true"
     page.evaluate("host.clean()")
     assert page.evaluate("host.el.childElementCount") == 0

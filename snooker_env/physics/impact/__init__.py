@@ -1,1 +1,1 @@
-"""What does one impact do? Two balls, or ball and cushion, pressed together and slipping: the model of Mathavan, Jackson & Parkin."""
+"""The frictional impact of two balls, or of a ball and a cushion: the model of Mathavan, Jackson & Parkin, and how it is integrated."""

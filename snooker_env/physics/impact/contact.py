@@ -1,7 +1,7 @@
-"""What does one impact do? Ball against ball and ball against cushion, in world coordinates, at any fidelity.
+"""How does one impact change the balls? Ball against ball and ball against cushion, in the table frame, at any fidelity.
 
-World frame: z up, metres, seconds; v = (vx, vy, vz) and w = (wx, wy, wz) are tuples. The kernels are total: with no closing speed
-they return their input unchanged.
+Table frame: z up, metres, seconds; v = (vx, vy, vz) and w = (wx, wy, wz) are tuples. Bodies that do not approach each other are returned
+unchanged.
 """
 
 from math import hypot, sqrt
@@ -16,54 +16,63 @@ from .impulse import OK, Accuracy, solve
 from .inertia import Slips
 
 FAST, STANDARD, REFERENCE, EULER = range(4)
-FIDELITIES = ("fast", "standard", "reference", "euler:N")
+_CODES = {"fast": FAST, "standard": STANDARD, "reference": REFERENCE}
+FIDELITIES = (*_CODES, "euler:N")
 MAX_EULER_STEPS = 10_000_000
 
-# Measured against the oracle of the tests: reference stays under 1e-9 of the larger incoming speed, standard under 1e-6 on 99 % of impacts
-# and 1e-5 on all.
+# Errors measured against the oracle of the tests, over the larger incoming speed: reference below 1e-9; standard below 1e-6 in 99 % of
+# impacts and below 1e-5 in all.
 _REFERENCE = Accuracy(tol=1e-13, delta=1e-13, creep=1e-5, order=20)
 _STANDARD = Accuracy(tol=5e-8, delta=1e-7, creep=1e-3, order=12)
-# Without the cloth's reaction a cushion would be wrong by 7 % of the speed, so "fast" keeps it and solves to a few per mille.
+# Without the cloth's reaction the error at a cushion would be 7 % of the speed, so "fast" includes it, and solves to a few per mille.
 _LOOSE = Accuracy(tol=1e-4, delta=1e-5, creep=1e-2, order=8)
 
 _NO_CLOSING = 1e-60
-"""A closing speed [m/s] below this is zero: the scaled slips would overflow. Nothing physical is lost."""
+"""A closing speed below this counts as zero [m/s], because the scaled slips would overflow. It has no physical effect."""
 
 
 def parse_fidelity(fidelity: Fidelity) -> Solver:
-    """A fidelity as the kernels read it.
+    """The code of a fidelity, as the kernels read it.
 
     Parameters
     ----------
     fidelity : str
-        "fast", "standard", "reference" or "euler:N".
+        "fast", "standard", "reference" or "euler:N" with N from 1 to 10,000,000.
 
     Returns
     -------
-    (int, int)
-        A code, and N; 0 unless Euler.
+    code : int
+        0 to 3, in the order above.
+    n_steps : int
+        N of "euler:N", else 0.
 
     Raises
     ------
     ValueError
         For anything else.
+
+    Examples
+    --------
+    >>> from snooker_env.checks import parse_fidelity
+    >>> parse_fidelity("standard"), parse_fidelity("euler:5000")
+    ((1, 0), (3, 5000))
     """
-    names = {"fast": FAST, "standard": STANDARD, "reference": REFERENCE}
     if isinstance(fidelity, str):
-        if fidelity in names:
-            return names[fidelity], 0
+        if fidelity in _CODES:
+            return _CODES[fidelity], 0
         head, _, n = fidelity.partition(":")
         if head == "euler" and n.isascii() and n.isdigit() and len(n) < 10 and 1 <= int(n) <= MAX_EULER_STEPS:
             return EULER, int(n)
-    raise refuse("fidelity", fidelity, f'must be "fast", "standard", "reference" or "euler:N" with N in [1, {MAX_EULER_STEPS}]')
+    names = ", ".join(f'"{name}"' for name in _CODES)
+    raise refuse("fidelity", fidelity, f'must be {names} or "euler:N" with N in [1, {MAX_EULER_STEPS}]')
 
 
 @kernel
 def cushion_restitution(speed, phys):
-    """e(v) = e_c up to the knee, e_c (v / knee)^(-power) above; v the horizontal speed into the cushion [m/s], power < 1: v e(v) rises.
+    """Restitution at a cushion: e(v) = e_c up to the knee, e_c (v / knee)^(-power) above. v: horizontal speed into the cushion [m/s].
 
-    Source of the form: an impact that loses energy by yielding has e ~ v^(-1/4) (Johnson, Contact Mechanics, 1985, 11.5); power and knee
-    are fitted (``Physics.preset``). A law of one contact: it knows the speed straight into the cushion, not the spin.
+    With power < 1, v e(v) rises. Source of the form: an impact that loses energy by yielding has e ~ v^(-1/4) (Johnson, Contact Mechanics,
+    1985, 11.5); power and knee are fitted (``Physics.preset``). The law depends on the normal speed alone, not on the spin.
     """
     if phys[P_E_POWER] > 0.0 and speed > phys[P_E_KNEE]:
         return phys[P_E_C] * (speed / phys[P_E_KNEE]) ** -phys[P_E_POWER]
@@ -72,29 +81,30 @@ def cushion_restitution(speed, phys):
 
 @kernel
 def _to_frame(a, nx, ny):
-    """World -> (tangent, normal, up): X = Y x Z = (ny, -nx)."""
+    """A vector of the table frame in the frame of the contact, (tangent, normal, up): X = Y x Z = (ny, -nx)."""
     return a[0] * ny - a[1] * nx, a[0] * nx + a[1] * ny, a[2]
 
 
 @kernel
-def _to_world(a, nx, ny):
+def _to_table(a, nx, ny):
+    """The inverse of ``_to_frame``."""
     return a[0] * ny + a[1] * nx, a[1] * ny - a[0] * nx, a[2]
 
 
 @kernel
 def _friction_impulse_free(xa, za, ya, law, e):
-    """Two free spheres, per unit mass: friction impulse, opposite to the first slip and no more than ends it, and normal impulse."""
+    """Impulses between two free spheres, per unit mass [m/s]: friction (opposite to the first slip, at most what ends it), and normal."""
     pn = 0.5 * (1.0 + e) * ya
     s = hypot(xa, za)
     if s == 0.0:
         return 0.0, 0.0, pn
-    pt = min(friction_coefficient(s, law) * pn, s / inertia.BALLS.k1)  # of free spheres the same for both tangents
+    pt = min(friction_coefficient(s, law) * pn, s / inertia.BALLS.k1)  # for free spheres the same in both tangential directions
     return -pt * xa / s, -pt * za / s, pn
 
 
 @kernel
 def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps, series):
-    """Two balls in the frame X tangent, Y from C to O, Z up, closing."""
+    """Two balls in the contact frame (X tangent, Y from C to O, Z up) that approach each other."""
     R = phys[P_R]
     law = Law(phys[P_MU_BB_LEAST], phys[P_MU_BB_EXTRA], phys[P_MU_BB_FADE])
     if fidelity == EULER:
@@ -110,11 +120,11 @@ def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps, series):
             (vo[0] - f1, vo[1] + p, vo[2] - f2), (wo[0] + q * f2, wo[1], wo[2] - q * f1), True,
         )  # fmt: skip
     accuracy = _REFERENCE if fidelity == REFERENCE else _STANDARD
-    if hypot(xa, za) <= accuracy.delta * ya:  # no slip, and nothing between two balls starts one: the normal impulse is all
+    if hypot(xa, za) <= accuracy.delta * ya:  # no slip, and nothing between two balls starts one: there is only the normal impulse
         p = 0.5 * (1.0 + e) * ya
         return (vc[0], vc[1] - p, vc[2]), wc, (vo[0], vo[1] + p, vo[2]), wo, True
-    # za < 0: friction presses O. za > 0 presses C: the same problem seen from the other side (half a turn about Z, names swapped),
-    # where x, y of all vectors change sign and so does za, while xa stays.
+    # za < 0: friction presses O into the cloth. za > 0: it presses C. This is the same problem seen from the other side (half a turn about
+    # Z, names swapped): x and y of all vectors change sign and so does za, while xa stays.
     swapped = za > 0.0
     sign = -1.0 if swapped else 1.0
     vp, wp = (vc, wc) if swapped else (vo, wo)  # the pressed ball
@@ -138,24 +148,25 @@ def _add(a, b):
 
 @kernel(seconds=2, uses=(solve,))
 def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, series):
-    """Impact of two equal balls, (nx, ny) the unit vector from ball 1 to ball 2 -> v1, w1, v2, w2, solved.
+    """Impact of two equal balls -> v1, w1, v2, w2 [m/s, rad/s] and whether it was solved. [MJP14] 2.1 to 2.4.
 
-    [MJP14] 2.1 to 2.4. ``e``: the restitution; ``series``: work space, ``polynomial.WORK`` numbers. The vertical velocity of the lifted
-    ball is part of the result.
+    (nx, ny): unit vector from ball 1 to ball 2; ``e``: the restitution; ``series``: work space, ``polynomial.WORK`` numbers. The vertical
+    velocity of the lifted ball is part of the result.
     """
     if not (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny > _NO_CLOSING:
         return v1, w1, v2, w2, True
     vc, wc, vo, wo, solved = _balls_in_frame(
         _to_frame(v1, nx, ny), _to_frame(w1, nx, ny), _to_frame(v2, nx, ny), _to_frame(w2, nx, ny), phys, e, fidelity, n_steps, series
     )
-    return _to_world(vc, nx, ny), _to_world(wc, nx, ny), _to_world(vo, nx, ny), _to_world(wo, nx, ny), solved
+    return _to_table(vc, nx, ny), _to_table(wc, nx, ny), _to_table(vo, nx, ny), _to_table(wo, nx, ny), solved
 
 
 @kernel(seconds=1, uses=(solve,))
 def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, series):
-    """Impact of a ball with a nose, (nx, ny) the unit vector INTO the cushion -> v, w, solved. [MJP10], Coulomb at zero slip.
+    """Impact of a ball with a nose -> v [m/s], w [rad/s] and whether it was solved. [MJP10], with Coulomb's law at zero slip.
 
-    ``"fast"`` integrates with a loose tolerance: there is no closed form that keeps the cloth's reaction, which matters here.
+    (nx, ny): unit vector INTO the cushion; ``e``: the restitution. "fast" integrates with a loose tolerance: no closed form includes the
+    cloth's reaction, which matters here.
     """
     sin_t = phys[P_SIN]
     cos_t = sqrt(1.0 - sin_t * sin_t)
@@ -167,7 +178,7 @@ def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, series):
     R, mu_s, mu_c = phys[P_R], phys[P_MU_S], phys[P_MU_C]
     if fidelity == EULER:
         v, w, solved = euler.cushion((vx, vy, vz), (wx, wy, wz), mu_c, mu_s, R, sin_t, e, n_steps)
-        return _to_world(v, nx, ny), _to_world(w, nx, ny), solved
+        return _to_table(v, nx, ny), _to_table(w, nx, ny), solved
     start = Slips(
         (vx + R * (wy * sin_t - wz * cos_t)) / closing, (-vy * sin_t + vz * cos_t + R * wx) / closing,
         (vx - R * wy) / closing, (vy + R * wx) / closing, 1.0,
@@ -178,4 +189,4 @@ def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, series):
     q = 2.5 / R
     v = (vx + f1 + g1, vy - cos_t * p - sin_t * f2 + g2, vz + lift)
     w = (wx + q * (f2 + g2), wy + q * (sin_t * f1 - g1), wz - q * cos_t * f1)
-    return _to_world(v, nx, ny), _to_world(w, nx, ny), status == OK
+    return _to_table(v, nx, ny), _to_table(w, nx, ny), status == OK

@@ -1,6 +1,6 @@
-"""How do Coulomb's laws at the two contacts drive an impact? The rates of its impulses, for each state that the contacts can be in.
+"""How does Coulomb's law at the two contacts drive an impact? The rates of its impulses, for each state of the contacts.
 
-The symbols are those of ``inertia.py`` and ``impulse.py``. Contact A slips, sticks, or creeps; the cloth contact slides, starts, or grips.
+Symbols as in ``inertia.py`` and ``impulse.py``. Contact A slips, sticks, or creeps; the cloth contact slides, starts, or grips.
 """
 
 from math import exp, hypot, sqrt
@@ -10,26 +10,26 @@ from ..._jit import kernel
 from .inertia import K_CLOTH, Contact, Impulses, Slips, slips_after
 
 SLIP, STICK, CREEP = 0, 1, 2
-"""Contact A. SLIP: friction is opposite to the slip. STICK: friction holds the slip at zero. CREEP: the slip is too small to be followed,
-but friction cannot hold it; it has the direction in which the other forces drive it."""
+"""States of contact A. SLIP: friction is opposite to the slip. STICK: friction holds the slip at zero. CREEP: friction cannot hold it, but
+the slip is too small to be integrated; it has the direction of the driving forces."""
 SLIDES, STARTS, GRIPS = 0, 1, 2
-"""The cloth contact. SLIDES: friction is opposite to the slip. STARTS: the slip is zero and about to start, friction is opposite to what
-drives it. GRIPS: friction holds it at zero."""
+"""States of the cloth contact. SLIDES: friction is opposite to the slip. STARTS: the slip is zero and about to start; friction is opposite
+to the driving force. GRIPS: friction holds the slip at zero."""
 
 _NEARLY_BALANCED = 0.1
-"""A slip creeps only while friction and drive cancel but for this part of friction's own effect. Twice or half: under 2 % of the steps
-(measured as in ``impulse.py``, here and below)."""
+"""A slip creeps only while the sum of friction and driving force is at most this part of the effect of friction. Doubled or halved: a
+change of less than 2 % in the number of steps (measured as in ``impulse.py``, here and below)."""
 _ALIGNED = 1e-3
-"""... and only once its direction is the drive's to within this angle [rad]. Twice or half: no change above 2e-8."""
+"""A slip creeps only if its direction is within this angle of that of the driving force [rad]. Doubled or halved: no change above 2e-8."""
 _DIRECTION_TRIALS, _SETTLED = 30, 1e-15
-"""The direction of creep is iterated until it moves by no more than rounding; each round gains a factor of about mu, so 30 are
-ample. Half: no change above 5e-13."""
+"""The direction of creep is iterated until it changes by no more than rounding. Each iteration gains a factor of about mu, so 30 are more
+than enough. Halved: no change above 5e-13."""
 _HALVINGS = 60
-"""More than the bits of a double: the bisection ends at rounding. Half: a few harsh impacts move by 7e-6."""
+"""More than the bits of a double, so the bisection ends at rounding. Halved: a few harsh impacts change by 7e-6."""
 
 
 class Law(NamedTuple):
-    """The coefficient of friction at A as a function of the slip s: mu(s) = least + extra exp(-fade s)."""
+    """The coefficient of friction at A as a function of the slip s: mu(s) = least + extra exp(-fade s). ``fade`` in 1 / (unit of s)."""
 
     least: float
     extra: float
@@ -37,7 +37,7 @@ class Law(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """One impact to solve: its constants, the slips before it, both coefficients of friction, and the energetic restitution."""
+    """One impact to solve: its constants, the slips before it, the friction at A and at the cloth, and the energetic restitution."""
 
     contact: Contact
     start: Slips
@@ -48,13 +48,13 @@ class Problem(NamedTuple):
 
 @kernel
 def friction_coefficient(s, law):
-    """mu(s); a constant law costs no exponential."""
+    """mu(s), without an exponential for a constant law."""
     return law.least if law.extra == 0.0 else law.least + law.extra * exp(-law.fade * s)
 
 
 @kernel
 def _cloth_friction(slip, drive1, drive2, most, near, cloth):
-    """Friction of at most ``most`` against the cloth slip b; against the drive, where b starts from zero; or what holds it at zero."""
+    """Friction at the cloth: ``most`` against the slip b, or against the drive where b starts from zero; or what holds b at zero."""
     if cloth == GRIPS:
         return -drive1 / K_CLOTH, -drive2 / K_CLOTH
     size = sqrt(slip.b1 * slip.b1 + slip.b2 * slip.b2)
@@ -87,7 +87,7 @@ def _slip_rates(x, near, cloth, problem):
 
 @kernel
 def _stick_forces(b1, b2, z, near, cloth, problem):
-    """The friction that holds a = 0, per unit of p, with the cloth's friction and the lift that it implies: f1, f2, g1, g2, lift."""
+    """The friction that holds a = 0, the cloth's friction and the lift that result, per unit of p: f1, f2, g1, g2, lift."""
     k1, k2, c1, c2, d_a, d_b, _d_n, n_p, n_f, l_a, _l_n = problem.contact
     mu_s = problem.mu_s
     if cloth == GRIPS:  # a' = 0 and b' = 0; only their second components are driven
@@ -119,11 +119,11 @@ def _stick_rates(x, near, cloth, problem):
 
 @kernel
 def _creep_rates(x, near, cloth, problem):
-    """dx/dp while A creeps: friction and what drives the slip nearly balance, just after A broke loose or while its slip dies away.
+    """dx/dp while A creeps: friction and driving force nearly balance, just after A began to slip or while its slip decays to zero.
 
-    The slip keeps the direction e that the drive gives it: a' = kappa e with kappa >= 0 and F' = -mu e. So (kappa + mu k_i) e_i = q_i,
-    where q, the drive without A's own friction, holds the cloth's friction, which depends on e through the load: e is found by iteration,
-    kappa in each round by |e| = 1.
+    The slip has the direction e of the driving force: a' = kappa e with kappa >= 0, and F' = -mu e. So (kappa + mu k_i) e_i = q_i. Here q
+    is the driving force without A's own friction. It contains the cloth's friction, which depends on e through the load. So e is found by
+    iteration, and kappa in each iteration from |e| = 1.
     """
     contact, mu_s = problem.contact, problem.mu_s
     slip = slips_after(x, problem.start, contact)
@@ -166,7 +166,7 @@ def _direction(q1, q2, m1, m2):
 
 @kernel
 def rates(x, mode, near, cloth, problem):
-    """How the impulses grow in this state of both contacts: per t with dp = |a| dt where A slips, else per unit of p."""
+    """The rates of the impulses in this state of both contacts: per unit of t, dp = |a| dt, while A slips, else per unit of p."""
     if mode == SLIP:
         return _slip_rates(x, near, cloth, problem)
     if mode == STICK:
@@ -176,7 +176,7 @@ def rates(x, mode, near, cloth, problem):
 
 @kernel
 def _slip_rate(per, contact):
-    """How fast the slip at A changes while the impulses grow at the rates ``per``."""
+    """The rate at which the slip at A changes while the impulses grow at the rates ``per``."""
     return hypot(
         contact.k1 * per.F1 + contact.c1 * per.G1,
         contact.d_a * per.p + contact.k2 * per.F2 + contact.c2 * per.G2 + contact.l_a * per.Z,
@@ -185,9 +185,9 @@ def _slip_rate(per, contact):
 
 @kernel
 def settled(x, slip, s, near, cloth, problem):
-    """Does friction at A nearly balance the drive, and has the slip, of size s, taken the drive's direction?
+    """Whether friction at A nearly balances the driving force and the slip, of size s, has the direction of that force.
 
-    Then dp = |a| dt would hardly move on, and ``_creep_rates`` is right to within the slip.
+    Then steps in t (dp = |a| dt) would make little progress, and ``_creep_rates`` is accurate to within the slip.
     """
     per = _creep_rates(x, near, cloth, problem)
     slow = _slip_rate(per, problem.contact) < _NEARLY_BALANCED * friction_coefficient(0.0, problem.law) * problem.contact.k2
@@ -197,7 +197,7 @@ def settled(x, slip, s, near, cloth, problem):
 
 @kernel
 def held(x, near, cloth, problem):
-    """Can friction hold the slip at A at zero?"""
+    """Whether friction can hold the slip at A at zero."""
     slip = slips_after(x, problem.start, problem.contact)
     f = _stick_forces(slip.b1, slip.b2, x.Z, near, cloth, problem)
     return hypot(f[0], f[1]) <= friction_coefficient(0.0, problem.law)
@@ -205,9 +205,9 @@ def held(x, near, cloth, problem):
 
 @kernel
 def wedged(problem):
-    """Between nose and cloth, both slips zero: do both contacts hold?
+    """Whether both contacts hold a ball between nose and cloth whose slips are both zero.
 
-    Then nothing moves across the nose, and no impulse frees the ball. It takes both frictions: the forces go through both contacts.
+    Then nothing moves across the nose, and no impulse frees the ball. This needs friction at both contacts.
     """
     _f1, f2, _g1, g2, _lift = _stick_forces(0.0, 0.0, 0.0, 0.0, GRIPS, problem)
     load = problem.contact.n_p + problem.contact.n_f * f2
@@ -216,6 +216,6 @@ def wedged(problem):
 
 @kernel
 def grip_holds(per, x, problem):
-    """Is the cloth's friction in the rates ``per``, of a grip, within Coulomb's law, and the ball down?"""
+    """Whether the cloth's friction in the rates ``per`` of a grip obeys Coulomb's law, and the ball is on the cloth."""
     most = problem.mu_s * (problem.contact.n_p * per.p + problem.contact.n_f * per.F2)
     return x.Z <= 0.0 and most * most >= per.G1 * per.G1 + per.G2 * per.G2 and most > 0.0

@@ -1,7 +1,7 @@
 """How is a step taken when the contacts do not both slip? By the explicit Runge-Kutta pair 5(4) of Dormand & Prince, on all seven impulses.
 
-Coefficients: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6. One loop runs over the stages, so that
-the rates are compiled once.
+Coefficients: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6. The stages are in one loop, so that the
+function of the rates is compiled once.
 """
 
 import numpy as np
@@ -12,9 +12,9 @@ from .inertia import Impulses
 from .polynomial import CLOSING, F2, G2, LIFT, ROW, P
 
 DEGREE = 4
-"""Of the continuous extension."""
+"""Degree of the continuous extension."""
 _STAGES = ROW * (DEGREE + 1)
-"""Where the rates of the stages lie in ``series``, behind the polynomial: 7 of 7 numbers."""
+"""Where the rates of the 7 stages begin in ``series``, behind the polynomial: 7 numbers each."""
 _NONE = Impulses(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 _A = np.array(
     [
@@ -37,7 +37,7 @@ _EXTENSION = np.array(
 
 @kernel
 def step(series, x, h, per, mode, near, cloth, problem):
-    """One step from x, where the rates are ``per`` -> the state after it, the rates there, and the step's error as a function of p."""
+    """One step of length h from x, where the rates are ``per`` -> the state after it, the rates there, and the step's error at equal p."""
     _store(series, 0, per)
     end, per_end = x, per
     for i in range(6):
@@ -49,7 +49,7 @@ def step(series, x, h, per, mode, near, cloth, problem):
     off = _NONE
     for j in range(7):
         off = _add(off, h * _ERROR[j], _stage(series, j))
-    # an error in p(t) alone is harmless: what counts is each number as a function of p
+    # An error in p(t) alone has no effect; what counts is the error of each number as a function of p.
     off = _add(off, -off.p / per_end.p, per_end)
     worst = max(max(max(abs(off.F1), abs(off.F2)), max(abs(off.G1), abs(off.G2))), max(abs(off.W), abs(off.Z)))
     return end, per_end, worst
@@ -76,7 +76,7 @@ def _add(x, h, per):
 
 @kernel
 def leave_polynomial(series, x, end, h, contact):
-    """The last step's continuous extension, of order 4, as a polynomial in the fraction of the step (Hairer, Norsett & Wanner, II.6)."""
+    """Write the continuous extension of the last step, of order 4, as a polynomial in the fraction of the step (ibid., II.6)."""
     for q in range(7):
         r1 = end[q] - x[q]
         r2 = h * series[_STAGES + q] - r1

@@ -1,4 +1,4 @@
-"""When does an impact end? Where the closing speed has come to zero and the work has then come down to its target, inside the last step.
+"""When does an impact end? After the closing speed has fallen to zero and the work has then fallen to its target, inside the last step.
 
 The step is a polynomial (``polynomial.py``) of its own time, from 0 to ``span``. Compression ends at closing speed 0, with work W_c; the
 impact ends at W = (1 - e^2) W_c: energetic restitution [Stronge 1990; MJP14 eq. 10].
@@ -15,26 +15,26 @@ from .polynomial import CLOSING, ROW, WORK_DONE, state_at, time_of, value_at
 from .taylor import turned
 
 _CLOSE = 0.01
-"""How near the ends are located, over tol and the step's length. Twice or half: no change above rounding, as one more step of Halley's
-method passes either."""
+"""How exactly the ends are located, over tol and the step's length. Doubled or halved: no change above rounding, because one more step of
+Halley's method is more exact than either."""
 _TURN_HALVINGS, _LOOSE_HALVINGS = 50, 40
-"""Bisections down to rounding, and to 1e-12 of a step, where a slip that breaks loose is still zero. Twice or half: no change above 1e-15
-in play."""
+"""Bisections down to rounding; and to 1e-12 of a step, where a slip that begins is still zero. Doubled or halved: no change above 1e-15 in
+impacts of play."""
 
 
 class Target(NamedTuple):
-    """How far the work must come down. Until compression has ended, ``compressing`` is True and the others are not known."""
+    """The work at which the impact ends. ``top`` and ``work`` are known once compression has ended and ``compressing`` is False."""
 
     compressing: bool
     top: float
-    """Work at the end of compression, the most there is."""
+    """Work at the end of compression, the maximum."""
     work: float
-    """At the end of the impact."""
+    """Work at the end of the impact."""
 
 
 @kernel
 def _end_of_compression(series, degree, span, closing, near):
-    """When the closing speed falls to zero, in a step that ends with closing speed ``closing`` <= 0."""
+    """The time at which the closing speed falls to zero, in a step that ends with closing speed ``closing`` <= 0."""
     first, slope = series[CLOSING], series[ROW + CLOSING]
     bend = (closing - first - slope * span) / (span * span)
     root = slope * slope - 4.0 * bend * first
@@ -44,21 +44,21 @@ def _end_of_compression(series, degree, span, closing, near):
 
 @kernel
 def _end_of_restitution(series, degree, low, span, work, target, near):
-    """When the work falls to its target: at ``low`` it is above, at ``span``, with ``work``, it is not."""
-    now = sqrt(max(target.top - value_at(series, degree, WORK_DONE, low)[0], 0.0))  # the root of the work given back grows all but evenly
+    """The time at which the work falls to its target: at ``low`` it is above, at ``span``, where it is ``work``, it is not."""
+    now = sqrt(max(target.top - value_at(series, degree, WORK_DONE, low)[0], 0.0))  # the root of the work returned grows almost linearly
     guess = low + (span - low) * (sqrt(target.top - target.work) - now) / (sqrt(target.top - work) - now)
     return time_of(series, degree, WORK_DONE, target.work, low, span, guess, near)
 
 
 @kernel
 def ends_inside(end, closing, target):
-    """Does compression or the impact end inside the step that ends at the state ``end`` with closing speed ``closing``?"""
+    """Whether compression or the impact ends inside the step that ends at the state ``end`` with closing speed ``closing``."""
     return closing <= 0.0 if target.compressing else target.work >= end.W
 
 
 @kernel
 def locate_end(series, degree, span, end, closing, target, e, tol):
-    """In such a step: is the impact over, when, and the target as it is known now."""
+    """For such a step: whether the impact ends in it, the time of that (or of the end of compression), and the target from now on."""
     over, t, near = False, 0.0, _CLOSE * tol * span
     if target.compressing:
         t = _end_of_compression(series, degree, span, closing, near)
@@ -73,7 +73,7 @@ def locate_end(series, degree, span, end, closing, target, e, tol):
 
 @kernel
 def turns_at(series, degree, span, o1, o2, problem):
-    """When in a step the cloth's slip, less (o1, o2), is at right angles to where it pointed at first; it points backwards at the end."""
+    """Time at which the cloth's slip, less (o1, o2), is at right angles to its first direction, in a step that ends with it reversed."""
     low, high = 0.0, span
     for _ in range(_TURN_HALVINGS):
         t = 0.5 * (low + high)

@@ -1,8 +1,8 @@
-"""What does the paper's own numerical scheme give? Explicit Euler over the normal impulse with the step of eq. 14, to the letter.
+"""Which result has the paper's own numerical scheme? Explicit Euler over the normal impulse with the step of eq. 14, exactly as printed.
 
-[MJP14] sections 2.2 to 2.4.3 for two balls; [MJP10] by the same scheme for the cushion. All impulses are per unit mass. Nothing is
-located: compression ends with the first step after which the closing speed is not positive, the impact with the first step after
-which the work has come down to its target. Kept as the paper has it, with its discretisation error; ``impulse.py`` is the exact one.
+[MJP14] sections 2.2 to 2.4.3 for two balls; [MJP10] by the same scheme for the cushion. All impulses are per unit mass. The ends are not
+located inside a step: compression ends with the first step after which the closing speed is not positive, the impact with the first step
+after which the work has fallen to its target. This keeps the discretisation error of the paper; ``impulse.py`` is the accurate method.
 """
 
 from math import hypot, sqrt
@@ -11,14 +11,14 @@ from ..._jit import kernel
 from .coulomb import friction_coefficient
 
 _MAX_OVERRUN = 100
-"""Steps allowed, in units of N, before the scheme is declared lost. One that ends takes some N of them."""
+"""The most steps, in units of N, before the scheme is stopped as unsolved. One that ends takes about N steps."""
 
 
 @kernel
 def balls(vc, wc, vo, wo, law, mu_s, R, e, n_steps):
-    """Balls C and O in the frame X tangent, Y from C to O, Z up; (vx, vy, vz) in m/s and (wx, wy, wz) in rad/s.
+    """Balls C and O in the contact frame (X tangent, Y from C to O, Z up); (vx, vy, vz) in m/s and (wx, wy, wz) in rad/s.
 
-    Returns the four vectors after the impact and whether the scheme came to its end.
+    Returns the four vectors after the impact and whether the scheme ended.
     """
     vcx, vcy, vcz = vc
     wcx, wcy, wcz = wc
@@ -55,7 +55,7 @@ def balls(vc, wc, vo, wo, law, mu_s, R, e, n_steps):
         wcx += q * (dp2 + dyc)  # eq. 3d
         wcy -= q * dxc  # eq. 3e
         wcz -= q * dp1  # eq. 3f
-        vox += -dp1 + dxo  # eq. 4 and its kin
+        vox += -dp1 + dxo  # eq. 4, and the same for the other components
         voy += dp + dyo
         voz += -dp2 + no
         wox += q * (dp2 + dyo)
@@ -73,9 +73,9 @@ def balls(vc, wc, vo, wo, law, mu_s, R, e, n_steps):
 
 @kernel
 def cushion(v, w, mu_c, mu_s, R, sin_t, e, n_steps):
-    """Ball against a nose in the frame X along the cushion, Y into it, Z up; returns v, w and whether the scheme came to its end.
+    """Ball against a nose in the contact frame (X along the cushion, Y into it, Z up).
 
-    mu_c: the coefficient at the nose, mu_w in [MJP10].
+    Returns v [m/s], w [rad/s] and whether the scheme ended. mu_c: the coefficient of friction at the nose, mu_w in [MJP10].
     """
     vx, vy, vz = v
     wx, wy, wz = w

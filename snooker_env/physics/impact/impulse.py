@@ -1,4 +1,4 @@
-"""How does an impact with friction run? Coulomb's law at two coupled contacts, integrated over the normal impulse; changes are located.
+"""How is an impact with friction solved? Coulomb's law at two coupled contacts, integrated over the normal impulse; changes are located.
 
 Ball against ball [MJP14] and ball against cushion [MJP10] are the same problem with other constants. At A the bodies touch, with slip
 a = (a1, a2) and friction impulse F = (F1, F2). Under the ball that is pressed into the cloth the slip is b = (b1, b2) and the friction
@@ -11,16 +11,16 @@ impulse G = (G1, G2). With p the normal impulse per unit mass, W its work and Z 
     closing = closing_0 + d_n p - d_a F2 - d_b G2 + l_n Z       W' = closing
     N'      = n_p + n_f F2'  while that is positive and the ball is down (Z = 0); else N' = 0 and Z' = -(n_p + n_f F2'): it lifts
 
-Coulomb: F' = -mu(|a|) a/|a| and G' = -mu_s N' b/|b|, a prime meaning d/dp. Where a slip is zero, friction holds it there if it can; if not,
-it starts in the direction in which the other forces drive it (``coulomb.py``). Compression ends at closing speed 0 with W = W_c, the
+Coulomb: F' = -mu(|a|) a/|a| and G' = -mu_s N' b/|b|, where a prime is d/dp. Where a slip is zero, friction holds it at zero if it can; if
+not, the slip starts in the direction of the driving forces (``coulomb.py``). Compression ends at closing speed 0 with W = W_c, the
 impact at W = (1 - e^2) W_c (``ends.py``).
 
 Method. While A slips, the variable is t with dp = |a| dt. Then F' = -mu a is regular, and the end of a slip, where its direction turns
 like a power of |a|, is approached exponentially and is no singularity. While both contacts slip, the solution is analytic in t, and a
-Taylor series spans most of an impact or all of it (``taylor.py``). The rest is rare in play: a contact that sticks or creeps, a ball that
-lifts, a cloth that may hold the ball. It is integrated by Runge-Kutta steps (``dormand_prince.py``). Either method leaves a polynomial of
-its step, in which the ends are located. ``transitions.py`` says what the contacts do next. All speeds are divided by the closing speed
-before the impact, so tolerances are relative.
+Taylor series covers most of an impact or all of it (``taylor.py``). The other cases are rare in play: a contact that sticks or creeps, a
+ball that lifts, a cloth that may hold the ball. They are integrated by Runge-Kutta steps (``dormand_prince.py``). Either method writes a
+polynomial of its step, in which the ends are located. ``transitions.py`` has the next states of the contacts. All speeds are divided by
+the closing speed before the impact, so tolerances are relative.
 """
 
 from math import hypot, sqrt
@@ -36,104 +36,103 @@ from .transitions import STANDS, Step, Tolerances, cloth_after, mode_after
 
 OK, TOO_MANY_STEPS = 0, 1
 
-# Below, "twice" and "half" say what this number doubled and halved did, each alone, to 6,000 impacts: two balls and cushion, half of them
-# of play, half harsh (friction, restitution and the nose's height anywhere in their ranges). Counted: steps (play: 2 to 11 an impact;
-# harsh: 20 to 350), the largest deviation from ``reference``, impacts that fail. Harsh ones at ``reference`` hold a few on a knife-edge,
-# which move by up to 1e-5 whatever is changed. "No matter": under 2 % of the steps and no error.
+# "Doubled" and "halved" below: the effect of doubling or halving this number alone on 6,000 impacts, two balls and cushion. Half of them
+# are impacts of play, half are harsh (friction, restitution and the nose's height anywhere in their ranges). Measured: the number of steps
+# (play: 2 to 11 an impact; harsh: 20 to 350), the largest deviation from ``reference``, and the impacts that fail. A few harsh ones at
+# ``reference`` are ill-conditioned: they change by up to 1e-5 whatever is changed. "No effect": less than 2 % of the steps and no error.
 
 _MAX_STEPS = 20_000
-"""Then the impact counts as unsolved. No matter: none of them came near it."""
+"""The most steps; then the impact is unsolved. No effect: none of them came near it."""
 _KNIFE_EDGE = 1_000
-"""Steps after which friction is taken to balance what drives a slip all but exactly: the slip stays small and stiff, and is followed in its
-limiting direction. Twice: 15 % more steps in harsh cushion impacts. Half: one of them fails at ``reference``."""
+"""After so many steps friction and driving force are taken to balance almost exactly: the slip stays small and stiff, and is integrated in
+its limiting direction. Doubled: 15 % more steps in harsh cushion impacts. Halved: one of them fails at ``reference``."""
 _STIFF, _STIFF_CREEP = 1e-4, 10.0
-"""The cloth slip that then counts as zero, and the bound of creep over that. Twice or half: a few harsh cushion impacts move by 4e-5."""
+"""The cloth slip that then is zero, and the limit of creep over that. Doubled or halved: some harsh cushion impacts change by 4e-5."""
 _JAMMED, _STOPPED = 5_000, 1e-2
-"""Steps after which an impact whose closing speed is below this is at its end: friction balances the elastic force all but exactly, and
-what moves across the nose creeps on without an end. Half the steps: one harsh cushion impact ends 8e-3 off. Else no matter."""
+"""After so many steps an impact with a closing speed below this is at its end: friction balances the elastic force almost exactly, and the
+slow motion across the nose has no end. Half the steps: one harsh cushion impact ends 8e-3 off. Otherwise no effect."""
 _NEAR = 10.0
-"""A cloth slip below this many delta is zero: more than the shortest step passes, so that a slip which friction stops is caught.
-Half: 5 % more steps at ``fast`` in harsh cushion impacts. Twice: no matter."""
+"""A cloth slip below this many delta is zero. This is more than the shortest step covers, so that a slip that friction stops is detected.
+Halved: 5 % more steps at ``fast`` in harsh cushion impacts. Doubled: no effect."""
 _SERIES = 40.0
-"""Allowed of a series' last terms, over tol: their sum is far above the error of the step. Twice: 3 % fewer steps, twice the error (8e-7
-for two balls at ``standard``). Half: 3 % more, half the error."""
+"""Limit of a series' last terms, over tol; their sum is far above the error of the step. Doubled: 3 % fewer steps, twice the error (8e-7
+for two balls at ``standard``). Halved: 3 % more steps, half the error."""
 _OVERSHOOT = 1.05
-"""The guess of the impact's whole normal impulse, over that of an impact without friction. Half: two to five times the steps, since the
-first cannot reach the end. Twice: no matter."""
+"""The estimate of the impact's normal impulse, over that of an impact without friction. Halved: two to five times the steps, because the
+first step cannot reach the end. Doubled: no effect."""
 _LEAST_LEFT = 0.1
-"""At least this part of that guess is taken to be still to come. No matter."""
+"""The remaining impulse is taken to be at least this part of that estimate. No effect."""
 _FIRST = 0.4
-"""The first Runge-Kutta step of a slip over the longest stable one. No matter: the error control corrects it."""
+"""The first Runge-Kutta step of a slip over the longest stable one. No effect: the error control corrects it."""
 _NO_FRICTION = 1e-9
-"""Keeps the longest step finite where there is no friction at A. No matter."""
+"""Keeps the longest step finite where there is no friction at A. No effect."""
 _SAFETY, _ERROR_POWER = 0.9, 0.2
-"""The next step is this much shorter than the one whose error would be just tol, by the power 1/5 of a method of order 5. Twice: no step
-ever stands, and impacts fail. Half: up to 1.9 times the steps."""
+"""The next step over the step whose error would be exactly tol, and the power 1/5 of a method of order 5. Doubled: every step is rejected,
+and impacts fail. Halved: up to 1.9 times the steps."""
 _LEAST_FACTOR, _MOST_FACTOR = 0.2, 3.0
-"""Bounds on how a step's length changes. Most factor, twice: cushion impacts of play err by 5e-5 at ``standard``, not 3e-7, for a change
-of state is leapt over; half: up to 4 % more steps. Least: no matter."""
+"""Limits on the change of a step's length. Most, doubled: the error of cushion impacts of play at ``standard`` is 5e-5 instead of 3e-7,
+because a step passes over a change of state; halved: up to 4 % more steps. Least: no effect."""
 _EXACT = 1e-3
-"""An error below this part of tol asks for no power: the step may grow as far as it may. No matter."""
+"""With an error below this part of tol the step grows by the largest factor. No effect."""
 _SHORTEST = 1e-13
-"""A step that short is not shortened any further. No matter."""
+"""A step as short as this is not shortened further. No effect."""
 _LEAPT, _LEAPT_FACTOR = 2.0, 0.5
-"""A step may not give more than this many times the impulse that is still to come (a slip may grow fast), and the factor if it does.
-No matter."""
+"""The largest impulse of a step over the remaining one (a slip may grow fast), and the factor on a longer step. No effect."""
 _TURNED_FACTOR = 0.25
-"""Factor on a step in which the cloth slip turned right round. Twice or half: up to 3 % more steps in harsh cushion impacts."""
+"""Factor on a step in which the cloth slip reversed its direction. Doubled or halved: up to 3 % more steps in harsh cushion impacts."""
 _BELOW, _LANDED_FACTOR = 10.0, 0.5
-"""A lifted ball may end a step this many tol below the cloth; if it is lower, the factor on the step. ``_BELOW``: no matter. Twice the
-factor: the step is never shortened, and 6 % of harsh cushion impacts fail."""
+"""How far below the cloth a lifted ball may end a step, over tol, and the factor on the step if it is lower. ``_BELOW``: no effect. The
+factor doubled: the step is never shortened, and 6 % of harsh cushion impacts fail."""
 _PAST_END = 1.01
-"""A step may reach this far past the guessed end. Half: it never gets there, and 8 % of harsh impacts of two balls fail. Twice: no
-matter."""
+"""How far a step may go past the estimated end. Halved: it never gets there, and 8 % of harsh impacts of two balls fail. Doubled: no
+effect."""
 _SMALL, _REACH, _STABLE = 1000.0, 0.4, 0.2
-"""Of a cloth slip that may come to an end and be held, and is below the first (over the larger of tol and delta), the next step takes away
-at most the second part, and stays within the stability of the method, whose bound is the third. Twice ``_REACH``: 2.1 times the steps at
-``fast`` in harsh cushion impacts; half: 12 % more. Half ``_STABLE``: 1.6 times; twice: 3 % more. ``_SMALL``: no matter."""
+"""For a cloth slip that may end and then be held, and is below the first number (over the larger of tol and delta): the next step cuts it
+by at most the second number, and is within the stability limit of the method, the third number. ``_REACH`` doubled: 2.1 times the steps
+at ``fast`` in harsh cushion impacts; halved: 12 % more. ``_STABLE`` halved: 1.6 times; doubled: 3 % more. ``_SMALL``: no effect."""
 _TINY = 1e-300
 """Keeps a quotient of zeros finite."""
 _NONE = Impulses(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class Accuracy(NamedTuple):
-    """How exactly an impact is solved; the first three in units of the closing speed before it."""
+    """How accurately an impact is solved; the first three in units of the closing speed before it."""
 
     tol: float
-    """Local error allowed in a step."""
+    """The largest local error of a step."""
     delta: float
     """Slips below this count as zero."""
     creep: float
-    """A slip that has broken loose keeps its limiting direction until it exceeds this."""
+    """A slip that begins keeps its limiting direction until it exceeds this."""
     order: int
-    """The highest of the Taylor series."""
+    """The highest order of the Taylor series."""
 
 
 class Outlook(NamedTuple):
     """What is known of an impact before its first step."""
 
     p_full: float
-    """Its normal impulse, a guess that overshoots a little."""
+    """Estimate of its normal impulse, slightly too large."""
     h_slip: float
-    """The longest Runge-Kutta step while A slips. Past three times this the method is unstable on a' = -k1 mu a, and a slip that should die
-    would hover at the size of the tolerance."""
+    """The longest Runge-Kutta step while A slips. Beyond three times this the method is unstable on a' = -k1 mu a, and a slip that should
+    decay to zero would stay at the size of the tolerance."""
     mu: float
-    """The largest coefficient at A."""
+    """The largest coefficient of friction at A."""
     may_grip: bool
-    """Is the cloth's friction enough to hold the ball, in some state? Else no cloth slip is ever held."""
+    """Whether the cloth's friction can hold the ball in some state. If not, no cloth slip is ever held."""
     analytic: bool
-    """While A slips: is the Taylor series right? The cloth holds nothing, and the load on it stays positive."""
+    """Whether the Taylor series is valid while A slips: the cloth never holds, and the load on it stays positive."""
 
 
 @inlined
 def _outlook(problem):
-    """What the constants of the impact say."""
+    """The ``Outlook`` of an impact, from its constants."""
     contact = problem.contact
     mu = friction_coefficient(0.0, problem.law)
     p_full = -_OVERSHOOT * (1.0 + problem.e) / contact.d_n
     h_slip = 1.0 / (contact.k1 * mu + _NO_FRICTION)
     may_grip = K_CLOTH * problem.mu_s * (contact.n_p + abs(contact.n_f) * mu) >= abs(contact.d_b) - abs(contact.c2) * mu
-    # the load stays positive if the normal impulse outweighs the friction at A, or if that alone presses, and a2 keeps its sign
+    # The load stays positive if the normal impulse exceeds the friction at A, or if only that friction presses and a2 keeps its sign.
     pressed = contact.n_p >= abs(contact.n_f) * mu or (contact.n_p == 0.0 and contact.n_f * problem.start.a2 <= 0.0)
     return Outlook(p_full, h_slip, mu, may_grip, pressed and not may_grip)
 
@@ -146,7 +145,7 @@ def _stick_or_creep(x, near, cloth, problem):
 
 @inlined
 def _first_state(s, outlook, limits, problem):
-    """At the beginning, the slip at A being s: the states of A and of the cloth, the rates if they are needed, the step's length."""
+    """At the beginning, with slip s at A: the states of A and of the cloth, the rates if they are needed, and the length of the step."""
     start, near = problem.start, limits.near
     calm = start.b1 * start.b1 + start.b2 * start.b2 <= near * near
     cloth = GRIPS if outlook.may_grip and calm else STARTS if calm else SLIDES
@@ -167,9 +166,9 @@ def _first_state(s, outlook, limits, problem):
 
 @inlined
 def _series_step(series, x, slip, starts, left, problem, tol, order):
-    """A step by the Taylor series, as long as it is good and the cloth's slip does not turn: its end, degree and length."""
+    """A step by the Taylor series, up to its range of accuracy or a reversal of the cloth's slip: its end, the slips, degree and length."""
     degree, span = taylor.expand(series, x, slip, starts, left, problem, _SERIES * tol, order)
-    o1, o2 = (slip.b1, slip.b2) if starts else (0.0, 0.0)  # what is left of a slip that counts as zero may point anywhere
+    o1, o2 = (slip.b1, slip.b2) if starts else (0.0, 0.0)  # a slip that counts as zero has no definite direction
     end = state_at(series, degree, span)
     slip_end = slips_after(end, problem.start, problem.contact)
     if taylor.turned(series, slip_end.b1 - o1, slip_end.b2 - o2):
@@ -181,18 +180,18 @@ def _series_step(series, x, slip, starts, left, problem, tol, order):
 
 @inlined
 def _runge_kutta_step(series, x, slip, h, per, mode, cloth, left, outlook, limits, problem):
-    """A Runge-Kutta step: its end, the slips and rates there, its error, and the factor by which it is to be shortened, or ``STANDS``."""
+    """A Runge-Kutta step: its end, the slips and rates there, its error, and the factor for a shorter step, or ``STANDS``."""
     contact, shrink, slip_end = problem.contact, STANDS, slip
     end, per_end, error = dormand_prince.step(series, x, h, per, mode, limits.near, cloth, problem)
     if error > limits.tol and h > _SHORTEST:
         shrink = max(_LEAST_FACTOR, _SAFETY * (limits.tol / error) ** _ERROR_POWER)
     elif mode == SLIP and end.p - x.p > _LEAPT * left:
-        shrink = _LEAPT_FACTOR  # the slip grew: the step's polynomial is no good over several impacts' impulse
+        shrink = _LEAPT_FACTOR  # the slip grew; the step's polynomial is inaccurate over the impulse of several impacts
     else:
         slip_end = slips_after(end, problem.start, contact)
         push = problem.mu_s * (contact.n_p + abs(contact.n_f) * outlook.mu) * (end.p - x.p)
         if slip_end.b1 * slip.b1 + slip_end.b2 * slip.b2 < 0.0 and push > limits.delta and h > _SHORTEST:
-            shrink = _TURNED_FACTOR  # the cloth's slip turned right round inside the step, where the stages may not have looked
+            shrink = _TURNED_FACTOR  # the cloth's slip reversed inside the step, perhaps between two stages
         elif -_BELOW * limits.tol > end.Z and x.Z > 0.0 and h > _SHORTEST:
             shrink = _LANDED_FACTOR  # the ball came down inside the step: find where
     return end, slip_end, per_end, error, shrink
@@ -200,7 +199,7 @@ def _runge_kutta_step(series, x, slip, h, per, mode, cloth, left, outlook, limit
 
 @inlined
 def _bounded(h, x, slip, s, per, mode, cloth, left, outlook, limits, contact):
-    """The length of the next Runge-Kutta step: no longer than is stable, and than the rest of the impact."""
+    """The length of the next Runge-Kutta step, limited by stability and by the rest of the impact."""
     if mode == SLIP:
         h = min(h, outlook.h_slip, left / s)
     elif x.p < outlook.p_full:
@@ -210,7 +209,7 @@ def _bounded(h, x, slip, s, per, mode, cloth, left, outlook, limits, contact):
         db1, db2 = contact.c1 * per.F1 + K_CLOTH * per.G1, contact.d_b * per.p + contact.c2 * per.F2 + K_CLOTH * per.G2
         along = (slip.b1 * db1 + slip.b2 * db2) / (size + _TINY)
         if along < 0.0 and size < _SMALL * max(limits.tol, limits.delta):
-            # a longer step is unstable on a slip this small or leaps over its end, and an error of its size is not seen
+            # a longer step is unstable on a slip this small or passes over its end, and an error of its size is not noticed
             h = min(h, _REACH * size / max(_STABLE * K_CLOTH * hypot(per.G1, per.G2), -along))
     return h
 
@@ -219,7 +218,7 @@ def _bounded(h, x, slip, s, per, mode, cloth, left, outlook, limits, contact):
 def solve(problem, accuracy, series):
     """Integrate one impact: the impulses at its end, in units of the closing speed before it, and OK or TOO_MANY_STEPS.
 
-    ``problem`` holds speeds in units of the closing speed, so that this is 1. ``series``: work space, ``polynomial.WORK`` numbers.
+    The speeds in ``problem`` are in units of the closing speed, which is therefore 1. ``series``: work space, ``polynomial.WORK`` numbers.
     """
     order = accuracy.order
     limits = Tolerances(accuracy.tol, accuracy.delta, _NEAR * accuracy.delta, accuracy.creep)
@@ -253,11 +252,11 @@ def solve(problem, accuracy, series):
         if shrink != STANDS:
             h *= shrink
             continue
-        if n >= _KNIFE_EDGE:  # friction all but balances what drives a slip, which stays small and stiff: follow its limit
+        if n >= _KNIFE_EDGE:  # friction almost balances the driving force of a slip, which stays small and stiff: use its limit
             near, creep = max(limits.near, _STIFF), max(limits.creep, _STIFF_CREEP * _STIFF)
             limits = Tolerances(limits.tol, limits.delta, near, creep)
         if n >= _JAMMED and abs(slip_end.closing) < _STOPPED:
-            return end, OK  # friction balances the elastic force all but exactly: what moves across the nose creeps on without an end
+            return end, OK  # friction balances the elastic force almost exactly: the slow motion across the nose has no end
 
         # Locate: does compression or the impact end inside this step?
         if ends_inside(end, slip_end.closing, target):

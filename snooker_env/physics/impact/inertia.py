@@ -1,7 +1,7 @@
 """How do impulses change the slips of an impact? Linearly: eleven constants for two balls and eleven for a cushion, from the masses.
 
 An impact has two frictional contacts: A, where the ball meets the other ball or the nose of a cushion, and the contact with the cloth under
-the ball that is pressed down. All impulses are per unit mass, M and R drop out, and R times a spin is a speed.
+the ball that is pressed down. All impulses are per unit mass, so M and R cancel, and R times a spin is a speed.
 
 **One sphere.** Its moment of inertia is 2/5 M R^2. An impulse J on its surface, at R n from the centre (n: a unit vector), gives
 
@@ -9,12 +9,12 @@ the ball that is pressed down. All impulses are per unit mass, M and R drop out,
 
 and the surface at R m moves by du = dv + R dw x m. In particular a tangential impulse moves its own point of a free sphere by 7/2 J.
 
-**Frame.** X is the tangent, Y points into the other body (from ball C to ball O; into the cushion), Z up. At A acts the normal impulse p
-and the friction F = (F1, F2), at the cloth the friction G = (G1, G2) along X and Y and the reaction N along Z, which gives no spin. The
-slip at A is a = (a1, a2), the slip at the cloth b = (b1, b2) = (u_X, u_Y) at m = -Z.
+**Frame.** X is the tangent, Y points into the other body (from ball C to ball O; into the cushion), Z points up. The normal impulse p and
+the friction F = (F1, F2) act at A. The friction G = (G1, G2) along X and Y and the reaction N along Z, which gives no spin, act at the
+cloth. The slip at A is a = (a1, a2), the slip at the cloth b = (b1, b2) = (u_X, u_Y) at m = -Z.
 
-**Two balls**, O pressed (if C is pressed, the same problem is seen from the other side). A lies at Y from C and at -Y from O. C receives
-(F1, -p, F2) and is free; O receives the opposite, G and N. N keeps O's vertical velocity at zero: N = F2. With (1)
+**Two balls**, O pressed (if C is pressed, the problem is the same from the other side). A lies at Y from C and at -Y from O. C receives
+(F1, -p, F2) and is free; O receives the opposite, and G and N. N keeps O's vertical velocity at zero: N = F2. With (1)
 
     C:  dv = (F1, -p, F2)             R dw = 5/2 (F2, 0, -F1)
     O:  dv = (G1 - F1, p + G2, 0)     R dw = 5/2 (F2 + G2, -G1, -F1)
@@ -26,8 +26,8 @@ slip at A is a = (a1, a2), the slip at the cloth b = (b1, b2) = (u_X, u_Y) at m 
     d(closing) = dv_Y(C) - dv_Y(O)                                      =   -2 p          - G2
 
 **A cushion**, its nose at R sin(t) above the centre. A lies at m = (0, cos t, sin t); the second tangent is (0, -sin t, cos t). The ball
-receives F1 X + F2 (0, -sin t, cos t) - p m, G and N. Its vertical velocity Z stays zero while N = p sin t - F2 cos t is positive; a load
-below that lifts it: N = 0 and Z grows. With (1) and m x X = (0, sin t, -cos t), m x (0, -sin t, cos t) = X
+receives F1 X + F2 (0, -sin t, cos t) - p m, and G and N. Its vertical velocity Z stays zero while N = p sin t - F2 cos t is positive; a
+negative load lifts the ball: N = 0 and Z grows. With (1) and m x X = (0, sin t, -cos t), m x (0, -sin t, cos t) = X
 
     dv = (F1 + G1, -p cos t - F2 sin t + G2, Z)      R dw = 5/2 (F2 + G2, F1 sin t - G1, -F1 cos t)
 
@@ -37,8 +37,8 @@ below that lifts it: N = 0 and Z grows. With (1) and m x X = (0, sin t, -cos t),
     db2 = dv_Y + R dw_X                              =          -p cos t + (5/2 - sin t) F2 + 7/2 G2
     d(closing) = dv_Y cos t + dv_Z sin t             =        -p cos^2 t - F2 sin t cos t + G2 cos t + Z sin t
 
-Both are of the form that ``Contact`` names. That F2 and G2 act on the closing speed as p acts on a2 and b2, with the sign turned, is the
-symmetry of the inverse inertia. ``tests/physics/test_inertia.py`` derives all of it again from Newton's and Euler's laws, symbolically.
+Both have the form of ``Contact``. The effect of F2 and G2 on the closing speed is that of p on a2 and b2 with the opposite sign: this is
+the symmetry of the inverse inertia. ``tests/physics/test_inertia.py`` derives it again, symbolically, from the laws of Newton and Euler.
 """
 
 from typing import NamedTuple
@@ -46,11 +46,11 @@ from typing import NamedTuple
 from ..._jit import kernel
 
 K_CLOTH = 3.5
-"""Slip of the pressed ball's lowest point per friction impulse on it, 1 + 5/2: the same in every impact."""
+"""Change of the slip at the pressed ball's lowest point per friction impulse on it, 1 + 5/2; the same in every impact."""
 
 
 class Impulses(NamedTuple):
-    """What has acted so far in an impact, per unit mass; and the rates of that. It is the whole state: all else follows linearly."""
+    """The impulses so far in an impact, per unit mass, or their rates. They are the whole state: everything else follows linearly."""
 
     F1: float
     """Friction at A."""
@@ -67,7 +67,7 @@ class Impulses(NamedTuple):
 
 
 class Slips(NamedTuple):
-    """How the surfaces move against each other [m/s, or in units of the closing speed before the impact]."""
+    """The relative motion of the surfaces [m/s, or in units of the closing speed before the impact]."""
 
     a1: float
     """Slip at A."""
@@ -91,25 +91,25 @@ class Contact(NamedTuple):
     """
 
     k1: float
-    """What the friction at A does to the slip at A."""
+    """Effect of the friction at A on the slip at A, along X; k2: across it."""
     k2: float
     c1: float
-    """What the friction at either contact does to the slip at the other."""
+    """Effect of the friction at either contact on the slip at the other, along X; c2: along Y."""
     c2: float
     d_a: float
-    """What the normal impulse does to a2,"""
+    """Effect of the normal impulse on a2."""
     d_b: float
-    """to b2,"""
+    """Effect of the normal impulse on b2."""
     d_n: float
-    """and to the closing speed."""
+    """Effect of the normal impulse on the closing speed."""
     n_p: float
-    """How much of the normal impulse,"""
+    """Part of the normal impulse that presses the ball into the cloth."""
     n_f: float
-    """and of the friction F2, presses the ball into the cloth."""
+    """Part of the friction F2 that presses the ball into the cloth."""
     l_a: float
-    """What the vertical velocity of a lifted ball does to a2,"""
+    """Effect of the vertical velocity of a lifted ball on a2."""
     l_n: float
-    """and to the closing speed."""
+    """Effect of the vertical velocity of a lifted ball on the closing speed."""
 
 
 BALLS = Contact(k1=7.0, k2=6.0, c1=-1.0, c2=2.5, d_a=0.0, d_b=1.0, d_n=-2.0, n_p=0.0, n_f=1.0, l_a=0.0, l_n=0.0)
@@ -118,7 +118,7 @@ BALLS = Contact(k1=7.0, k2=6.0, c1=-1.0, c2=2.5, d_a=0.0, d_b=1.0, d_n=-2.0, n_p
 
 @kernel
 def cushion(sin_t, cos_t):
-    """A nose at R sin(t) above the ball's centre."""
+    """The constants of an impact with a nose at R sin(t) above the ball's centre."""
     return Contact(
         3.5, 2.5 + sin_t * sin_t, 1.0 - 2.5 * sin_t, 2.5 - sin_t,  # k1, k2, c1, c2
         sin_t * cos_t, -cos_t, -cos_t * cos_t,  # d_a, d_b, d_n
@@ -129,7 +129,7 @@ def cushion(sin_t, cos_t):
 
 @kernel
 def slips_after(x, start, contact):
-    """The slips after the impulses x, from those before the impact."""
+    """The slips after the impulses x, from the slips before the impact."""
     return Slips(
         start.a1 + contact.k1 * x.F1 + contact.c1 * x.G1,
         start.a2 + contact.d_a * x.p + contact.k2 * x.F2 + contact.c2 * x.G2 + contact.l_a * x.Z,

@@ -1,7 +1,7 @@
-"""What happens inside a step of an impact? The step as a polynomial: its state at any time, and when a quantity reaches a value.
+"""What happens inside a step of an impact? The step as a polynomial: its state at any time, and the time at which a quantity has a value.
 
-Both methods of integration leave their step in this form, in the array ``series``: the coefficient of order k of a quantity is
-``series[ROW * k + column]``. The first seven columns are the state; then the closing speed; the others are a method's own.
+Both methods of integration write their step in this form into the array ``series``: the coefficient of order k of a quantity is
+``series[ROW * k + column]``. The first seven columns are the state, the eighth is the closing speed, the others are work space.
 """
 
 from ..._jit import kernel
@@ -14,7 +14,7 @@ F1, F2, G1, G2, P, WORK_DONE, LIFT, CLOSING = range(8)
 """Columns: the fields of ``Impulses`` in their order, and the closing speed."""
 
 _MOST_TRIALS = 60
-"""Halley's method takes 2 or 3; even halving alone would end after so many. Twice or half: no change."""
+"""The most iterations. Halley's method takes 2 or 3; bisection alone would end after so many. Doubled or halved: no change."""
 
 
 @kernel
@@ -45,10 +45,10 @@ def value_at(series, degree, column, t):
 
 @kernel
 def time_of(series, degree, column, value, low, high, guess, near):
-    """When a quantity falls to the value: between ``low``, where it is above, and ``high``, where it is not; near: how close is enough.
+    """The time at which a quantity falls to the value: between ``low``, where it is above, and ``high``, where it is not.
 
-    Halley's method, kept between low and high. It ends after a correction so small that the next one would be below ``near``: that is about
-    the cube of this one over the square of the time since the first ``low``, where the quantity may stand still.
+    Halley's method, kept between low and high. It ends after a correction so small that the next one would be below ``near``. The next one
+    is about the cube of this one over the square of the time since the first ``low``, where the derivative may be zero.
     """
     first, t = low, guess
     for _ in range(_MOST_TRIALS):

@@ -1,7 +1,7 @@
-"""How is a step taken while both contacts slip? By the Taylor series of the solution, which spans most of an impact or all of it.
+"""How is a step taken while both contacts slip? By the Taylor series of the solution, which covers most of an impact or all of it.
 
 The variable is t, with dp = |a| dt. Between the ends of slips the solution is analytic in t. Write s = |a|, b = B e with |e| = 1 for the
-cloth slip, and N for the load on the cloth. Then the equations of ``impulse.py`` hold nothing but products::
+cloth slip, and N for the load on the cloth. Then the equations of ``impulse.py`` contain only products::
 
     s s = a . a      b = B e, e . e = 1      N = n_p s + n_f F2'      F' = -mu a      G' = -mu_s N e      p' = s      W' = closing s
 
@@ -15,9 +15,9 @@ Moore, Interval Analysis (1966), and Jorba & Zou, Experimental Mathematics 14 (2
     B_0 e_k + B_k e_0 = b_k - [B e]_k                                                   from b = B e: its parts along and across e_0
     mu = least + m, m = extra exp(-fade s):  k m_k = -fade (1 s_1 m_(k-1) + ... + k s_k m_0)      from m' = -fade s' m
 
-A cloth slip that starts from zero is no singularity either: b = t B e, with e_0 the direction of what drives it, and B_0 > 0. Then
-b_(k+1) stands in place of b_k. It holds e_k through the friction, G'_k = -mu_s (N_0 e_k + [N e]_k + N_k e_0), and that term goes to the
-other side: the factor of e_k becomes B_0 + K_CLOTH mu_s N_0 / (k + 1).
+A cloth slip that starts from zero is no singularity either: b = t B e, with e_0 the direction of the driving force, and B_0 > 0. Then
+b_(k+1) replaces b_k. It contains e_k through the friction, G'_k = -mu_s (N_0 e_k + [N e]_k + N_k e_0). That term goes to the other side,
+so that the factor of e_k becomes B_0 + K_CLOTH mu_s N_0 / (k + 1).
 """
 
 from math import exp, log, sqrt
@@ -31,29 +31,30 @@ S, A1, A2, E1, E2, B, N, M = range(8, 16)
 """Columns of ``series`` behind those of ``polynomial.py``: s, a, e, B, mu_s N, and the part m of mu that varies."""
 
 _LEAST_ORDER = 4
-"""Below this two small terms may be chance. Twice or half: no change above rounding in the impacts of ``impulse.py``: a caution."""
+"""The lowest order at which the series may end: below it two terms may be small by chance. Doubled or halved: no change above rounding in
+the impacts of ``impulse.py``."""
 _HOVER = 0.03
-"""The error allowed in a slip, over that slip: a slip that should die would hover at the size of the tolerance. Twice or half: under 3 %
-of the steps."""
+"""The largest error in a slip over that slip: with a larger one a slip that should decay to zero would stay at the size of the tolerance.
+Doubled or halved: a change of less than 3 % in the number of steps."""
 _HUGE = 1e100
-"""A term beyond this ends the series: the next coefficients might overflow."""
+"""A larger term ends the series, because the next coefficients might overflow."""
 _STEEP = 0.9
-"""The largest ratio of successive terms that is believed; a larger one is chance. Twice: steps beyond the radius of convergence, errors
-without bound. Half: 4 % fewer steps, and up to 5 times the error of two balls at ``standard``."""
+"""The largest ratio of successive terms that is used; a larger one is chance. Doubled: steps beyond the radius of convergence, with errors
+without bound. Halved: 4 % fewer steps, and up to 5 times the error of two balls at ``standard``."""
 _SLOWEST = 0.2
-"""The slip is taken not to fall below this part of its first size when the time of the impact is guessed. Twice or half: no change."""
+"""In the estimate of the impact's duration the slip falls to no less than this part of its first size. Doubled or halved: no change."""
 _TINY = 1e-300
 """Keeps a quotient of two zeros finite."""
 _POSITIVE = 0xFFFF
-"""A mask that spares the compiler's test for negative indices, a third of the time."""
+"""A mask that makes the compiler omit its test for negative indices, a third of the time."""
 
 
 @kernel
 def expand(series, x, slip, starts, p_left, problem, tol, order):
-    """The series at state x with these slips -> its order, and the time for which it holds to within tol.
+    """Write the series at state x with these slips; returns its order, and the time up to which its error is within tol.
 
-    starts: the cloth slip is zero and about to start. p_left: the impulse still to come, about; the order is no higher than that needs.
-    Terms of order k are without a number below; those at t = 0 end in 0; ``r`` is 1/k.
+    starts: whether the cloth slip is zero and about to start. p_left: estimate of the remaining impulse, which limits the order. In the
+    code, names without a number are terms of order k, names that end in 0 are values at t = 0, and ``r`` is 1/k.
     """
     k1, k2, c1, c2, d_a, d_b, d_n, n_p, n_f, _l_a, _l_n = problem.contact
     law, mu_s = problem.law, problem.mu_s
@@ -86,7 +87,7 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
     for k in range(1, order + 1):
         m = ROW * k
         r = 1.0 / k
-        # The terms of order k of what is integrated: the rates of order k - 1 over k.
+        # The terms of order k of the integrated quantities: the rates of order k - 1 over k.
         p = s * r
         power *= r
         a1, a2 = (k1 * r) * f1 + (c1 * r) * g1, (d_a * p + (k2 * r) * f2) + (c2 * r) * g2
@@ -101,8 +102,8 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
         series[m + P], series[m + WORK_DONE], series[m + LIFT], series[m + CLOSING] = p, power, 0.0, closing
         series[m + A1], series[m + A2] = a1, a2
 
-        # Enough? The last two terms at the end of the impact must be within tol.
-        if k == 1:  # the time that the impact takes if the slip goes on to change at this rate
+        # The order is high enough if the last two terms at the end of the impact are within tol.
+        if k == 1:  # the duration of the impact if the slip keeps changing at this rate
             s_end = s0 + (h1 * a1 + h2 * a2) * per_s * p_left
             t = 2.0 * p_left / (s0 + max(s_end, _SLOWEST * s0))
         last, size = size, abs(a1) + abs(a2) + abs(v1 + q1) + abs(v2 + q2) + abs(power)
@@ -112,7 +113,7 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
         if k == order or size > _HUGE:
             break
 
-        # The sums in brackets, over the orders i and k - i from 1 to k - 1; for even k the one in the middle first.
+        # The sums in brackets, over the orders i and k - i from 1 to k - 1; for even k the middle term first.
         squares = cs = ee = be1 = be2 = ne1 = ne2 = 0.0  # [a.a - s s]/2, [closing s], [e.e]/2, [B e], [N e]
         i = ROW * (k >> 1)
         if k & 1 == 0:
@@ -171,17 +172,17 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
         series[m + B] = v1 * e1_0 + v2 * e2_0 + scale * ee
         g1, g2 = -((load0 * e1 + ne1) + load * e1_0), -((load0 * e2 + ne2) + load * e2_0)
 
-    # The order did not do: the time after which the last term but one, or the last, is as large as tol.
+    # The order was not high enough: the time at which the last but one term, or the last, equals tol.
     h = exp(log(tol / (last + _TINY)) / (k - 1))
     ratio = size * h / (last + _TINY)
     if ratio > 1.0:  # then the last one is the larger
         h = exp(log(tol / size) / k)
-    # What is left out is the last term over 1 - ratio: a step shorter by the root of that, or a little more (Bernoulli's inequality).
+    # The remainder is the last term over 1 - ratio: so the step is shortened by the k-th root of that, or a little more (Bernoulli).
     ratio = min(ratio, _STEEP)
     return k, h / (1.0 + ratio / ((1.0 - ratio) * k))
 
 
 @kernel
 def turned(series, b1, b2):
-    """Does the cloth slip b point backwards, seen from the step's start?"""
+    """Whether the cloth slip b is opposite to its direction at the start of the step."""
     return b1 * series[E1] + b2 * series[E2] < 0.0

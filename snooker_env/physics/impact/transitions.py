@@ -1,6 +1,6 @@
-"""What do the contacts do after a step? Each one's next state; or the step does not stand, because the change lies inside it.
+"""What do the contacts do after a step? The next state of each; or the step is rejected, because the change lies inside it.
 
-A step that does not stand is taken again, shortened by a factor: the functions below return that factor, or ``STANDS``.
+A rejected step is taken again, shortened by a factor. The functions below return that factor, or ``STANDS`` for a step that is accepted.
 """
 
 from typing import NamedTuple
@@ -12,30 +12,30 @@ from .ends import breaks_loose_at
 from .inertia import Impulses, Slips
 
 STANDS = 0.0
-"""The step need not be shortened."""
+"""The step is accepted."""
 _HALF = 0.5
-"""Factor on a step inside which a contact changed its state. Twice: it is never shortened, and 3 % of the cushion impacts of play fail
-(measured as in ``impulse.py``, here and below). Half: no matter."""
+"""Factor on a step inside which a contact changed its state. Doubled: the step is never shortened, and 3 % of the cushion impacts of play
+fail (measured as in ``impulse.py``, here and below). Halved: no effect."""
 _INTO_CREEP, _OUT_OF_CREEP = 0.5, 2.0
-"""Over ``creep``: the slip below which A may begin to creep, and the slip beyond which a step may not leap when it ends creeping. Half of
-the second: 30 % more steps in cushion impacts of play. Else no matter."""
+"""Over ``creep``: the slip below which A may begin to creep, and the largest slip at the end of a step that ends creeping. The second
+halved: 30 % more steps in cushion impacts of play. Otherwise no effect."""
 
 
 class Tolerances(NamedTuple):
-    """In units of the closing speed before the impact."""
+    """The tolerances of one impact, in units of the closing speed before it."""
 
     tol: float
-    """Error allowed in a step."""
+    """The largest error of a step."""
     delta: float
     """A slip at A below this is zero."""
     near: float
-    """So is a cloth slip below this."""
+    """A cloth slip below this is zero."""
     creep: float
-    """Up to this slip, one that has broken loose keeps the direction of what drives it."""
+    """Up to this size a slip that begins has the direction of the driving force."""
 
 
 class Step(NamedTuple):
-    """A step from ``start`` to ``end``: the impulses there, the slips, the rates, and its length."""
+    """A step from ``start`` to ``end``: the impulses, slips and rates at both, and its length h."""
 
     start: Impulses
     slip: Slips
@@ -48,14 +48,14 @@ class Step(NamedTuple):
 
 @inlined
 def cloth_after(step, mode, cloth, may_grip, limits, problem):
-    """The next state of the cloth contact, and the factor."""
+    """The next state of the cloth contact, and the factor on the step."""
     slip, shrink = step.slip_end, STANDS
     after = SLIDES if slip.b1 * slip.b1 + slip.b2 * slip.b2 > limits.near * limits.near else STARTS
     if cloth == GRIPS:
         after = GRIPS
         if not grip_holds(step.per_end, step.end, problem):
             after = STARTS
-            if step.end.p - step.start.p > limits.delta:  # it gave way inside the step: find where
+            if step.end.p - step.start.p > limits.delta:  # it began to slip inside the step: find where
                 shrink = _HALF
     elif may_grip and after == STARTS and grip_holds(rates(step.end, mode, limits.near, GRIPS, problem), step.end, problem):
         after = GRIPS
@@ -64,9 +64,9 @@ def cloth_after(step, mode, cloth, may_grip, limits, problem):
 
 @inlined
 def mode_after(series, step, s, mode, cloth, located, limits, problem):
-    """The next state of contact A, where the slip is now s; the factor; and whether that leads to where A breaks loose.
+    """The next state of contact A, where the slip is now s; the factor on the step; and whether the factor leads to where A begins to slip.
 
-    located: the last attempt at this step found that place.
+    located: whether the last attempt at this step found that place.
     """
     after, shrink = mode, STANDS
     end, slip, per_end = step.end, step.slip_end, step.per_end
@@ -78,7 +78,7 @@ def mode_after(series, step, s, mode, cloth, located, limits, problem):
     elif mode == STICK:
         if not held(end, limits.near, cloth, problem):
             after = CREEP
-            if step.h > limits.delta and not located:  # it broke loose inside the step: take the step to there
+            if step.h > limits.delta and not located:  # it began to slip inside the step: take the step up to that place
                 dormand_prince.leave_polynomial(series, step.start, end, step.h, problem.contact)
                 shrink = breaks_loose_at(series, limits.near, cloth, problem)
                 located = True
@@ -88,7 +88,7 @@ def mode_after(series, step, s, mode, cloth, located, limits, problem):
             shrink = _HALF
     elif per_end.F1 * slip.a1 + per_end.F2 * slip.a2 > 0.0 and s > limits.delta:  # friction does not oppose the slip
         if step.h > limits.delta and step.per.F1 * step.slip.a1 + step.per.F2 * step.slip.a2 <= 0.0:
-            shrink = _HALF  # it did before: the slip died inside the step
+            shrink = _HALF  # it did before: the slip ended inside the step
         else:
             after = STICK if held(end, limits.near, cloth, problem) else CREEP
     elif s <= limits.delta and held(end, limits.near, cloth, problem):

@@ -1,4 +1,4 @@
-"""Does ``agents.evaluate`` play, tell and keep what it is asked to, and refuse what it should, whatever stops it?"""
+"""Does ``agents.evaluate`` play, report and keep what it is asked to, and refuse what it should, whatever stops it?"""
 
 import json
 import os
@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from agents.evaluation import metrics, protocol, report
+from agents.evaluation import protocol, report
 from agents.features.views import training_tables
 from agents.learning.hyperparameters import Recipe
 from commands.physics_option import physics_option, physics_text
+from snooker_env.benchmark import FIGURES
 from snooker_env.physics.parameters import Physics
 
 QUICK = ["--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"]
@@ -52,7 +53,7 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
             "agent", "layout", "noise", "fidelity", "physics", "visits", "runs", "figures", "ratios", "counted", "longest_break", "by_run",
             "strokes", "ms_a_decision",
         }  # fmt: skip
-        assert set(row["figures"]) == {*metrics.FIGURES, "points_a_visit_iqm", "pots_a_visit_iqm"}
+        assert set(row["figures"]) == {*FIGURES, "points_a_visit_iqm", "pots_a_visit_iqm"}
         assert set(row["ratios"]) == {"ghost_ball", "random"} - {row["agent"]}
         assert len(row["by_run"]["points_a_visit"]) == row["runs"] == (2 if row["agent"] == "model" else 1)
         for f in [*row["figures"].values(), *(r for ratio in row["ratios"].values() for r in ratio.values())]:
@@ -165,7 +166,7 @@ def test_a_path_with_a_colon_is_a_path(models, tmp_path):
     (tmp_path / "10:00").symlink_to(models)
     assert len(protocol.Entrant.of(f"x={tmp_path}/10:00/m-?").runs) == 2
     for path in (r"C:\runs\m-0\model.zip", "a/b:c", "10:00"):
-        with pytest.raises(ValueError, match="or name models that are there"):
+        with pytest.raises(ValueError, match="or name existing models"):
             protocol.Entrant.of(f"x={path}")
 
 
@@ -236,24 +237,24 @@ def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     (tmp_path / "r.md").write_text("whole")
     interrupted_at(monkeypatch, 4)
     assert protocol.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
-    told = capsys.readouterr()
+    printed = capsys.readouterr()
     lost = "interrupted when 1 of 2 parts (layouts under one noise) were complete: the others are lost"
-    assert told.err.strip() == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(told.out.split())
+    assert printed.err.strip() == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(printed.out.split())
     found = json.loads((tmp_path / "r.json").read_text())
     assert found["incomplete"] == lost and [(r["layout"], r["agent"]) for r in found["results"]] == [
         ("held_out", "random"), ("held_out", "ghost_ball")
     ]  # fmt: skip
     assert (tmp_path / "r.md").read_text() == "whole" and f"INCOMPLETE: {lost}." in (tmp_path / "r.incomplete.md").read_text()
-    assert f"json: {tmp_path / 'r.json'}" in told.out and f"markdown: {tmp_path / 'r.incomplete.md'}" in told.out
+    assert f"json: {tmp_path / 'r.json'}" in printed.out and f"markdown: {tmp_path / 'r.incomplete.md'}" in printed.out
     assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "r.incomplete.md", "p.png"}
 
 
 def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatch, capsys):
     interrupted_at(monkeypatch, 2)
     assert protocol.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
-    told = capsys.readouterr()
+    printed = capsys.readouterr()
     lost = "interrupted when 0 of 2 parts (layouts under one noise) were complete: nothing is kept"
-    assert told.err.strip() == f"agents.evaluate: {lost}" and not told.out
+    assert printed.err.strip() == f"agents.evaluate: {lost}" and not printed.out
     assert not list(tmp_path.iterdir())
 
 
@@ -280,8 +281,8 @@ def test_a_full_disk_loses_one_file_only(tmp_path, monkeypatch, capsys, full):
         protocol.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
     assert stop.value.code == f"agents.evaluate: {tmp_path / full} cannot be written: No space left on device"
     assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "p.png"} - {full}
-    told = capsys.readouterr().out
-    assert "points a visit" in told and str(tmp_path / full) not in told
+    printed = capsys.readouterr().out
+    assert "points a visit" in printed and str(tmp_path / full) not in printed
 
 
 def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
@@ -294,7 +295,7 @@ def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
     assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "p.png"}
 
 
-def test_a_world_is_named_as_it_was_called():
+def test_a_physics_is_named_as_it_was_given():
     for text in ("paper", "match", "paper,mu_bb=marlow", "match,mu_bb=0.06"):
         assert physics_text(physics_option(text)) == text
         assert Physics.of(physics_option(text)) == Physics.of(physics_option(physics_text(physics_option(text))))

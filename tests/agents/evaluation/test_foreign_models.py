@@ -51,7 +51,7 @@ def test_a_foreign_model_plays_what_it_would_play_itself(foreign, name, options,
 
 
 def test_a_foreign_model_is_compared_with_consent(foreign, tmp_path, capsys):
-    """Of its training nothing is told but what it says of itself."""
+    """Of its training only what the model itself says is reported."""
     agents = ["--agent", str(foreign / "ppo.zip"), "ppo_mask", "random", "--trust", "--options", "aim=target"]
     assert protocol.main([*agents, *QUICK, "--json", str(tmp_path / "r.json")]) == 0
     (run,) = json.loads((tmp_path / "r.json").read_text())["agents"][0]["runs"]
@@ -63,7 +63,7 @@ def test_a_foreign_model_is_compared_with_consent(foreign, tmp_path, capsys):
 
 
 CONSENT = "holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come with --trust"
-OTHER_ACTIONS = "must be a model whose actions are {}: --options says how they were read, as placement=True"
+OTHER_ACTIONS = "must be a model whose actions are {}: give --options as in its training, for example placement=True"
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ OTHER_ACTIONS = "must be a model whose actions are {}: --options says how they w
         ("ppo", ["--trust", "--options", "placement=True"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (6,), float32)")),
         ("sac", ["--trust"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (4,), float32)")),
         ("dqn", ["--trust", "--options", "action=box"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (4,), float32)")),
-        ("frame", ["--trust"], "must be a model that sees the observation of a visit, flat or balls, and nothing else"),
+        ("frame", ["--trust"], "must be a model trained on the observation of a visit, flat or balls, and nothing else"),
         ("recurrent", ["--trust"], "must be a model of MaskablePPO, TQC"),
         ("recurrent", [], "must be a model of MaskablePPO, TQC"),
     ],

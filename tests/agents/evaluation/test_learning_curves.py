@@ -54,7 +54,7 @@ def test_every_run_is_drawn(tmp_path, drawn, capsys):
     assert ends == [(1000, 4.0), (1000, 4.0), (2000, 4.0)] and [bar[0].get_xdata()[0] for bar in time.containers] == 3 * [700 / 60]
     low, high = shots.containers[0][2][0].get_segments()[0][:, 1]
     assert (low, high) == pytest.approx((3.0, 5.0))  # two standard errors
-    assert [text.get_text() for text in time.get_legend().get_texts()] == ["A", "b-0"]
+    assert [text.get_text() for text in shots.get_legend().get_texts()] == ["A", "b-0"]
     assert [line.get_ydata()[0] for line in time.get_lines() if line.get_linestyle() == ":"] == [5.0]
 
 

@@ -193,14 +193,14 @@ def test_a_file_that_is_no_model_is_refused(run, capsys):
     (run / "model.zip").unlink()
     assert "must be a model's .zip or a folder that holds model.zip" in refused(capsys, run, "--limits", "none")
     (run / "checkpoint.pkl").write_bytes(b"")
-    with pytest.raises(ValueError, match=f"^agent = .*this run has not ended, it goes on with: python train.py --resume --out {run}$"):
+    with pytest.raises(ValueError, match=f"^agent = .*this run has not ended, continue it with: python train.py --resume --out {run}$"):
         Entrant.of(str(run)).trained()
     assert published(run) == []
 
 
 def test_a_model_of_an_older_network_is_refused(run, monkeypatch):
     """Other weights, another view, a recipe that is gone: one sentence that names the file and the recipe."""
-    said = r"{} = '.*model.zip': must be a model of today's ppo_mask: this one is older, train it again"
+    said = r"{} = '.*model.zip': must be a model of the current ppo_mask: this one is older, train it again"
     for at in ("agents.learning.networks.POT", "agents.learning.networks.CONTEXT"):
         with monkeypatch.context() as patch:
             patch.setattr(at, 64)

@@ -8,8 +8,8 @@ import pytest
 from scipy import stats
 
 from agents.evaluation import report
-from agents.evaluation.statistics import unseen
 from agents.evaluation.text_tables import WIDTH, TextTable
+from snooker_env.benchmark import most_points, unseen
 
 GHOST = {"from": "ghost_ball"}
 
@@ -27,14 +27,14 @@ def agent(label, seeds=(0, 1, 2, 3, 4), **changes):
     return {"label": label, "runs": [run(seed, **changes) for seed in seeds]}
 
 
-def told(*agents, layouts=("held_out",)):
+def report_of(*agents, layouts=("held_out",)):
     """A report of these agents before anything was played."""
     axes = {"noise": ["none", "club"], "fidelity": ["standard"], "physics": ["paper"]}
     return {"agents": list(agents), "protocol": {"layouts": dict.fromkeys(layouts, 10), **axes, "against": ["b"]}, "results": []}
 
 
 def said(*agents, **more):
-    return report.fairness(told(*agents, **more))
+    return report.fairness(report_of(*agents, **more))
 
 
 @pytest.mark.parametrize(
@@ -43,8 +43,8 @@ def said(*agents, **more):
         ({"shots": 2000}, "The trained agents had unequal shots (1,000 to 2,000)."),
         ({"imitated": 300}, "The trained agents had unequal positions imitated (0 to 300)."),
         ({"seconds": 12.0}, "The trained agents had unequal seconds of training (10 to 12)."),
-        ({"seconds": None}, "Whether the trained agents had equal seconds of training cannot be said: not known of b."),
-        ({"imitated": None}, "Whether the trained agents had equal positions imitated cannot be said: not known of b."),
+        ({"seconds": None}, "Whether the trained agents had equal seconds of training is not known: no record for b."),
+        ({"imitated": None}, "Whether the trained agents had equal positions imitated is not known: no record for b."),
     ],
 )
 def test_what_agents_were_given(changes, sentence):
@@ -53,7 +53,7 @@ def test_what_agents_were_given(changes, sentence):
         "The trained agents had equal seconds of training (10).",
     ]  # fmt: skip
     assert said(agent("a"), agent("b")) == equal
-    words = sentence.split("equal ")[1].split(" (")[0].split(" cannot")[0]
+    words = sentence.split("equal ")[1].split(" (")[0].split(" is not")[0]
     assert said(agent("a"), agent("b", **changes)) == [sentence if f"equal {words} (" in line else line for line in equal]
 
 
@@ -65,7 +65,7 @@ def test_copies_of_one_model_are_one_seed():
     assert said(agent("a")) == []
     assert said(agent("a", (0, 0, 0, 0, 0))) == ["a has 1 training seed: its intervals say nothing about other seeds."]
     assert said(agent("a", (0, 1, 1, 1, 1))) == ["a has 2 training seeds, fewer than 5."]
-    assert report.agents_tables(told(agent("a", (0, 1, 1))))[1].rows[0][1] == "2"
+    assert report.agents_tables(report_of(agent("a", (0, 1, 1))))[1].rows[0][1] == "2"
 
 
 def test_who_was_trained_on_what_is_played_is_named():
@@ -76,12 +76,12 @@ def test_who_was_trained_on_what_is_played_is_named():
 
 
 def test_the_agents():
-    trained, long = report.agents_tables(told(agent("a", imitated=300, seconds=None), {"label": "ghost_ball", "runs": [GHOST]}))
+    trained, long = report.agents_tables(report_of(agent("a", imitated=300, seconds=None), {"label": "ghost_ball", "runs": [GHOST]}))
     assert trained.header == ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
     assert trained.rows == [["a", "r", "none", "fast", "paper", "0.95"], ["ghost_ball", "not trained", "", "", "", ""]]
     assert long.header == ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
     assert long.rows == [["a", "5", "300", "1,000", "", ""]]
-    assert report.agents_tables(told(agent("a")))[1].rows[0][-3:] == ["1,000", "10", "100"]
+    assert report.agents_tables(report_of(agent("a")))[1].rows[0][-3:] == ["1,000", "10", "100"]
 
 
 def figure(value, low=None, high=None):
@@ -107,19 +107,19 @@ def row(label, noise, points, shares, ratios):
     ],
 )
 def test_the_comparison_says_whose_is_which(ratio, words):
-    made = told(agent("a"), agent("b"))
+    made = report_of(agent("a"), agent("b"))
     made["results"] = [
         row("a", "none", 20.0, (0.9, 0.5, 0.4), {"b": figure(*ratio)}),
         row("b", "none", 10.0, (0.6, 0.2, None), {"a": figure(9.0, 8.0, 10.0)}),
     ]
-    assert report.comparison(made) == [  # the other way round is not told again
+    assert report.comparison(made) == [  # the other way round is not given again
         "On layout held_out, noise none, fidelity standard, physics paper:",
         f"a makes {words}; after a pot it pots again: 90.0 against 60.0 %; an easy pot is left: 50.0 against 20.0 %.",
     ]
 
 
 def test_a_under_b():
-    made = told(agent("a"), agent("b", noise="club"))
+    made = report_of(agent("a"), agent("b", noise="club"))
     points = {("a", "none"): 4.0, ("a", "club"): 1.0, ("b", "none"): 3.0, ("b", "club"): 2.0}
     made["results"] = [row(label, noise, value, (None,) * 3, {}) for (label, noise), value in points.items()]
     (table,) = report.crossed(made)
@@ -132,7 +132,7 @@ def test_a_under_b():
 
 
 def result(layout="held_out", visits=30, runs=1, strokes=60, counted=None, **figures):
-    """What an agent did: nothing that it is not told."""
+    """What an agent did: only what is given."""
     names = [*report.SHARES, "points_a_visit", "points_a_visit_iqm", "pots_a_visit", "pots_a_visit_iqm", "colour_value"]
     found = {"pots_a_visit": figure(1.0, 0.9, 1.1), **{name: figure(value) for name, value in figures.items()}}
     return {
@@ -169,7 +169,7 @@ def test_where_nothing_or_everything_was_seen_the_bound_is_exact(name, value, mo
 
 def tables_of(*results, layouts):
     """The tables of an evaluation with these results: title -> ``TextTable``."""
-    made = told({"label": "a", "runs": [GHOST]}) | {"results": list(results)}
+    made = report_of({"label": "a", "runs": [GHOST]}) | {"results": list(results)}
     made["protocol"] |= {"layouts": layouts, "noise": ["none"]}
     return {part.title: part for part in report.parts(made) if isinstance(part, TextTable)}
 
@@ -187,7 +187,7 @@ def test_what_cannot_be_on_a_layout_is_left_out():
         assert tables[where.format(layout, "breaks")].header[2:] == breaks
         assert tables[where.format(layout, "potting and position")].header[2:] == ["pot rate %"]
         assert where.format(layout, "colours") not in tables
-    assert report.most_points("held_out") == 147 and report.most_points("pots:hard") == 1
+    assert most_points("held_out") == 147 and most_points("pots:hard") == 1
 
 
 def test_rows_and_columns_without_a_figure_are_left_out():
@@ -220,7 +220,7 @@ def test_a_label_that_is_too_long_is_folded(capsys):
 
 
 def test_an_incomplete_evaluation_says_so(capsys):
-    made = told({"label": "a", "runs": [GHOST]}) | {"results": [result(centuries=0.0)], "incomplete": "interrupted at once"}
+    made = report_of({"label": "a", "runs": [GHOST]}) | {"results": [result(centuries=0.0)], "incomplete": "interrupted at once"}
     made["protocol"]["noise"] = ["none", "club"]
     assert next(report.parts(made)) == "INCOMPLETE: interrupted at once."
     report.show(made)

@@ -15,14 +15,14 @@ def said(trained, ghost, random, **more):
 
 def test_the_conclusion_claims_only_what_the_figures_show():
     poor = player(0.5, 0.1)
-    no_better = "learned to play no better, as far as 100 visits can show, than random strokes at the pots there are: 0.33 pots"
+    no_better = "is not shown by 100 visits to be better than random strokes: 0.33 pots"
     assert no_better in said(player(1.0, 0.3), player(0.9, 0.3), player(0.5, 0.3))
-    worse = "learned to play worse than random strokes at the pots there are: 0.03 pots and 0.10 points a visit against 0.67 pots"
+    worse = "plays worse than random strokes: 0.03 pots and 0.10 points a visit against 0.67 pots"
     assert worse in said(player(0.1, 0.1), player(0.9, 0.3), player(2.0, 0.1))
-    assert "not measurably better than the widest pot" in said(player(3.0, 0.3), player(2.9, 0.3), poor)
-    assert "not measurably better than the widest pot" in said(player(2.8, 0.3), player(2.9, 0.3), poor)
-    assert "to pot, but less than the widest pot" in said(player(2.0, 0.1), player(9.0, 0.3), poor)
-    assert "more than the widest pot" in said(player(9.0, 0.3), player(2.9, 0.3), poor)
+    assert "is not shown by 100 visits to be better than ghost_ball" in said(player(3.0, 0.3), player(2.9, 0.3), poor)
+    assert "is not shown by 100 visits to be better than ghost_ball" in said(player(2.8, 0.3), player(2.9, 0.3), poor)
+    assert "better than random strokes but worse than ghost_ball" in said(player(2.0, 0.1), player(9.0, 0.3), poor)
+    assert "ppo_mask is better than ghost_ball" in said(player(9.0, 0.3), player(2.9, 0.3), poor)
 
 
 def test_the_conclusion_gives_each_player_its_own_share_of_next_pots():
@@ -32,4 +32,4 @@ def test_the_conclusion_gives_each_player_its_own_share_of_next_pots():
     assert "follows in 89.8 % against 66.1 %." in said(player(9.0, 0.3, 0.898), player(2.9, 0.3, 0.661), poor)
     for shares in ((None, 0.6), (0.6, None)):
         sentence = said(player(9.0, 0.3, shares[0]), player(2.9, 0.3, shares[1]), poor)
-        assert "more than the widest pot" in sentence and "%" not in sentence
+        assert "ppo_mask is better than ghost_ball" in sentence and "%" not in sentence

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from agents.evaluation import watch
-from agents.evaluation.rollouts import HELD_OUT_SEED, play
 from agents.players.by_name import player_of
+from snooker_env.benchmark import HELD_OUT_SEED, play_visits
 
 SHORT = ["--agent", "ghost_ball", "--noise", "club"]
 
@@ -15,13 +15,13 @@ SHORT = ["--agent", "ghost_ball", "--noise", "club"]
 @pytest.mark.parametrize("name", ["ghost_ball", "geometric", "ppo_mask"])
 def test_the_visit_is_the_one_that_the_protocol_plays(name):
     env = watch.visit(player_of(name), HELD_OUT_SEED + 3, layout="held_out", noise="professional")
-    strokes = play(player_of(name), 1, first_seed=HELD_OUT_SEED + 3, threads=1)
+    strokes = play_visits(player_of(name), 1, first_seed=HELD_OUT_SEED + 3, threads=1)
     assert [p.points for p in env.history] == strokes.points.tolist()
     cue = np.array([p.positions[0] for p in env.history if p.on_table[0]])
     assert np.array_equal(cue, strokes.cue[~np.isnan(strokes.cue[:, 0])])
 
 
-def test_a_page_and_data_are_written_and_the_play_is_told(tmp_path, capsys):
+def test_a_page_and_data_are_written_and_the_play_is_reported(tmp_path, capsys):
     assert watch.main([*SHORT, "--out", str(tmp_path / "visit.json")]) == 0
     said = capsys.readouterr().out
     data = json.loads((tmp_path / "visit.json").read_text())

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import snooker_env
-from agents.evaluation.rollouts import play
 from agents.features import indirect_pots as ind
 from agents.features.indirect_pots import AIM_X, AIM_Y, BALL, BANK, CANNON, GHOST_X, GHOST_Y, KIND, OTHER, PLANT, POCKET, TOLERANCE
 from agents.players.aim_search import Aimer, widest_run
 from agents.players.by_name import player_of
+from snooker_env.benchmark import play_visits
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, GREEN, N_BALLS, PINK, YELLOW, BallOn, mask_of
 from snooker_env.game.pots import pots
@@ -357,5 +357,5 @@ def test_the_widest_of_several_is_taken(aimer):
 
 
 def test_a_visit_is_longer_than_the_plain_players():
-    plain, own = (play(player_of(name), 30, noise="none", threads=1).made.sum() for name in ("ghost_ball", "geometric"))
+    plain, own = (play_visits(player_of(name), 30, noise="none", threads=1).made.sum() for name in ("ghost_ball", "geometric"))
     assert own > 1.5 * plain

@@ -1,13 +1,13 @@
-"""Does the look ahead show what will happen, entry by entry, and are the errors it tries even?"""
+"""Does the lookahead predict the outcomes, entry by entry, and are its noise samples even?"""
 
 import numpy as np
 from positions import tables
 
-from agents.evaluation.rollouts import play, summary
 from agents.features import lookahead_features, pot_features
 from agents.features.noise_samples import NOISE_SAMPLES, errors_of, find, unevenness
 from agents.players.built_in import DISCRETE, GhostBall
 from agents.players.by_name import player_of
+from snooker_env.benchmark import play_visits, summary
 from snooker_env.game.balls import BallOn
 from snooker_env.planning import Planner, Positions, prospects
 from snooker_env.tasks.discrete_actions import SIZE
@@ -20,9 +20,9 @@ def rows_of(seen):
 
 def test_foresight_shows_what_happens_without_errors():
     env = tables(5, noise="none", **DISCRETE)
-    look = lookahead_features.ForesightView(2)
+    view = lookahead_features.ForesightView(2)
     observations = env.reset(seed=4)[0]
-    seen = look(env, observations)
+    seen = view(env, observations)
     assert seen.shape == (5, *lookahead_features.SPACE.shape) and lookahead_features.SPACE.contains(seen[0])
     assert np.array_equal(seen[:, : pot_features.SHOWN], pot_features.with_pots(observations))
     rows, exact = rows_of(seen), tables(5, noise="none", **DISCRETE)
@@ -38,13 +38,13 @@ def test_foresight_shows_what_happens_without_errors():
         cue = exact.tables.positions[:, 0] / (pot_features.HALF_WIDTH, pot_features.HALF_LENGTH)
         assert np.allclose(row[~ended, lookahead_features.CUE_X : lookahead_features.CUE_Y + 1], cue[~ended], atol=1e-6)
         assert np.allclose(lookahead_features.worth_by_rule(rows)[ended, stroke], rewards[ended], atol=1e-5)
-    part = look(env, observations[[1, 3]], np.array([False, True, False, True, False]))
+    part = view(env, observations[[1, 3]], np.array([False, True, False, True, False]))
     assert np.array_equal(part, seen[[1, 3]])
-    assert look.masks(env).sum() == (rows[:, :, 0] > 0).sum() and look.masks(env).shape == (5, SIZE)
+    assert view.masks(env).sum() == (rows[:, :, 0] > 0).sum() and view.masks(env).shape == (5, SIZE)
 
 
-def test_foresight_is_the_mean_over_looks_with_the_errors_of_the_tables():
-    """Against the tables themselves, given the streams of each look in turn."""
+def test_foresight_is_the_mean_over_noise_samples_with_the_errors_of_the_tables():
+    """Against the tables themselves, given the streams of each noise sample in turn."""
     env, other = tables(4, noise="club", **DISCRETE), tables(4, noise="club", **DISCRETE)
     seen = rows_of(lookahead_features.ForesightView(1)(env, env.reset(seed=8)[0]))
     spread = prospects.spread_of(env.tables.rules.noise, env.tables.rules.physics)
@@ -82,13 +82,13 @@ def test_foresight_says_which_stroke_it_is():
     there = np.array([[chances[k, pot] > 0 for pot, _, _ in strokes] for k in range(6)])
     assert len(strokes) == lookahead_features.STROKES_SEEN and np.array_equal(rows[..., lookahead_features.THERE] > 0, there)
     assert there[:3, -1].any() and there[3:, -1].any() and np.ptp(chances[:, :2], axis=1).max() > 0.1
-    for entry, told in (
+    for entry, expected in (
         (lookahead_features.CHANCE, [[chances[k, pot] for pot, _, _ in strokes] for k in range(6)]),
         (lookahead_features.SPEED, [[speed / 6.3 for _, speed, _ in strokes]] * 6),
         (lookahead_features.TOP, [[top / 0.4 for _, _, top in strokes]] * 6),
         (lookahead_features.RED_ON, [[float(k < 3)] * len(strokes) for k in range(6)]),
     ):
-        assert np.allclose(rows[..., entry], there * np.array(told), atol=1e-6), entry
+        assert np.allclose(rows[..., entry], there * np.array(expected), atol=1e-6), entry
 
 
 def test_worth_by_hand():
@@ -102,7 +102,7 @@ def test_worth_by_hand():
     assert np.allclose(lookahead_features.worth_by_rule(rows), [[7.0, 13.5, -np.inf]])
 
 
-def test_looks_are_even():
+def test_noise_samples_are_even():
     errors = errors_of(NOISE_SAMPLES)
     likely = [-1.2816, -0.5244, 0.0, 0.5244, 1.2816]
     assert np.abs(np.sort(errors[:, [0, 3]], axis=0).T - likely).max() < 0.25 and np.abs(errors.mean(0)).max() < 0.15
@@ -120,6 +120,6 @@ def test_lookahead_plays_the_stroke_that_promises_most():
     picks = player.act(env, None, going)
     rows = rows_of(lookahead_features.ForesightView()(env, env.reset(seed=0)[0]))
     assert np.array_equal(picks[going], lookahead_features.PICKS[lookahead_features.worth_by_rule(rows).argmax(1)][going]) and picks[1] == 0
-    far = play(player, 60, first_seed=5)
-    plain = play(GhostBall(), 60, first_seed=5)
+    far = play_visits(player, 60, first_seed=5)
+    plain = play_visits(GhostBall(), 60, first_seed=5)
     assert summary(far)["points_a_visit"] > 2.0 * summary(plain)["points_a_visit"]

@@ -33,7 +33,7 @@ def test_a_linear_rate_falls_from_what_it_says_to_nearly_nothing():
 
 
 def test_masks_are_those_of_the_view():
-    """An agent that looks ahead may play what it looked at, nothing else."""
+    """An agent with a lookahead may play the simulated strokes, nothing else."""
     tables = training_tables(4, threads=1, view="foresight", action="discrete")
     tables.seed(3)
     seen = tables.reset()

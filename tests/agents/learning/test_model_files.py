@@ -23,7 +23,7 @@ from agents.learning.hyperparameters import Recipe, names
 from agents.learning.model_files import KEPT, packed, read
 from agents.learning.models import load_weights
 from agents.players.trained import load_player
-from tests.bombs import bombed, rezipped, told
+from tests.bombs import bombed, edited, rezipped
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -110,8 +110,8 @@ HOSTILE = [
 
 @pytest.mark.parametrize(("key", "value"), HOSTILE)
 def test_wrong_figures_are_refused(plain, tmp_path, key, value):
-    file = rezipped(plain, tmp_path / "wrong.zip", model_json=told(lambda found: found.update({key: value})))
-    with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: must be a model (that train.py saved|of today's ppo_mask)") as info:
+    file = rezipped(plain, tmp_path / "wrong.zip", model_json=edited(lambda found: found.update({key: value})))
+    with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: must be a model (that train.py saved|of the current ppo_mask)") as info:
         load_player(file)
     assert type(info.value) is ValueError and len(str(info.value)) < 600
     assert key in str(info.value) or "older" in str(info.value)
@@ -119,7 +119,7 @@ def test_wrong_figures_are_refused(plain, tmp_path, key, value):
 
 @pytest.mark.parametrize("key", [key for key in KEPT if key not in ("seed", "imitated", "start", "recipe")])
 def test_missing_figures_are_refused(plain, tmp_path, key):
-    file = rezipped(plain, tmp_path / "wrong.zip", model_json=told(lambda found: found.pop(key)))
+    file = rezipped(plain, tmp_path / "wrong.zip", model_json=edited(lambda found: found.pop(key)))
     with pytest.raises(ValueError, match=rf"must be a model that train.py saved \({key} = None: must be"):
         load_player(file)
 
@@ -140,7 +140,7 @@ def swollen(data):
     return file.getvalue()
 
 
-OLDER = "must be a model of today's ppo_mask: this one is older"
+OLDER = "must be a model of the current ppo_mask: this one is older"
 OTHER = r"must be a model that train.py saved \(its policy.pth must hold weights and nothing else"
 
 
@@ -200,7 +200,7 @@ def test_weights_are_handed_on(mask, plain):
         assert all(torch.equal(a, b) for a, b in zip(model.policy.parameters(), its.parameters(), strict=True))
 
 
-def test_a_model_of_another_maker_is_told_apart(tmp_path):
+def test_a_model_of_another_maker_is_recognised(tmp_path):
     SAC("MlpPolicy", "Pendulum-v1", device="cpu").save(tmp_path / "sac.zip")
     assert read(tmp_path / "sac.zip", "agent") is None
     with pytest.raises(ValueError, match=r"^agent = '.*sac.zip': must be a model that train.py saved$"):

@@ -89,7 +89,7 @@ def test_where_the_system_has_no_locks_the_file_is_one(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_file_system_without_locks_is_told_of(tmp_path, monkeypatch, capsys):
+def test_a_file_system_without_locks_is_reported(tmp_path, monkeypatch, capsys):
     class Lockless:
         LOCK_EX = LOCK_NB = 0
 
@@ -159,8 +159,8 @@ def test_a_signal_saves_what_was_imitated_and_resume_goes_on_exactly(whole, tmp_
     with monkeypatch.context() as patch:
         after(20, patch, lambda: signal.raise_signal(number))
         assert train.main([*TINY, "--out", str(out)]) == 128 + number
-    told = capsys.readouterr().out
-    assert f"Saved at 40 of 64 positions. Go on with:  python train.py --resume --out {out}" in told
+    printed = capsys.readouterr().out
+    assert f"Saved at 40 of 64 positions. Continue with:  python train.py --resume --out {out}" in printed
     assert {p.name for p in out.iterdir()} == {"checkpoint.pkl"}
     assert signal.getsignal(number) in (signal.default_int_handler, signal.SIG_DFL)
     assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
@@ -177,8 +177,8 @@ def test_imitation_is_saved_at_intervals(whole, tmp_path, capsys, monkeypatch):
         patch.setattr(callback, "SHARE", np.inf)
         after(13, patch, interrupt)
         assert train.main([*TINY, "--out", str(out)]) == 130
-    assert f"Interrupted. The last checkpoint is whole. Go on with:  python train.py --resume --out {out}" in capsys.readouterr().err
-    assert pickle.loads((out / "checkpoint.pkl").read_bytes())["teaching"]["done"] == 24
+    assert f"Interrupted. The last checkpoint is complete. Continue with:  python train.py --resume --out {out}" in capsys.readouterr().err
+    assert pickle.loads((out / "checkpoint.pkl").read_bytes())["imitating"]["done"] == 24
     assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
     assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
 
@@ -218,10 +218,10 @@ def test_saves_are_rare(tmp_path, monkeypatch):
     assert saves[0] == 31.0 and np.array_equal(np.diff(saves), [506.0] * 3)
 
 
-def test_an_interruption_before_the_first_save_is_told(tmp_path, capsys, monkeypatch):
+def test_an_interruption_before_the_first_save_is_reported(tmp_path, capsys, monkeypatch):
     after(3, monkeypatch, interrupt)
     assert train.main([*TINY, "--out", str(tmp_path / "run")]) == 130
-    assert capsys.readouterr().err == "Interrupted. Nothing was saved yet: begin the run anew.\n"
+    assert capsys.readouterr().err == "Interrupted. Nothing was saved yet: start the run again.\n"
     assert not list((tmp_path / "run").iterdir())
 
 
@@ -270,12 +270,12 @@ def test_a_full_disk_ends_it_in_one_line(tmp_path, monkeypatch, full):
         with pytest.raises(SystemExit) as stop:
             train.main([*TINY, "--imitate", "0", "--checkpoint-every", "1", "--out", str(out)])
     why = f"train.py: {out / full} cannot be written: No space left on device. "
-    assert stop.value.code == f"{why}The last checkpoint is whole. Go on with:  python train.py --resume --out {out}"
+    assert stop.value.code == f"{why}The last checkpoint is complete. Continue with:  python train.py --resume --out {out}"
     assert not [p.name for p in out.iterdir() if p.name.endswith((".tmp", ".lock"))]
     assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
 
 
-def test_the_systems_own_limit_is_told_in_one_line(tmp_path):
+def test_the_systems_own_limit_is_reported_in_one_line(tmp_path):
     """A process that may write 50 kB a file: no traceback, nothing left."""
     code = f"""
 import resource, runpy, sys
@@ -286,7 +286,7 @@ sys.exit(train.main({[*TINY, "--imitate", "0", "--out", str(tmp_path / "run")]!r
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, timeout=300)
     file = tmp_path / "run" / "checkpoint.pkl"
     assert done.returncode == 1
-    assert done.stderr == f"train.py: {file} cannot be written: File too large. Nothing was saved yet: begin the run anew.\n"
+    assert done.stderr == f"train.py: {file} cannot be written: File too large. Nothing was saved yet: start the run again.\n"
     assert {p.name for p in file.parent.iterdir()} <= {"tb"}
 
 

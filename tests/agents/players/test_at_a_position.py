@@ -11,7 +11,7 @@ THERE = Position(cue=(0.3, 1.1), reds=[(0.6, 1.4)], black=(0.0, 1.4605), on="any
 
 
 @pytest.mark.parametrize("name", ["random", "ghost_ball", "lookahead", "geometric"])
-def test_a_player_is_asked_at_positions_and_the_planner_plays_what_it_says(name):
+def test_a_player_acts_at_positions_and_the_planner_plays_its_actions(name):
     player = player_of(name)
     tables = SnookerVectorEnv(2, threads=1, noise="none", **player.options)
     observations, _ = tables.reset(seed=1, options={"positions": [HERE, THERE]})

@@ -4,24 +4,24 @@ import numpy as np
 import pytest
 from positions import tables
 
-from agents.evaluation.rollouts import play, summary
 from agents.features import pot_features
 from agents.players.built_in import DISCRETE, GhostBall, Random
 from agents.players.by_name import player_of
 from agents.players.search import Search, _Worker
+from snooker_env.benchmark import play_visits, summary
 from snooker_env.planning import Positions, action_masks, prospects
 from snooker_env.tasks.discrete_actions import STROKES
 from snooker_env.tasks.noise import Noise
 
 
 def test_search_beats_the_widest_pot_by_far():
-    searched, widest = (summary(play(player, 12, threads=1)) for player in (Search(300, seed=1), GhostBall()))
+    searched, widest = (summary(play_visits(player, 12, threads=1)) for player in (Search(300, seed=1), GhostBall()))
     assert searched["pots_a_visit"] > 2.0 * widest["pots_a_visit"]
     assert searched["next_pot_after_a_pot"] > 0.8
 
 
 def test_without_errors_search_clears_tables_and_pots_from_the_break():
-    cleared = summary(play(Search(600), 3, noise="none"))
+    cleared = summary(play_visits(Search(600), 3, noise="none"))
     assert cleared["clearances"] >= 2 / 3 and cleared["longest_break"] > 100
     env = tables(4, layout="break_off", aim="absolute")
     _, rewards, _, _, info = env.step(Search(600).act(env, None, np.ones(4, bool)))

@@ -1,0 +1,1 @@
+"""How large are the execution errors of each level of ``noise``, beside what is published? ``python -m benchmarks.execution``."""

@@ -1,6 +1,0 @@
-"""What does ``python -m benchmarks.hand`` run? The command in ``command.py``."""
-
-from .._common.command import run
-from .command import main
-
-run(main)

@@ -1,0 +1,1 @@
+"""Which models of the physics does a scene require? ``python -m benchmarks.scene``."""

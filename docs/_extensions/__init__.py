@@ -1,0 +1,1 @@
+"""What does the build of the documentation add to Sphinx?"""

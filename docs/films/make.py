@@ -1,0 +1,132 @@
+"""How are the films on the pages of the tasks made? ``python docs/films/make.py`` plays one episode for each film and writes an .mp4 of it.
+
+Run it in a clone with the extras ``render`` and ``train``; ``--only NAME ...`` makes some of the films, ``--out FOLDER`` writes them
+elsewhere. An episode is played from the first of a few seeds that has what the film is to show; the same code gives the same film.
+"""
+
+import argparse
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))  # agents are found in the clone
+
+import numpy as np  # noqa: E402
+
+import snooker_env as sn  # noqa: E402
+from snooker_env.advice import player_of, stroke_of  # noqa: E402
+from snooker_env.replays import replay  # noqa: E402
+
+OUT = ROOT / "docs" / "_static" / "films"
+SIZE, FPS, SPEED = (720, 406), 20.0, 2.0
+MOST_STROKES = 8
+"""Strokes of an episode that a film shows: the files stay below 400 kB."""
+SEED, TRIES = 1_000_000, 40
+"""The first seed, that of judged tables, and how many are tried."""
+
+
+@dataclass(frozen=True)
+class Film:
+    """One film.
+
+    Attributes
+    ----------
+    agent : str
+        Who plays: a name of ``snooker_env.advice.player_of``.
+    options : mapping
+        Of ``SnookerEnv``.
+    at_least : int
+        What the episode must bring at least: points, or in a frame the agent's score when the film ends.
+    title : str
+        Shown in the first picture.
+    """
+
+    agent: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+    at_least: int = 0
+    title: str = ""
+
+
+def _visit(agent, layout, at_least, noise="professional", **options):
+    return Film(agent, {"layout": layout, "noise": noise, **options}, at_least, f"{agent}, layout {layout}, {noise}'s execution errors")
+
+
+FILMS = {
+    "break": _visit("ppo_foresight", "held_out", 20),
+    "break_club": _visit("ppo_foresight", "held_out", 8, noise="club"),
+    "line_up": _visit("ppo_foresight", "line_up", 20),
+    "colours": _visit("lookahead", "colours", 27),
+    "pot_hard": _visit("lookahead", "pots:hard", 1),
+    "escape": _visit("geometric", "snookered", 0, reward="legal", one_stroke=True),
+    "frame": Film(
+        "lookahead", {"task": "frame", "opponent": "ghost_ball", "noise": "professional"}, 8, "a frame: lookahead against ghost_ball"
+    ),
+    "break_off": _visit("lookahead", "break_off", 0),
+    "random": _visit("lookahead", "random:6", 15),
+    "pot_easy": _visit("ghost_ball", "pots:easy", 1),
+}
+"""The films by name."""
+
+
+def episode(film: Film, seed: int) -> Any:
+    """A ``SnookerEnv`` with the history of the first strokes of an episode."""
+    place = film.options.get("task") == "frame" or film.options["layout"] == "break_off"
+    env, player = sn.SnookerEnv(**film.options, placement=place, elevation=True), player_of(film.agent)
+    env.keep_history = True
+    env.reset(seed=seed)
+    for stroke in range(MOST_STROKES):
+        chosen = stroke_of(player, env, noise=film.options["noise"], seed=stroke)
+        _, _, terminated, truncated, info = env.step(chosen.action(elevation=True, placement=place))
+        if terminated or truncated or len(env.history) >= MOST_STROKES:
+            break
+    points = film.at_least if film.options.get("reward") == "legal" else info.get("score", env.points)
+    return env if points >= film.at_least and not info["foul"] else None
+
+
+def found(film: Film) -> tuple[Any, int]:
+    """The episode of the first seed that has what the film is to show, and that seed. SystemExit if there is none."""
+    for seed in range(SEED, SEED + TRIES):
+        env = episode(film, seed)
+        if env is not None:
+            return env, seed
+    raise SystemExit(f"docs/films/make.py: {film.title}: nothing to show in {TRIES} episodes")
+
+
+def write(made: Any, path: Path, *, size: tuple[int, int] = SIZE, fps: float = FPS, speed: float = SPEED) -> None:
+    """Encode a ``Replay`` as an .mp4 that browsers play while it loads, smaller than ``Replay.save`` makes it, which is faster."""
+    from imageio_ffmpeg import get_ffmpeg_exe
+
+    given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
+    wanted = ["-c:v", "libx264", "-preset", "slow", "-crf", "30", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-threads", "1"]
+    command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *given, *wanted, str(path)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE) as encoder:
+        assert encoder.stdin is not None
+        for picture in made.frames(fps=fps, speed=speed, size=size):
+            encoder.stdin.write(np.ascontiguousarray(picture).data)
+    if encoder.returncode:
+        raise SystemExit(f"docs/films/make.py: ffmpeg ended with {encoder.returncode}")
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Make the films."""
+    parser = argparse.ArgumentParser(description=str(__doc__).split("\n\n")[0])
+    names = list(FILMS)
+    parser.add_argument("--only", nargs="+", choices=names, default=names, metavar="NAME", help="films to make: " + ", ".join(names))
+    parser.add_argument("--out", type=Path, default=OUT, help="folder (default: docs/_static/films)")
+    given = parser.parse_args(argv)
+    given.out.mkdir(parents=True, exist_ok=True)
+    for name in given.only:
+        film, path = FILMS[name], given.out / f"{name}.mp4"
+        env, seed = found(film)
+        players = [film.agent, film.options["opponent"]] if "opponent" in film.options else [film.agent]
+        write(replay(env, title=film.title, players=players), path)
+        print(f"{path}: {film.agent}, seed {seed}, {len(env.history)} strokes, {path.stat().st_size / 1000:.0f} kB", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# How is the leaderboard made? Every agent of the repository on every task, then the page. In the root of a clone, on a quiet machine:
+#
+#     leaderboard/make.sh                  # all that is missing
+#     leaderboard/make.sh ghost_ball       # only these agents
+#
+# Complete files are left as they are, incomplete ones are resumed; remove a file to play it again.
+set -u
+cd "$(dirname "$0")/.."
+bench="python -m snooker_env.benchmark"
+wanted="$*"
+
+judge() {  # label, agent, all simulated shots of its training
+    if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
+    $bench run all --agent "$2" --label "$1" --training-shots "$3" --out leaderboard --resume
+}
+
+judge random random 0
+judge ghost_ball ghost_ball 0
+judge geometric geometric 0
+judge ppo_target ppo_target 1015808
+judge ppo_absolute ppo_absolute 507904
+judge ppo_mask ppo_mask 1015808
+# A step simulates 120 shots for the view, and 1 that is played: 49,152 x 121. Each of 10,240 imitated positions 48 more: x 169.
+judge ppo_foresight ppo_foresight 7677952
+judge ppo_foresight_gamma0 ppo_foresight_gamma0 7677952
+# The same view, rated by a rule of thumb (agents/players/built_in.py); "lookahead" is the built-in player of snooker_env.advice.
+judge lookahead_foresight agents.players.built_in:Lookahead 0
+judge lookahead lookahead 0
+
+$bench check leaderboard/*.json && $bench table leaderboard/*.json --markdown docs/leaderboard.md

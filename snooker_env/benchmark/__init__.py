@@ -1,0 +1,23 @@
+"""The benchmark: named tasks with frozen options, and how agents are judged on them. ``python -m snooker_env.benchmark`` runs it."""
+
+from .agents import Agent
+from .checking import faults, replayed
+from .counts import FIGURES, counts, figure
+from .figures import figures_of
+from .leaderboard import page
+from .models import FittingModel, ForeignModelPlayer
+from .playing import COLUMNS, PlayedEpisodes, play_episodes
+from .program import AgentError, ProgramPlayer
+from .provenance import commit, processor
+from .results import budget_of, read_result, write_result
+from .rollouts import CENTURY, MAXIMUM, Strokes, play_visits, summary
+from .run import judge
+from .statistics import RESAMPLES, Resamples, interval, iqm, unseen
+from .tasks import FREE, HELD_OUT_SEED, TASKS, Task, most_points, tables_of, task_of
+
+__all__ = [
+    "CENTURY", "COLUMNS", "FIGURES", "FREE", "HELD_OUT_SEED", "MAXIMUM", "RESAMPLES", "TASKS", "Agent", "AgentError", "FittingModel",
+    "ForeignModelPlayer", "PlayedEpisodes", "ProgramPlayer", "Resamples", "Strokes", "Task", "budget_of", "commit", "counts", "faults",
+    "figure", "figures_of", "interval", "iqm", "judge", "most_points", "page", "play_episodes", "play_visits", "processor", "read_result",
+    "replayed", "summary", "tables_of", "task_of", "unseen", "write_result",
+]  # fmt: skip

@@ -1,0 +1,162 @@
+"""What is a result file? Its fields with their types and meanings, version by version; ``docs/benchmark.md`` prints this table."""
+
+import re
+from datetime import datetime
+from typing import Any
+
+NAME, VERSION = "snooker_env.benchmark.result", 1
+PROTOCOL = 1
+"""Version of the rules: tables, episodes, figures. Results of different versions are never put into one table."""
+NUMBER = (int, float)
+
+FIELDS: dict[str, tuple[Any, bool, str]] = {
+    "schema.name": (str, False, f'"{NAME}"'),
+    "schema.version": (int, False, f"{VERSION}; another number means other fields"),
+    "protocol.version": (int, False, f"{PROTOCOL}: version of the rules on this page"),
+    "protocol.first_seed": (int, False, "seed of the first judged table"),
+    "protocol.episodes": (int, False, "episodes asked for, for each training seed"),
+    "protocol.resamples": (int, False, "bootstrap samples of the intervals"),
+    "protocol.official": (bool, False, "whether the rules for a leaderboard entry are kept"),
+    "task": (str, False, "id of the task, with its version"),
+    "agent.label": (str, False, "the name in tables; 1 to 20 letters, digits or . + - _"),
+    "agent.kind": (str, False, "built_in, repository, model, class, program or object"),
+    "agent.sources": (list, False, "what was given to --agent: one, or a file for each training seed"),
+    "agent.options": (dict, False, "how the agent sees and acts: its free options"),
+    "agent.class": (str, False, "model_free, planning or undeclared"),
+    "agent.budget": (str, False, "none, 50k, 1M, 5M, open or unknown"),
+    "agent.training_shots": (int, True, "all simulated shots of its training; null: not known"),
+    "agent.simulated_shots": (NUMBER, True, "simulated shots a decision, mean; null: not known"),
+    "agent.declared": (bool, False, "true: that number was declared; false: this process counted it"),
+    "software.snooker_env": (str, False, "version"),
+    "software.python": (str, False, "version"),
+    "software.numpy": (str, True, "version"),
+    "software.numba": (str, True, "version"),
+    "software.gymnasium": (str, True, "version"),
+    "software.torch": (str, True, "version; null: not installed"),
+    "software.stable_baselines3": (str, True, "version; null: not installed"),
+    "software.sb3_contrib": (str, True, "version; null: not installed"),
+    "machine.platform": (str, False, "operating system and processor architecture"),
+    "machine.cpu": (str, False, "the processor's name"),
+    "machine.cores": (int, False, "logical processors"),
+    "machine.load": (NUMBER, True, "load average of the minute before the first episode"),
+    "machine.load_at_end": (NUMBER, True, "load average of the minute before the last one ended"),
+    "timing.decisions": (int, False, "how often the agent decided"),
+    "timing.seconds": (NUMBER, False, "what that took together"),
+    "timing.simulated_shots": (int, False, "shots that this process simulated meanwhile"),
+    "timing.tables_at_once": (int, False, "episodes played side by side"),
+    "timing.one_table_ms": (NUMBER, True, "milliseconds a decision on one table, measured alone; null: not measured"),
+    "timing.one_table_decisions": (int, False, "how many decisions that is the mean of"),
+    "command": (str, False, "how this file was made"),
+    "commit": (str, True, "of the checkout, with -dirty if files were changed; null outside one"),
+    "date": (str, False, "when, in UTC: 2026-11-22T19:00:00Z"),
+    "columns": (list, False, "names of the columns of rows"),
+    "rows": (list, False, "one list of whole numbers for each episode, see below"),
+    "figures": (dict, True, "what follows from the rows, see below; null: the runs are not complete"),
+    "incomplete": (str, True, "why episodes are missing; null: none are"),
+}
+"""Dotted name: type, whether it may be null, meaning."""
+
+LABEL = re.compile(r"[\w.+-]{1,20}")
+MOST_WHOLE = 2**53
+"""Whole numbers up to here are exact in every reader of JSON."""
+_COUNT, _AMOUNT = (0, MOST_WHOLE), (0.0, 1e12)
+RANGES: dict[str, tuple[float, float]] = {
+    "schema.version": _COUNT, "protocol.version": _COUNT, "protocol.first_seed": _COUNT, "protocol.episodes": (1, 2**20),
+    "protocol.resamples": _COUNT, "agent.training_shots": _COUNT, "agent.simulated_shots": (0, MOST_WHOLE), "machine.cores": (1, 2**20),
+    "machine.load": _AMOUNT, "machine.load_at_end": _AMOUNT, "timing.decisions": _COUNT, "timing.seconds": _AMOUNT,
+    "timing.simulated_shots": _COUNT, "timing.tables_at_once": (1, 2**20), "timing.one_table_ms": _AMOUNT,
+    "timing.one_table_decisions": _COUNT,
+}  # fmt: skip
+"""Lowest and highest value of every field that is a number."""
+VERSION_TEXT = re.compile(r"[\w.+!-]{1,60}")
+PATTERNS = {
+    "agent.label": (LABEL, "1 to 20 letters, digits or . + - _"),
+    **{name: (VERSION_TEXT, "a version") for name in FIELDS if name.startswith("software.")},
+    "machine.platform": (re.compile(r"[^\x00-\x1f\x7f-\x9f\u2028\u2029]{1,200}"), "one line of at most 200 characters"),
+    "machine.cpu": (re.compile(r"[^\x00-\x1f\x7f-\x9f\u2028\u2029]{1,200}"), "one line of at most 200 characters"),
+    "commit": (re.compile(r"[0-9a-f]{7,64}(-dirty)?"), "a commit's hash, with -dirty if files were changed"),
+}
+"""Texts that must have a form."""
+
+
+def faults_of_fields(found: Any) -> list[str]:
+    """What is wrong with the fields of a result, a line each.
+
+    Parameters
+    ----------
+    found : object
+        As ``json`` reads it.
+
+    Returns
+    -------
+    list of str
+    """
+    if not isinstance(found, dict):
+        return ["the file must hold one JSON object"]
+    said, known = [], set(FIELDS)
+    for name, (kind, empty, _) in FIELDS.items():
+        value: Any = found
+        for part in name.split("."):
+            value = value.get(part, _MISSING) if isinstance(value, dict) else _MISSING
+        if value is _MISSING:
+            said.append(f"{name}: is missing")
+        elif not (value is None and empty) and not _fits(value, kind):
+            said.append(f"{name} = {shortened(value)}: must be {_words(kind)}{' or null' if empty else ''}")
+        elif value is not None:
+            said += _faults_of_value(name, value)
+    for name, value in found.items():
+        inner = [f"{name}.{key}" for key in value] if isinstance(value, dict) and name not in known else [name]
+        said += [f"{other}: is no field of version {VERSION}" for other in inner if other not in known]
+    return said
+
+
+_MISSING = object()
+
+
+def _fits(value, kind):
+    kinds = kind if isinstance(kind, tuple) else (kind,)
+    return isinstance(value, kinds) and (not isinstance(value, bool) or bool in kinds)
+
+
+def _words(kind):
+    return {str: "a text", int: "a whole number", bool: "true or false", list: "a list", dict: "an object"}.get(kind, "a number")
+
+
+def _faults_of_value(name, value):
+    """What is wrong with the value of a field that has the right type."""
+    what = None
+    if name in RANGES and not RANGES[name][0] <= value <= RANGES[name][1]:
+        what = f"between {RANGES[name][0]:g} and {RANGES[name][1]:g}"
+    elif name in PATTERNS and not PATTERNS[name][0].fullmatch(value):
+        what = PATTERNS[name][1]
+    elif name == "date" and not _is_date(value):
+        what = "a time in UTC, as 2026-11-22T19:00:00Z"
+    return [] if what is None else [f"{name} = {shortened(value)}: must be {what}"]
+
+
+def _is_date(text):
+    try:
+        return datetime.strptime(text, DATE).strftime(DATE) == text
+    except ValueError:
+        return False
+
+
+DATE = "%Y-%m-%dT%H:%M:%SZ"
+
+
+def shortened(value: Any) -> str:
+    """A value in at most 60 characters of one line, for a message.
+
+    Parameters
+    ----------
+    value : object
+
+    Returns
+    -------
+    str
+    """
+    try:
+        text = repr(value)
+    except ValueError:  # a whole number of thousands of digits
+        text = "a number too long to print"
+    return text if len(text) <= 60 else text[:57] + "..."

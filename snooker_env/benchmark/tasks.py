@@ -1,0 +1,301 @@
+"""What are the tasks of the benchmark? Ids with a version, the options that are frozen, and how an agent is judged on each.
+
+A task freezes what decides its results: how tables are dealt, execution noise, physics, table, fidelity, reward, rules and opponent. What
+only says how an agent sees and acts stays free: ``FREE``. docs/benchmark.md holds the rules.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from .._check import choice, integer, refuse, refuse_what
+from ..game.balls import VALUES
+from ..game.layouts import layout as deal
+from ..game.layouts import plan_of
+from ..tasks.options import Options
+
+HELD_OUT_SEED = 1_000_000
+"""Seed of the first judged table. Seeds from here on are for judging alone, not for training."""
+FREE = ("action", "aim", "observation", "elevation", "placement", "decision")
+"""Options that an agent may choose in every task: its observation, and how its actions are read."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """One task of the benchmark.
+
+    Attributes
+    ----------
+    id : str
+        The Gymnasium id, with its version.
+    title : str
+        The aim of the task, in a few words.
+    changes : mapping
+        Options that differ from those of ``Snooker-v0``.
+    judged_layout : str
+        The layout that agents are judged on; training uses that of ``changes``.
+    score : {"points", "pots", "legal", "won"}
+        The score of an episode, by which the task is judged.
+    measure : str
+        Name of the mean score.
+    episodes : int
+        Number of episodes of an official result for each training seed.
+    thresholds : tuple of int
+        Scores of the performance profile, which is the share of episodes with at least each of these scores.
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import TASKS
+    >>> task = TASKS["SnookerBreak-v0"]
+    >>> task.score, task.episodes, task.most
+    ('points', 500, 147)
+    """
+
+    id: str
+    title: str
+    changes: Mapping[str, Any]
+    judged_layout: str
+    score: str
+    measure: str
+    episodes: int
+    thresholds: tuple[int, ...] = (1,)
+
+    def options(self, **free: Any) -> Options:
+        """The options of the task as it is trained.
+
+        Parameters
+        ----------
+        **free
+            Options of ``FREE``.
+
+        Returns
+        -------
+        Options
+            The frozen options and these.
+
+        Raises
+        ------
+        ValueError
+            For an option that the task freezes, and for values that ``Options`` does not accept.
+        TypeError
+            For a keyword that is no option.
+
+        Examples
+        --------
+        >>> from snooker_env.benchmark import TASKS
+        >>> options = TASKS["SnookerBreak-v0"].options(aim="target")
+        >>> options.layout, options.noise, options.aim
+        ('opened', 'professional', 'target')
+        """
+        for name, value in free.items():
+            if name in FREE:
+                continue
+            if name == "options":
+                allowed = f"must be left out: {self.id} makes its own; give the free options themselves ({', '.join(FREE)})"
+                raise refuse_what("options", f"a {type(value).__name__}", allowed)
+            if name not in _USUAL:
+                raise TypeError(f"got an unexpected keyword argument {name!r}; the free options of {self.id} are {', '.join(FREE)}")
+            frozen = self.frozen[name]
+            raise refuse(name, value, f"must be left out: {self.id} freezes it at {frozen!r}; only Snooker-v0 lets you choose it")
+        return Options(**{**self.changes, **free})
+
+    def judged(self, **free: Any) -> Options:
+        """The options that the task is judged with: those of training, on the judged layout.
+
+        Parameters
+        ----------
+        **free
+            As in ``options``.
+
+        Returns
+        -------
+        Options
+            The options of training with ``judged_layout``.
+        """
+        return self.options(**free).but(layout=self.judged_layout)
+
+    @property
+    def frozen(self) -> dict[str, Any]:
+        """Every option that the task freezes, with its value."""
+        return {name: self.changes.get(name, value) for name, value in _USUAL.items() if name not in FREE}
+
+    @property
+    def counts(self) -> bool:
+        """Whether the score of an episode is a number of points; else it is 0 or 1, and the mean is a share."""
+        return self.score == "points"
+
+    @property
+    def frame(self) -> bool:
+        """Whether an episode is a whole frame."""
+        return self.changes.get("task") == "frame"
+
+    def seeds(self, n: int) -> list[int]:
+        """The seeds of the first judged tables, by ``tables_of``.
+
+        Parameters
+        ----------
+        n : int
+            Number of tables, in [1, 2**20].
+
+        Returns
+        -------
+        list of int
+            The seeds.
+
+        Raises
+        ------
+        ValueError
+            If ``n`` is out of range, or the layout has fewer tables.
+        """
+        return tables_of(self.judged_layout, integer("episodes", n, 1, 2**20))
+
+    @property
+    def most(self) -> int:
+        """The highest score that an episode can have."""
+        return most_points(self.judged_layout) if self.counts else 1
+
+
+_USUAL = {f.name: f.default for f in fields(Options) if f.init}
+_BREAK = (1, 10, 25, 50, 75, 100, 147)
+_PROFESSIONAL = {"noise": "professional"}
+
+
+def _task(name: str, **given: Any) -> Task:
+    return Task(id=name, **{**given, "changes": MappingProxyType(given["changes"])})
+
+
+TASKS: dict[str, Task] = {
+    task.id: task
+    for task in (
+        _task(
+            "SnookerBreak-v0", title="build a break on an opened table", changes={"layout": "opened"} | _PROFESSIONAL,
+            judged_layout="held_out", score="points", measure="points a visit", episodes=500, thresholds=_BREAK,
+        ),
+        _task(
+            "SnookerBreakClub-v0", title="the same with a club player's errors", changes={"layout": "opened", "noise": "club"},
+            judged_layout="held_out", score="points", measure="points a visit", episodes=500, thresholds=_BREAK,
+        ),
+        _task(
+            "SnookerLineUp-v0", title="clear the line-up", changes={"layout": "line_up"} | _PROFESSIONAL,
+            judged_layout="line_up", score="points", measure="points a visit", episodes=500, thresholds=_BREAK,
+        ),
+        _task(
+            "SnookerColours-v0", title="clear the six colours", changes={"layout": "colours"} | _PROFESSIONAL,
+            judged_layout="colours", score="points", measure="points a visit", episodes=500, thresholds=(2, 5, 9, 14, 20, 27),
+        ),
+        _task(
+            "SnookerPotHard-v0", title="pot one hard ball", changes={"layout": "pots:hard", "reward": "pots"} | _PROFESSIONAL,
+            judged_layout="pots:hard", score="pots", measure="share of balls potted", episodes=1000,
+        ),
+        _task(
+            "SnookerEscape-v0", title="one stroke out of a snooker, without a foul",
+            changes={"layout": "snookered", "reward": "legal", "one_stroke": True} | _PROFESSIONAL,
+            judged_layout="snookered", score="legal", measure="share of escapes", episodes=1000,
+        ),
+        _task(
+            "SnookerFrame-v0", title="win a frame against ghost_ball",
+            changes={"task": "frame", "layout": "break_off", "opponent": "ghost_ball", "reward": "win"}
+            | _PROFESSIONAL,
+            judged_layout="break_off", score="won", measure="share of frames won", episodes=200,
+        ),
+    )
+}  # fmt: skip
+"""The tasks of the benchmark by id."""
+
+
+def task_of(name: Any) -> Task:
+    """The task with an id.
+
+    Parameters
+    ----------
+    name : str
+        The id, for instance "SnookerBreak-v0".
+
+    Returns
+    -------
+    Task
+        The task.
+
+    Raises
+    ------
+    ValueError
+        If there is none with this id.
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import task_of
+    >>> task_of("SnookerColours-v0").title
+    'clear the six colours'
+    """
+    return TASKS[choice("task", name, tuple(TASKS))]
+
+
+@lru_cache(maxsize=32)
+def _tables_of(layout: str, n: int) -> tuple[int, ...]:
+    plan, seeds, known = plan_of(layout), [], set()
+    for seed in range(HELD_OUT_SEED, HELD_OUT_SEED + 20 * n):
+        positions, _ = deal(plan, np.random.default_rng(seed))
+        table = np.sort(np.abs(positions[:, 0])).round(9).tobytes()
+        if table not in known:
+            known.add(table)
+            seeds.append(seed)
+            if len(seeds) == n:
+                return tuple(seeds)
+    raise refuse("visits", n, f"must be at most {len(seeds)} on layout {layout!r}: it has no more tables")
+
+
+def tables_of(layout: str, visits: int) -> list[int]:
+    """Seeds of different tables for judging: the first from ``HELD_OUT_SEED`` whose tables differ from all before and their mirror images.
+
+    Parameters
+    ----------
+    layout : str
+        Name of the layout.
+    visits : int
+        Number of tables.
+
+    Returns
+    -------
+    list of int
+        The seeds.
+
+    Raises
+    ------
+    ValueError
+        If the layout has too few tables.
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import tables_of
+    >>> tables_of("held_out", 3)
+    [1000000, 1000001, 1000002]
+    """
+    return list(_tables_of(layout, visits))
+
+
+def most_points(layout: str) -> int:
+    """The most points of a visit on a layout.
+
+    Parameters
+    ----------
+    layout : str
+        Name of the layout.
+
+    Returns
+    -------
+    int
+        The points.
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import most_points
+    >>> most_points("colours"), most_points("held_out")
+    (27, 147)
+    """
+    _, on_table = deal(plan_of(layout), np.random.default_rng(0))
+    reds, colours = int(on_table[1:16].sum()), int(VALUES[16:] @ on_table[16:])
+    return colours + reds * (8 if colours else 1)

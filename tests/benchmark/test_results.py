@@ -1,0 +1,270 @@
+"""Is a result what was played? Rows, figures, counted shots, and a check that finds whatever was changed."""
+
+import copy
+import json
+import shutil
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import snooker_env as sn
+from snooker_env.benchmark import (
+    COLUMNS,
+    HELD_OUT_SEED,
+    TASKS,
+    Agent,
+    budget_of,
+    faults,
+    figures_of,
+    interval,
+    judge,
+    page,
+    play_episodes,
+    read_result,
+    unseen,
+    write_result,
+)
+from snooker_env.benchmark.__main__ import main
+from snooker_env.benchmark.leaderboard import LEGEND, lines
+from snooker_env.benchmark.schema import FIELDS
+from snooker_env.planning import Planner
+
+EPISODES = 24
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A result of each task by ghost_ball."""
+    folder = tmp_path_factory.mktemp("results")
+    for name, task in TASKS.items():
+        judge(task, Agent.of("ghost_ball"), episodes=4 if task.frame else EPISODES, out=folder / f"{name}.json", command="a test")
+    return folder
+
+
+def result(made, name="SnookerBreak-v0"):
+    return read_result(made / f"{name}.json")
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_what_is_written_is_sound(made, name):
+    found = result(made, name)
+    assert faults(found) == []
+    assert found["protocol"]["official"] is False and found["incomplete"] is None and found["agent"]["class"] == "model_free"
+    assert [row[1] for row in found["rows"]] == TASKS[name].seeds(len(found["rows"]))
+    assert found["timing"]["one_table_decisions"] > 0 and found["timing"]["one_table_ms"] > 0
+    written = (made / f"{name}.json").read_text(encoding="utf-8")
+    assert json.loads(written) == found and max(map(len, written.splitlines())) < 140
+
+
+def test_rows_are_the_visits_that_the_environment_plays(made):
+    """Stroke by stroke on one table with the same seeds, by nobody's rollout code."""
+    from snooker_env.advice import player_of
+
+    found = result(made)
+    env = sn.SnookerEnv(layout="held_out", noise="professional", placement=True)
+    player = player_of("ghost_ball")
+    for row in found["rows"][:6]:
+        env.reset(seed=row[1])
+        points = pots = strokes = fouls = 0
+        over = False
+        while not over:
+            many = sn.SnookerVectorEnv(1, threads=1, noise="professional", placement=True)
+            many.reset(options={"state": env.get_state()})
+            _, reward, over, _, info = env.step(player.act(many, None, np.ones(1, bool))[0])
+            points, pots, strokes, fouls = points + info["points"], pots + (reward > 0), strokes + 1, fouls + info["foul"]
+        assert row[2:7] == [points, strokes, points, pots, fouls]
+
+
+def test_figures_are_those_of_the_rows(made):
+    found = result(made)
+    scores = np.array([row[COLUMNS.index("score")] for row in found["rows"]], float)
+    f = found["figures"]
+    assert f["score"]["value"] == pytest.approx(scores.mean()) and f["iqm"]["value"] == pytest.approx(stats.trim_mean(scores, 0.25))
+    assert f["best"] == scores.max() and f["by_run"] == [pytest.approx(scores.mean())]
+    rng = np.random.default_rng(5)
+    drawn = scores[rng.integers(len(scores), size=(20_000, len(scores)))].mean(axis=1)
+    assert (f["score"]["low"], f["score"]["high"]) == pytest.approx(interval(drawn), rel=0.08)
+    for entry in f["profile"]:
+        assert entry["value"] == pytest.approx(np.mean(scores >= entry["at_least"]))
+    never = f["profile"][-1]
+    assert (never["at_least"], never["value"], never["low"], never["exact"]) == (147, 0.0, 0.0, True)
+    assert never["high"] == pytest.approx(1 - 0.05 ** (1 / EPISODES)) == unseen(EPISODES)
+
+
+def test_several_training_seeds_are_drawn_too():
+    rng = np.random.default_rng(0)
+    rows = [[run, table, x, 1, x, 0, 0, 0, 0, 1] for run in range(3) for table, x in enumerate(rng.integers(0, 40, 50) + 20 * run)]
+    found = figures_of(TASKS["SnookerBreak-v0"], "a", rows)
+    alone = figures_of(TASKS["SnookerBreak-v0"], "a", rows[:50])
+    assert found["score"]["high"] - found["score"]["low"] > 2 * (alone["score"]["high"] - alone["score"]["low"])
+    assert found["by_run"] == pytest.approx([np.mean([row[2] for row in rows[50 * k : 50 * k + 50]]) for k in range(3)])
+    assert figures_of(TASKS["SnookerBreak-v0"], "a", rows[:-1]) is None
+
+
+def changed(found, path, value):
+    found = copy.deepcopy(found)
+    inner = found
+    for key in path[:-1]:
+        inner = inner[key]
+    inner[path[-1]] = value
+    return found
+
+
+TAMPERED = [
+    (("figures", "score", "value"), 99.0, "figures.score.value = 99.0: must be "),
+    (("figures", "profile", 1, "high"), 0.9, "figures.profile[1].high = 0.9: must be "),
+    (("rows", 3, 2), 147, "rows[3].score = 147: must be "),
+    (("rows", 3, 4), 147, "rows[3].points = 147: must be possible with these pots"),
+    (("rows", 5, 1), HELD_OUT_SEED + 999, f"rows[5]: run 0, table {HELD_OUT_SEED + 999}: must be run 0, table "),
+    (("rows", 5, 1), HELD_OUT_SEED, "rows[5]: run 0, table 1000000: must be run 0, table 1000005"),
+    (("rows", 2, 3), 1000, "rows[2].strokes = 1000: must be the pots, and the stroke"),
+    (("rows", 2), [1, 2], "rows[2] = [1, 2]: must be 10 whole numbers"),
+    (("rows", 2, 6), 2, "rows[2].fouls = 2: must be 0 or 1"),
+    (("protocol", "episodes"), 25, "rows: must be 25 episodes (1 x 25), not 24"),
+    (("protocol", "version"), 7, "protocol.version = 7: must be 1"),
+    (("protocol", "official"), True, "protocol.official = True: must be False by the rules"),
+    (("task",), "SnookerBreak-v1", "task = 'SnookerBreak-v1': must be one of SnookerBreak-v0"),
+    (("agent", "class"), "planning", "agent.class = 'planning': must be 'model_free' by agent.simulated_shots"),
+    (("agent", "budget"), "1M", "agent.budget = '1M': must be 'none' by agent.training_shots"),
+    (("timing", "simulated_shots"), 10**6, "agent.simulated_shots = 0: must be at least "),
+    (("timing", "decisions"), 1, "timing.decisions: must be at least the strokes of all rows"),
+    (("software", "numpy"), 2, "software.numpy = 2: must be a text or null"),
+    (("machine", "colour"), 2, "machine.colour: is no field of version 1"),
+    (("extra",), 2, "extra: is no field of version 1"),
+    (("incomplete",), False, "incomplete = False: must be a text or null"),
+]
+
+
+@pytest.mark.parametrize(("path", "value", "line"), TAMPERED, ids=lambda x: ".".join(map(str, x)) if isinstance(x, tuple) else None)
+def test_a_tampered_file_fails_at_the_right_field(made, path, value, line):
+    said = faults(changed(result(made), path, value))
+    assert any(one.startswith(line) for one in said), said
+
+
+@pytest.mark.parametrize("field", FIELDS)
+def test_a_missing_field_is_named(made, field):
+    found = result(made)
+    inner = found
+    *parts, last = field.split(".")
+    for part in parts:
+        inner = inner[part]
+    del inner[last]
+    assert f"{field}: is missing" in faults(found)
+
+
+def test_points_that_add_up_are_found_by_the_figures_alone(made):
+    """A row made better in every column that hangs together: only the figures show it, unless they are made again, too."""
+    found = result(made)
+    row = found["rows"][0]
+    row[2], row[4], row[5], row[3] = row[2] + 7, row[4] + 7, row[5] + 1, row[3] + 1
+    found["timing"]["decisions"] += 1
+    assert faults(found) and all(line.startswith("figures") for line in faults(found))
+
+
+def test_replay_finds_what_the_figures_cannot(made, capsys, tmp_path):
+    file = tmp_path / "one.json"
+    shutil.copy(made / "SnookerColours-v0.json", file)
+    arguments = ["check", str(file), "--replay", "5", "--agent", "ghost_ball"]
+    assert main(arguments) == 0
+    found = read_result(file)
+    row = found["rows"][0]
+    row[2], row[4], row[5], row[3] = 2, 2, 1, 2 if row[4] != 2 else 9
+    found["timing"]["decisions"] += 30
+    found["figures"] = figures_of(TASKS[found["task"]], "ghost_ball", found["rows"])
+    write_result(file, found)
+    if faults(found) == []:
+        assert main(arguments) == 1
+        assert f"table {row[1]}: played again" in capsys.readouterr().out
+
+
+def test_simulated_shots_are_counted():
+    class Thinks:
+        """Plays 7 shots on copies of each table before each stroke, 3 more by ``simulate``, and one batch of 5."""
+
+        options = {"action": "discrete"}  # noqa: RUF012
+
+        def act(self, tables, observations, going):
+            planner = Planner(tables, noise="none")
+            for k in np.flatnonzero(going):
+                planner.play(tables, np.full(7, k), np.arange(7))
+                for _ in range(3):
+                    sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)])
+                sn.simulate_batch(np.zeros((5, 1, 2)), np.zeros((5, 1, 2)), np.zeros((5, 1, 3)))
+            return np.zeros(len(going), int)
+
+    agent = Agent(label="thinks", kind="object", sources=("here",), maker=Thinks, training_shots=40_000)
+    found = judge(TASKS["SnookerPotHard-v0"], agent, episodes=9)
+    assert found["timing"]["decisions"] == 9 and found["timing"]["simulated_shots"] == 9 * 15
+    assert (found["agent"]["simulated_shots"], found["agent"]["class"], found["agent"]["budget"]) == (15.0, "planning", "50k")
+    frames = judge(TASKS["SnookerFrame-v0"], agent, episodes=1)  # the opponent's strokes and the agent's own are not counted
+    assert frames["timing"]["simulated_shots"] == 15 * frames["timing"]["decisions"] > 15
+    assert faults(found) == faults(frames) == []
+
+
+@pytest.mark.parametrize("log", [2, 512])
+def test_a_shot_that_is_played_twice_counts_once(monkeypatch, log):
+    from snooker_env import simulation
+    from snooker_env._shots import simulated
+    from snooker_env.tasks import stroke
+
+    monkeypatch.setattr(simulation, "_FIRST_LOG", log)
+    monkeypatch.setattr(stroke.ShotBuffers.__init__, "__defaults__", (log,))
+    before = simulated()
+    shot = sn.simulate([(0.0, -1.0), (0.0, 0.5)], [(0.0, 3.0), (0.0, 0.0)], [(0.0, 0.0, 0.0)] * 2)
+    assert simulated() - before == 1 and len(shot.events) > 2
+    env = sn.SnookerEnv()
+    env.reset(seed=1)
+    before = simulated()
+    env.step([0.3, 0.0, 0.0, 0.5])
+    assert simulated() - before == 1
+
+
+def test_budgets_are_limits_with_room_for_a_rollout():
+    assert [budget_of(n) for n in (None, 0, 1, 51_000, 51_001, 1_020_000, 5_100_000, 5_100_001)] == [
+        "unknown", "none", "50k", "50k", "1M", "1M", "5M", "open"
+    ]  # fmt: skip
+
+
+def test_randomness_is_repeated_batch_by_batch():
+    task = TASKS["SnookerColours-v0"]
+    first, second = (judge(task, Agent.of("random"), episodes=12)["rows"] for _ in range(2))
+    assert first == second
+    player = Agent.of("random").player(task)
+    one = play_episodes(task, player, task.seeds(12))
+    assert one.rows != play_episodes(task, player, task.seeds(12)).rows  # it draws on
+
+
+def test_tables_fit_100_columns(made, capsys):
+    files = [str(file) for file in made.glob("*.json")]
+    assert main(["table", *files]) == 0
+    out = capsys.readouterr().out
+    assert max(map(len, out.splitlines())) <= 100 and out.count("ghost_ball *") == 7
+    results = [result(made, name) for name in TASKS]
+    for one in results:  # as wide as can be
+        one["agent"]["label"], one["agent"]["simulated_shots"], one["agent"]["declared"] = "a" * 20, 99_999.0, True
+        one["agent"]["class"], one["agent"]["budget"], one["agent"]["sources"] = "undeclared", "unknown", ["x"] * 10
+        for figure in (one["figures"]["score"], one["figures"]["iqm"]):
+            if figure is not None:
+                figure.update(value=130.0, low=120.0, high=140.0)
+        one["figures"]["best"] = 147
+        one["timing"]["seconds"], one["timing"]["one_table_ms"] = 99.9 * one["timing"]["decisions"], 99999.0
+    assert max(map(len, lines(results))) <= 100
+    assert main(["profile", *files]) == 0 and max(map(len, capsys.readouterr().out.splitlines())) <= 100
+    assert main(["tasks"]) == 0 and max(map(len, capsys.readouterr().out.splitlines())) <= 100
+    assert page(results).startswith("# Leaderboard\n") and LEGEND[:40] in page(results)
+
+
+def test_the_order_of_the_table_is_class_budget_score(made):
+    rows = []
+    for label, shots, training, value in (
+        ("d", 10.0, 0, 99.0), ("b", 0.0, 0, 5.0), ("a", 0.0, 0, 6.0), ("c", 0.0, 1_000_000, 1.0), ("e", 10.0, 50_000, 1.0),
+    ):  # fmt: skip
+        one = result(made)
+        one["agent"] |= {"label": label, "simulated_shots": shots, "training_shots": training, "budget": budget_of(training)}
+        one["agent"]["class"] = "planning" if shots else "model_free"
+        one["figures"]["score"]["value"] = value
+        rows.append(one)
+    from snooker_env.benchmark.leaderboard import board
+
+    assert [row[1][0] for row in board(rows, TASKS["SnookerBreak-v0"])[1]] == list("abcde")

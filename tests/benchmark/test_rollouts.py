@@ -1,0 +1,144 @@
+"""Is every stroke of a visit kept and counted as it was, on the same tables for everyone?"""
+
+import numpy as np
+import pytest
+
+from agents.evaluation import protocol
+from agents.players.built_in import GhostBall, Random
+from snooker_env.benchmark import FIGURES, HELD_OUT_SEED, Strokes, counts, play_visits, rollouts, summary, tables_of
+from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.game.balls import BallOn
+from snooker_env.game.opened import HELD_OUT
+
+# strokes and counts --------------------------------------------------------------------------------------------------------------
+
+
+class Watched:
+    """A player that keeps how the tables stood before its first stroke."""
+
+    def __init__(self, player):
+        self.player, self.options, self.start = player, player.options, None
+
+    def act(self, tables, observations, going):
+        if self.start is None:
+            self.start = tables.tables.positions.copy(), tables.tables.on_table.copy()
+        return self.player.act(tables, observations, going)
+
+
+def test_counts_of_a_visit_by_hand():
+    """Two visits: red, black, red with nothing after; then a miss."""
+    s = Strokes(
+        visits=2, visit=np.array([0, 1, 0, 0, 0]), number=np.array([0, 0, 1, 2, 3]), points=np.array([1.0, 0, 7, 1, 0]),
+        foul=np.array([False, False, False, False, True]), ball_on=np.array([BallOn.RED, BallOn.RED, BallOn.ANY_COLOUR, BallOn.RED, 0]),
+        cleared=np.zeros(5, bool), cue=np.zeros((5, 2)), tolerance=np.array([1e-2, 0, 1e-3, 1e-2, 0]), decision_seconds=0.0,
+    )  # fmt: skip
+    assert s.following.tolist() == [2, -1, 3, 4, -1]
+    c = {name: values.tolist() for name, values in counts(s).items()}
+    assert c == {
+        "points": [9, 0], "pots": [3, 0], "strokes": [4, 1], "fouls": [1, 0], "goes_on": [3, 0], "followed": [2, 0], "easy": [2, 0],
+        "colours": [1, 0], "colour_points": [7, 0], "high": [1, 0], "reds": [2, 0], "high_after_red": [1, 0], "clearances": [0, 0],
+        "visits": [1, 1], "centuries": [0, 0], "maximums": [0, 0],
+    }  # fmt: skip
+    f = summary(s)
+    assert (f["points_a_visit"], f["pots_a_visit"], f["next_pot_after_a_pot"], f["high_colours"]) == (4.5, 1.5, pytest.approx(2 / 3), 1.0)
+
+
+def a_clearance_a_foul_and_a_miss():
+    """Three visits: the last ball goes in for a century (points as no shot brings them); it goes in by a foul; it stays."""
+    return Strokes(
+        visits=3, visit=np.array([0, 1, 2, 0]), number=np.array([0, 0, 0, 1]), points=np.array([95.0, 0, 0, 7]),
+        foul=np.array([False, True, False, False]), ball_on=np.array([BallOn.ANY_COLOUR, BallOn.BLACK, BallOn.BLACK, BallOn.BLACK]),
+        cleared=np.array([False, True, False, True]), cue=np.zeros((4, 2)), tolerance=np.zeros(4), decision_seconds=0.0,
+    )  # fmt: skip
+
+
+def test_a_foul_clears_no_table():
+    c, f = counts(a_clearance_a_foul_and_a_miss()), summary(a_clearance_a_foul_and_a_miss())
+    assert c["clearances"].tolist() == c["centuries"].tolist() == [1, 0, 0]
+    assert f["clearances"] == f["centuries"] == pytest.approx(1 / 3)
+
+
+@pytest.mark.parametrize(("points", "century", "maximum"), [(99, 0, 0), (100, 1, 0), (146, 1, 0), (147, 1, 1)])
+def test_centuries_and_maximums(points, century, maximum):
+    s = a_clearance_a_foul_and_a_miss()
+    s.points[0] = points - s.points[-1]
+    c = counts(s)
+    assert c["centuries"].tolist() == [century, 0, 0] and c["maximums"].tolist() == [maximum, 0, 0]
+
+
+def test_counts_agree_with_the_summary():
+    s = play_visits(GhostBall(), 60, noise="professional")
+    for strokes in (s, a_clearance_a_foul_and_a_miss()):
+        c, f = counts(strokes), summary(strokes)
+        for name in ("points_a_visit", "pots_a_visit", "fouls_a_visit", "pot_rate", "next_pot_after_a_pot", "colour_value", "high_colours",
+                     "centuries", "clearances"):  # fmt: skip
+            above, below = FIGURES[name]
+            assert c[above].sum() / c[below].sum() == pytest.approx(f[name])
+    c, f = counts(s), summary(s)
+    assert f["next_pot_after_a_pot"] > 0.4 and np.all(c["strokes"] - c["pots"] == 1 - c["clearances"])  # a visit ends with its first miss
+
+
+def test_the_cue_balls_place_is_kept_unless_it_was_potted(monkeypatch):
+    after = []
+
+    class Kept(SnookerVectorEnv):
+        def step(self, actions):
+            found = super().step(actions)
+            after.append((self.tables.positions[:, 0].copy(), self.tables.on_table[:, 0].copy()))
+            return found
+
+    monkeypatch.setattr(rollouts, "SnookerVectorEnv", Kept)
+    s = play_visits(Random(seed=1), 200, noise="club")
+    places, there = (np.stack(column)[s.number, s.visit] for column in zip(*after, strict=True))
+    assert 0 < (~there).sum() < s.foul.sum()
+    assert np.isnan(s.cue[~there]).all() and np.array_equal(s.cue[there], places[there])
+
+
+# conditions ----------------------------------------------------------------------------------------------------------------------
+
+USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
+
+
+@pytest.mark.parametrize("change", [{}, {"layout": "colours"}, {"noise": "club"}, {"fidelity": "fast"}, {"physics": "match"}, {"seeds": 7}])
+def test_an_agent_is_played_under_its_condition(change):
+    """Stroke by stroke as ``play_visits`` plays it there; and what is changed changes the play."""
+    condition, seeds = USUAL | change, list(range(change.get("seeds", 3), 33))[:20]
+    condition.pop("seeds", None)
+    found = protocol.play_agent(protocol.Entrant("a", ("ghost_ball",)), condition, seeds, 100, 100)
+    wanted = play_visits(GhostBall(), 20, first_seed=seeds, **condition)
+    usual = play_visits(GhostBall(), 20, first_seed=list(range(3, 23)), **USUAL)
+    (strokes,) = found.strokes
+    for name in ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance"):
+        assert np.array_equal(getattr(strokes, name), getattr(wanted, name), equal_nan=name == "cue"), name
+    assert found.counted["points"].tolist() == [wanted.a_visit(wanted.points).tolist()]
+    assert np.array_equal(strokes.cue, usual.cue, equal_nan=True) == (not change)
+
+
+# tables --------------------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("layout", ["held_out", "line_up", "colours"])
+def test_everyone_starts_from_the_same_tables(layout):
+    seeds, starts = tables_of(layout, 12), []
+    for player, noise, fidelity in (
+        (GhostBall(), "none", "fast"),
+        (Random(), "club", "standard"),
+        (Random({"aim": "absolute"}), "none", "standard"),
+    ):
+        watched = Watched(player)
+        play_visits(watched, 12, layout=layout, noise=noise, fidelity=fidelity, first_seed=seeds)
+        starts.append(watched.start)
+    for positions, on_table in starts[1:]:
+        assert np.array_equal(positions, starts[0][0]) and np.array_equal(on_table, starts[0][1])
+
+
+def test_no_table_comes_twice_or_mirrored():
+    seeds = tables_of("held_out", 300)
+    assert seeds == sorted(set(seeds)) and seeds[0] == HELD_OUT_SEED
+    tables = SnookerVectorEnv(300, layout="held_out")
+    tables.reset(seed=seeds)
+    reds = np.sort(np.abs(tables.tables.positions[:, 1:16, 0]), axis=1)
+    apart = np.abs(reds[:, None] - reds[None]).max(axis=2) + np.eye(300)
+    assert apart.min() > 1e-6
+    with pytest.raises(ValueError, match=f"visits = {HELD_OUT + 1}: must be at most {HELD_OUT} "):
+        tables_of("held_out", HELD_OUT + 1)

@@ -1,0 +1,94 @@
+"""Are the figures of ``agents.evaluate`` as sure as they say?"""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from agents.evaluation.entrants import Entrant
+from agents.evaluation.metrics import EntrantMetrics
+from snooker_env.benchmark import Resamples, interval, iqm
+
+
+def test_iqm_is_scipys_trimmed_mean():
+    rng = np.random.default_rng(0)
+    for n in (4, 8, 400):
+        for values in (rng.normal(size=n), rng.integers(0, 6, n).astype(float)):
+            assert iqm(values) == pytest.approx(stats.trim_mean(values, 0.25))
+    assert iqm([1, 2, 10]) == pytest.approx((0.25 * 1 + 2 + 0.25 * 10) / 1.5)  # edges count with the part that is inside
+    assert iqm([3.0]) == 3.0
+
+
+def test_samples_are_those_of_a_plain_bootstrap():
+    """Sums, ratios and inter-quartile means against the matrix drawn row by row."""
+    rng = np.random.default_rng(1)
+    x, y = rng.integers(0, 9, (3, 40)).astype(float), rng.integers(1, 5, (3, 40)).astype(float)
+    samples = Resamples(3, 40, 50, seed=2)
+    sums, ratios, iqms = samples.sums(x), samples.ratios(x, y), samples.iqms(x)
+    for k in range(50):
+        runs = np.repeat(np.arange(3), samples._runs[k].astype(int))
+        tables = np.repeat(np.arange(40), samples._visits[k].astype(int))
+        assert len(runs) == 2 and len(tables) == 40
+        drawn = x[np.ix_(runs, tables)]
+        assert sums[k] == pytest.approx(drawn.sum())
+        assert ratios[k] == pytest.approx(drawn.sum() / y[np.ix_(runs, tables)].sum())
+        assert iqms[k] == pytest.approx(stats.trim_mean(drawn.ravel(), 0.25))
+
+
+def test_one_runs_interval_is_scipys():
+    x = np.random.default_rng(3).exponential(size=(1, 300))
+    ours = interval(Resamples(1, 300, 9000).sums(x) / 300)
+    its = stats.bootstrap((x[0],), np.mean, n_resamples=9000, method="percentile", rng=np.random.default_rng(0)).confidence_interval
+    assert ours == pytest.approx(tuple(its), abs=0.01)
+
+
+def test_an_interval_without_news_is_none():
+    assert all(np.isnan(interval(np.zeros(100))))
+    assert all(np.isnan(interval(np.append(np.arange(99.0), np.nan))))
+    assert np.isnan(Resamples(1, 5, 100).ratios(np.ones((1, 5)), np.zeros((1, 5)))).all()
+
+
+def coverage(runs, spreads, of_iqm=False, trials=300, tables=200):
+    """How often the interval holds the true mean 0, scores being sums of normal parts: the run's, the table's, the visit's own."""
+    rng, hits = np.random.default_rng(4), 0
+    of_run, of_table, own = spreads
+    samples = Resamples(runs, tables, 400)
+    for _ in range(trials):
+        x = rng.normal(0, of_run, (runs, 1)) + rng.normal(0, of_table, (1, tables)) + rng.normal(0, own, (runs, tables))
+        low, high = interval(samples.iqms(x.round(1)) if of_iqm else samples.sums(x))
+        hits += low <= 0 <= high
+    return hits / trials
+
+
+@pytest.mark.parametrize(
+    ("runs", "spreads", "least", "most"),
+    [
+        (1, (0, 0.3, 1), 0.91, 0.98),  # only visits differ: as it says
+        (5, (0.1, 0.3, 1), 0.92, 1.0),  # all three of a size, as in play: rather too wide
+        (5, (0, 0, 1), 0.97, 1.0),  # luck alone: too wide
+        (5, (1, 0, 0.01), 0.8, 0.92),  # nothing but seeds: five are few
+    ],
+)
+def test_coverage_is_what_the_docstring_says(runs, spreads, least, most):
+    assert least <= coverage(runs, spreads) <= most
+
+
+def test_coverage_of_the_inter_quartile_mean():
+    assert 0.9 <= coverage(1, (0, 0.3, 1), of_iqm=True, trials=200, tables=100) <= 0.99
+
+
+def played(label, points):
+    """A ``EntrantMetrics`` with these points (runs, visits) and nothing else."""
+    return EntrantMetrics(Entrant(label, ("x",) * len(points)), {"points": points, "pots": points}, [], 1000)
+
+
+def test_paired_ratio():
+    rng = np.random.default_rng(5)
+    base = rng.exponential(10.0, (1, 400))
+    exact = played("twice", 2 * base).ratios(played("base", base))["points_a_visit"]
+    assert exact["value"] == pytest.approx(2) and (exact["low"], exact["high"]) in ((None, None), pytest.approx((2, 2)))
+    near = played("near", 2 * base + rng.normal(0, 1, base.shape)).ratios(played("base", base))["points_a_visit"]
+    apart = played("apart", 2 * rng.permuted(base, axis=1)).ratios(played("base", base))["points_a_visit"]
+    assert near["low"] < 2 < near["high"] and near["high"] - near["low"] < 0.1 * (apart["high"] - apart["low"])
+    # the delta method for independent ones: the relative variances add
+    spread = base.std() / base.mean() / np.sqrt(400)
+    assert apart["high"] - apart["low"] == pytest.approx(2 * 3.92 * np.sqrt(2) * spread, rel=0.2)

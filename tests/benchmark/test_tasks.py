@@ -1,0 +1,149 @@
+"""Are the tasks of the benchmark what they promise? Frozen options, both checkers, spawned workers, and tables that nobody trains on."""
+
+import json
+import multiprocessing
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.envs.registration import EnvSpec
+from gymnasium.utils.env_checker import check_env
+
+import snooker_env as sn
+from snooker_env._registration import ENTRY_POINTS, ID
+from snooker_env.benchmark import FREE, HELD_OUT_SEED, TASKS, tables_of, task_of
+from snooker_env.game import layout
+from snooker_env.tasks import OBSERVATION_SIZE
+from tests.processes import python
+
+IDS = tuple(TASKS)
+
+
+def test_every_registered_id_but_snooker_is_a_task():
+    assert set(ENTRY_POINTS) == {ID, *TASKS}
+    for name in TASKS:
+        assert name == gymnasium.make(name).unwrapped.TASK and TASKS[name].id == name
+        assert name == gymnasium.make_vec(name, num_envs=2, vectorization_mode="vector_entry_point").TASK
+
+
+@pytest.mark.parametrize("name", IDS)
+@pytest.mark.filterwarnings("error")
+def test_gymnasium_accepts_it(name):
+    check_env(gymnasium.make(name, disable_env_checker=True).unwrapped, skip_render_check=True)
+
+
+@pytest.mark.parametrize("name", IDS)
+@pytest.mark.filterwarnings("error")
+def test_stable_baselines_accepts_it(name):
+    checker = pytest.importorskip("stable_baselines3.common.env_checker")
+    checker.check_env(gymnasium.make(name).unwrapped, warn=True)
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_its_spec_goes_through_json(name):
+    env = gymnasium.make(name, **({"action": "discrete"} if name == IDS[0] else {"aim": "target"}))
+    again = gymnasium.make(EnvSpec.from_json(env.spec.to_json()))
+    assert again.unwrapped.options == env.unwrapped.options
+    assert json.loads(env.spec.to_json())["kwargs"] == env.spec.kwargs
+    first, second = env.reset(seed=3)[0], again.reset(seed=3)[0]
+    assert np.array_equal(first, second)
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_what_is_frozen_is_refused(name):
+    task = TASKS[name]
+    assert set(task.frozen) | set(FREE) == set(sn.Options.__dataclass_fields__) - {"rules"}
+    for option, value in task.frozen.items():
+        with pytest.raises(ValueError, match=f"^{option} = .*: must be left out: {name} freezes it at"):
+            gymnasium.make(name, **{option: value})
+    with pytest.raises(ValueError, match=r"^noise = 'none': must be left out: "):
+        gymnasium.make_vec(name, num_envs=2, vectorization_mode="vector_entry_point", noise="none")
+    with pytest.raises(ValueError, match=r"^options = a Options: must be left out"):
+        gymnasium.make(name, options=sn.Options())
+    with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
+        gymnasium.make(name, colour="red")
+
+
+def test_what_is_free_is_taken():
+    env = gymnasium.make("SnookerBreak-v0", aim="target", observation="balls", elevation=True, placement=True, render_mode="ansi")
+    assert env.action_space.shape == (7,) and env.observation_space["state"].shape == (11,)
+    assert gymnasium.make("SnookerLineUp-v0", action="discrete").action_space.n > 100
+    assert gymnasium.make("SnookerFrame-v0", decision=True, placement=True).action_space.shape == (7,)
+    envs = gymnasium.make_vec(
+        "SnookerEscape-v0", num_envs=3, vectorization_mode="vector_entry_point", threads=1, autoreset_mode="SameStep", aim="target"
+    )
+    assert envs.reset(seed=1)[0].shape == (3, OBSERVATION_SIZE) and envs.threads == 1
+    with pytest.raises(ValueError, match='belongs to task="frame"'):
+        gymnasium.make("SnookerBreak-v0", decision=True)
+
+
+def test_an_escape_is_one_stroke_whose_reward_is_1_if_it_is_legal():
+    envs = gymnasium.make_vec("SnookerEscape-v0", num_envs=300, vectorization_mode="vector_entry_point", autoreset_mode="Disabled")
+    envs.reset(seed=7)
+    actions = envs.action_space.sample() * [1, 0.2, 0.2, 1]
+    _, rewards, terminated, truncated, infos = envs.step(actions.astype(np.float32))
+    assert terminated.all() and not truncated.any()
+    assert np.array_equal(rewards, ~infos["foul"]) and 0 < rewards.sum() < 300
+    env = gymnasium.make("SnookerEscape-v0").unwrapped
+    env.reset(seed=7)
+    out = env.step(actions[0].astype(np.float32))
+    assert out[1] == rewards[0] and out[2] is True
+    state = env.get_state()
+    assert state["over"] is True
+
+
+def test_one_stroke_is_an_option_of_a_visit_that_no_planner_minds():
+    env = sn.SnookerEnv(layout="pots:easy", one_stroke=True)
+    env.reset(seed=1)
+    assert env.step([0.0, 0.0, 0.0, 0.1])[2]
+    colours = sn.SnookerEnv(layout="colours", action="discrete", one_stroke=True)
+    colours.reset(seed=1)
+    found = sn.Planner(colours, noise="none").play(colours, np.zeros(60, int), np.arange(60))
+    assert (found.goes_on == (found.points > 0)).all() and found.goes_on.any()
+    with pytest.raises(ValueError, match='one_stroke = True: must be False with task="frame"'):
+        sn.Options(task="frame", one_stroke=True)
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_judged_tables_are_not_those_of_training(name):
+    """No seed is used twice; on generated layouts they are those that the rules keep for judging."""
+    task = TASKS[name]
+    seeds = task.seeds(30)
+    assert len(set(seeds)) == 30 and min(seeds) >= HELD_OUT_SEED == 1_000_000
+    assert task.options().layout != "held_out" and task.judged().layout == task.judged_layout
+    if name in ("SnookerBreak-v0", "SnookerBreakClub-v0"):
+        trained = {layout("opened", np.random.default_rng(seed))[0].round(6).tobytes() for seed in range(300)}
+        judged = {layout(task.judged_layout, np.random.default_rng(seed))[0].round(6).tobytes() for seed in seeds}
+        assert len(judged) == 30 and not trained & judged
+    else:
+        assert task.judged_layout == task.options().layout
+
+
+def test_tables_are_different_and_always_the_same():
+    assert tables_of("colours", 40) == tables_of("colours", 60)[:40] and len(set(tables_of("colours", 60))) == 60
+    with pytest.raises(ValueError, match=r"^task = 'SnookerBreak-v9': must be one of 'SnookerBreak-v0', "):
+        task_of("SnookerBreak-v9")
+
+
+def _worker(name, queue):
+    import gymnasium
+
+    env = gymnasium.make(f"snooker_env:{name}")
+    queue.put(env.reset(seed=1)[0].tolist())
+
+
+def test_a_spawned_worker_that_imports_only_gymnasium_makes_it():
+    context = multiprocessing.get_context("spawn")
+    queue = context.Queue()
+    process = context.Process(target=_worker, args=("SnookerPotHard-v0", queue))
+    process.start()
+    assert queue.get(timeout=300) == gymnasium.make("SnookerPotHard-v0").reset(seed=1)[0].tolist()
+    process.join(60)
+
+
+def test_the_finder_registers_all_ids_without_importing_the_package():
+    out, _ = python(
+        "import sys; sys.path.insert(0, 'snooker_env'); import _autoregister; _autoregister.wait()\n"
+        "import gymnasium; print(sorted(n for n in gymnasium.registry if n.startswith('Snooker')), 'snooker_env' in sys.modules)"
+    )
+    assert out == f"{sorted(ENTRY_POINTS)} False\n"

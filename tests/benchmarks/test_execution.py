@@ -1,0 +1,136 @@
+"""Do the levels of ``noise`` play as the published figures say, and does ``benchmarks.execution`` measure that rightly?"""
+
+import math
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from benchmarks.execution import in_play, pot_shots, published
+from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.geometry import POCKET_AIMS
+from snooker_env.tasks.noise import LEVELS, Noise
+
+PHYSICS, TABLE = sn.Physics(), "match"
+
+
+def shots_of(pots):
+    return [pot_shots.aimed(pot, PHYSICS, TABLE) for pot in pots]
+
+
+def test_pots_lie_as_they_are_described():
+    for pot in pot_shots.POTS:
+        cue, ball = pot.positions
+        aim = POCKET_AIMS[pot.pocket, :2]
+        assert math.dist(cue, ball) == pytest.approx(pot.far) and math.dist(ball, aim) == pytest.approx(pot.run)
+        way = (aim - ball) / pot.run
+        line = ball - 2 * pot_shots.R * way - cue
+        assert math.degrees(math.acos(min(1.0, line @ way / math.hypot(*line)))) == pytest.approx(pot.cut, abs=1e-5)
+        assert pot.gain == pytest.approx(math.hypot(*line) * pot.run / (2 * pot_shots.R * math.cos(math.radians(pot.cut))))
+        assert (np.abs(pot.positions) < [0.8628, 1.7583]).all()
+    assert all(pot.positions[0, 1] < -0.8 for pot in pot_shots.LONG)
+    blue, black = (next(pot for pot in pot_shots.POTS if pot.name.startswith(name)) for name in ("blue", "black"))
+    assert blue.positions[1] == pytest.approx([0.0, 0.0], abs=1e-12) and black.positions[1] == pytest.approx([0.0, 1.4605], abs=1e-12)
+
+
+def test_rates_by_geometry_are_those_that_were_published_with_the_aim_errors():
+    """Of the four pots at 0.02 and 0.05 deg, with half a window of 22 mm."""
+    black, red, blue, long = pot_shots.DERIVED
+    assert [round(100 * pot.rate(0.02)) for pot in (black, red)] == [100, 100] and round(100 * red.rate(0.05)) == 96
+    assert [100 * pot.rate(deg) for pot in (blue, long) for deg in (0.02, 0.05)] == pytest.approx([92, 51, 75, 36], abs=1.5)
+
+
+def test_without_errors_every_pot_goes_in_and_stays_so_just_within_its_window():
+    for shot in shots_of(pot_shots.POTS):
+        edges = np.array([-0.97, -0.5, 0.0, 0.5, 0.97]) * shot.half
+        assert pot_shots.played(shot.pot, shot.stroke, 5, PHYSICS, TABLE, aims=edges)[0].all()
+        beyond = np.array([-1.0, 1.0]) * (shot.half + 2e-5)
+        assert not pot_shots.played(shot.pot, shot.stroke, 2, PHYSICS, TABLE, aims=beyond)[0].any()
+        still = pot_shots.rolls(shot, "none", 3, 0, PHYSICS, TABLE)
+        assert still.rate == 1.0 and still.placement == (0.0, 0.0, 0.0)
+
+
+def test_professionals_make_as_many_long_pots_as_published():
+    rate = published.mean_rate(shots_of(pot_shots.LONG), "professional", 2000, PHYSICS, TABLE)
+    low, high = published.LONG_POTS
+    assert low + 0.03 < rate < high - 0.03
+
+
+@pytest.mark.parametrize("level", ["amateur", "club"])
+def test_amateurs_pot_as_their_published_aim_errors_say(level):
+    rate = published.mean_rate(shots_of(pot_shots.DERIVED), level, 2000, PHYSICS, TABLE)
+    low, high = published.by_derivation(level)
+    assert low - 0.025 < rate < high + 0.025
+
+
+def test_the_robot_pots_and_places_as_published():
+    shots = shots_of(pot_shots.MODERATE)
+    assert published.mean_rate(shots, "robot", 2000, PHYSICS, TABLE) == pytest.approx(published.ROBOT_POTS, abs=0.025)
+    assert 0.12 < published.mean_place(shots, "robot", 1000, PHYSICS, TABLE) < 0.18
+
+
+def test_placement_of_speed_errors_alone():
+    """As far as the stop shifts with the speed, times the speed's error, along the cue ball's way and across."""
+    for shot in shots_of(pot_shots.MODERATE[:3]):
+        ends = []
+        for share in (0.99, 1.01):
+            stroke = shot.stroke * [share, 1.0, 1.0, 1.0]
+            ends.append(pot_shots.played(shot.pot, stroke, 1, PHYSICS, TABLE)[1][0])
+        way = (shot.stops - shot.meets) / math.dist(shot.stops, shot.meets)
+        shift = 0.5 * (ends[1] - ends[0])  # of one percent
+        found = pot_shots.rolls(shot, Noise(speed_rel=0.01), 1500, 3, PHYSICS, TABLE)
+        distance, along, across = found.placement
+        assert found.rate == 1.0 and distance == pytest.approx(math.hypot(*shift), rel=0.1)
+        assert (along, across) == pytest.approx((abs(shift @ way), abs(shift @ [-way[1], way[0]])), rel=0.1, abs=1e-3)
+
+
+def test_directions_by_cause():
+    found = pot_shots.directions("club", 3000, 1, PHYSICS)
+    club = LEVELS["club"]
+    assert found["aim"] == pytest.approx(club.aim_deg, rel=0.05)
+    assert found["squirt"] == pytest.approx(Noise(offset_mm=club.offset_mm).direction_deg(), rel=0.05)
+    assert found["all"] == pytest.approx(club.direction_deg(), rel=0.05)
+    assert found["swerve"] < 0.05 * found["squirt"]
+
+
+def test_execution_errors_of_a_given_direction_error():
+    noise = pot_shots.of_direction(0.1, "club", PHYSICS)
+    assert noise.direction_deg() == pytest.approx(0.1) and noise.aim_deg == pytest.approx(0.1 / math.sqrt(2))
+    assert (noise.speed_rel, noise.elevation_deg) == (LEVELS["club"].speed_rel, LEVELS["club"].elevation_deg)
+
+
+def test_the_fit_finds_the_execution_errors_that_made_the_figures():
+    pots = pot_shots.LONG[:2]
+    made = published.mean_rate(shots_of(pots), pot_shots.of_direction(0.06, "professional", PHYSICS), 1500, PHYSICS, TABLE)
+    found = published._directions(pots, (made,), "professional", 1500, PHYSICS, TABLE)
+    assert found == pytest.approx([0.06], rel=0.01)
+
+
+def test_intervals_of_shares():
+    """Wilson (1927): 5 of 10 and 0 of 10."""
+    assert pot_shots.wilson(0.5, 10) == pytest.approx((0.2366, 0.7634), abs=1e-4)
+    assert pot_shots.wilson(0.0, 10) == pytest.approx((0.0, 0.2775), abs=1e-4)
+
+
+def test_the_likeliest_pot_scores_as_often_as_it_was_given_and_more_often_than_the_widest():
+    made, expected = in_play.in_play("club", 40, 1)
+    assert len(made) == len(expected) > 40 and abs(made.mean() - expected.mean()) < 0.15
+    assert np.corrcoef(made, expected)[0, 1] > 0.2
+    easy, hard = (in_play.first_pots("club", f"pots:{name}", 300).mean() for name in ("easy", "hard"))
+    assert easy > hard + 0.2
+
+
+def test_professionals_pot_in_play_about_what_they_do():
+    """88 to 95 % of what they choose; where the chance is less than half a player of a match would play safe."""
+    made, expected = in_play.in_play("professional", 60, 3)
+    low, high = published.CHOSEN
+    likely = made[expected >= published.LIKELY]
+    assert low - 0.04 < made.mean() < high and low < likely.mean() < high + 0.02
+
+
+def test_the_likeliest_pot_is_one_that_is_there():
+    tables = SnookerVectorEnv(5, layout="random:3", noise="professional", action="discrete")
+    tables.reset(seed=4)
+    going, player = np.array([True, False, True, True, True]), in_play.Likeliest()
+    picks = player.act(tables, None, going)
+    assert tables.action_masks()[np.flatnonzero(going), picks[going]].all() and len(player.chances[0]) == 4

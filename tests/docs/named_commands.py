@@ -1,0 +1,50 @@
+"""Which commands does the documentation name, and how does a test run each? In a short form, or by the test named; one is not run."""
+
+SHORT = {
+    "benchmarks.paper": ["--no-pictures", "--json", "{tmp}/p.json"],
+    "benchmarks.tradeoff": ["--impacts", "30", "--shots", "12", "--repeats", "1", "--out", "{tmp}"],
+    "benchmarks.scene": ["--shots", "12", "--repeats", "1", "--models", "spin decay", "jaw arcs", "--out", "{tmp}"],
+    "benchmarks.pockets": ["--quick", "--out", "{tmp}"],
+    "benchmarks.rack": ["--shots", "2", "--orders", "2", "--racks", "2", "--out", "{tmp}"],
+    "benchmarks.stability": ["--fuzz", "2000", "--out", "{tmp}"],
+    "benchmarks.speed": [
+        "--shots", "20", "--repeats", "1", "--parts", "impacts", "shots", "growth", "--largest-batch", "64", "--out", "{tmp}",
+    ],
+    "benchmarks.fit_cushion": [],
+    "benchmarks.nap": [],
+    "benchmarks.left_out": [],
+    "benchmarks.make_opened": ["--tables", "2", "--out", "{tmp}"],
+    "benchmarks.execution": ["--strokes", "40", "--visits", "4", "--levels", "professional", "robot"],
+    "benchmarks.frames": ["--frames", "2", "--jobs", "1"],
+    "benchmarks.layouts_picture": ["--out", "{tmp}"],
+    "benchmarks.pictures": ["--out", "{tmp}"],
+    "benchmarks.diagrams": ["--out", "{tmp}"],
+    "benchmarks.planning": ["--strokes", "100", "--repeats", "2"],
+    "benchmarks.fuzz": ["--shots", "300", "--threads", "1"],
+    "benchmarks.vector": ["--seconds", "0.1", "--repeats", "1", "--tables", "64", "--ppo-steps", "2048"],
+    "agents.evaluate": ["--agent", "random", "--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"],
+    "agents.watch": ["--agent", "ghost_ball", "--out", "{tmp}/visit.html"],
+    "agents.report": ["--show", "agents/results/147.json"],
+    "tests.rules_cases": ["tests/data/rules_cases.json"],
+    "docs/pictures/make.py": ["--out", "{tmp}"],
+    "docs/films/make.py": ["--only", "pot_easy", "--out", "{tmp}"],
+}  # fmt: skip
+"""Module or file -> arguments of a run of a few seconds; "{tmp}" is a folder that is thrown away."""
+
+ELSEWHERE = {
+    "pytest": ".ci/run",
+    "sphinx": ".ci/run",
+    "venv": ".ci/run",
+    "train.py": "tests/agents/test_train.py",
+    "tests.golden": "tests/test_golden.py",
+    "snooker_env.play": "tests/play/test_server.py",
+    "snooker_env.advice": "tests/advice/test_command.py",
+    "snooker_env.benchmark": "tests/benchmark/test_results.py",
+    "agents.curves": "tests/agents/evaluation/test_learning_curves.py",
+    "agents.publish": "tests/agents/evaluation/test_publish.py",
+    "examples/fit_your_data.py": "tests/examples/test_fit.py",
+}
+"""Module or file -> the test that runs it."""
+
+NOT_RUN = {"coverage": "it would run this suite within the suite, and it is of the extra dev, which tests do not need"}
+"""Module -> why no test runs it."""

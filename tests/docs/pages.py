@@ -1,0 +1,73 @@
+"""What do the pages of the documentation hold? README and ``docs/``: their links, pictures, Python blocks and commands, and the words."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = [ROOT / "README.md", *sorted(path for path in DOCS.rglob("*.md") if "_build" not in path.parts)]
+NAMES = [path.relative_to(ROOT).as_posix() for path in PAGES]
+LINKED = [*PAGES, *(ROOT / f"{name}.md" for name in ("CHANGELOG", "CONTRIBUTING", "CODE_OF_CONDUCT"))]
+"""The pages whose links are followed."""
+
+_FENCE = re.compile(r"^(`{3,}|~{3,})([^\n]*)\n(.*?)^\1`*[ \t]*$", re.DOTALL | re.MULTILINE)
+_COMMAND = re.compile(r"\bpython3? +((?:-m +[\w.]+|[\w./]+\.py)(?: +[^`|&;#\n]*)?)")
+
+
+def blocks(text, kind="python"):
+    """The fenced blocks of that kind."""
+    return [found[3] for found in _FENCE.finditer(text) if found[2].strip() == kind]
+
+
+def prose(text):
+    """The text without fenced blocks, code and the targets of links, line by line as it stands."""
+    text = _FENCE.sub(lambda found: "\n" * found[0].count("\n"), text)
+    text = re.sub(r"`+[^`]*`+", lambda found: "\n" * found[0].count("\n"), text)
+    return re.sub(r"\]\([^)\s]*\)", "]", text)
+
+
+def links(text):
+    """Targets of links and pictures, films included, as they are written; not those of other sites."""
+    text = _FENCE.sub(lambda found: f"[]({found[2].split()[1]})\n" if found[2].startswith("{image}") else "", text)
+    text = re.sub(r"`+[^`\n]*`+", "code", text)
+    found = re.findall(r"\]\(([^)\s]+)\)", text) + re.findall(r'\b(?:src|href)="([^"]+)"', text)
+    found += re.findall(r"^\[[^\]^][^\]]*\]: *(\S+)", text, re.MULTILINE)
+    return [target for target in found if not re.match(r"(https?|mailto):", target)]
+
+
+def paths(text):
+    """Files and folders of the repository between backticks, as patterns; those that the reader is to name are left out."""
+    tops = "tests|benchmarks|agents|snooker_env|docs|examples|commands|leaderboard|[.]github|[.]ci"
+    found = re.findall(rf"`((?:{tops})/[\w./*-]+)`", text)
+    return [path for path in found if not re.search(r"NAME|\bmy_", path)]
+
+
+def slug(heading):
+    """The anchor of a heading, as GitHub and MyST make it."""
+    return re.sub(r"[^\w\- ]", "", re.sub(r"[`*]", "", heading).strip().lower()).replace(" ", "-")
+
+
+def anchors(text):
+    """The anchors of a page: of its headings, and those that it sets."""
+    headings = re.findall(r"^#+ +(.*)$", _FENCE.sub("", text), re.MULTILINE)
+    return {slug(heading) for heading in headings} | set(re.findall(r"^\(([\w-]+)\)=$", text, re.MULTILINE))
+
+
+def commands(text):
+    """What is run with Python: ("benchmarks.speed", ["--parts", "start"]) for each ``python -m benchmarks.speed --parts start``."""
+    text = re.sub(r"\\\n\s*", " ", text)
+    found = [re.sub(r"^-m +", "", command).split() for command in _COMMAND.findall(text)]
+    return [(words[0].rstrip(".,:"), words[1:]) for words in found if not words[0].isupper() and not words[0].endswith("...")]
+
+
+WORDS = {
+    r"\b(?:a|the|one|no|of) looks?\b|\blooks\b": "a rollout, a trial stroke, lookahead",
+    r"\btaught\b|\bteacher\b|\bteach": "trained, pre-trained by imitation, expert",
+    r"\bby hand\b|\bhand-made\b": "manually, hand-written",
+    r"(?-i:\bworlds?\b)": "physics preset, constants; table frame",
+    r"\b(?:un)?told\b|\btells?\b": "said, given, reported, prints",
+    r"\bmend(?:s|ed|ing)?\b": "fix",
+    r"\b(?:code|it|environment|kernel|package|function|command|agent)s? (?:knows?|asks?|wants?)\b": "a plain verb",
+    r"\berrors of execution\b": "execution errors",
+}
+"""Words that mean something in this project's past alone, and what to write."""

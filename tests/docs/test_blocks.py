@@ -1,0 +1,41 @@
+"""Does the Python of the pages run? Every block by itself, the blocks of a page in one process, in an empty folder, warnings as errors."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from tests.docs.pages import NAMES, PAGES, ROOT, blocks
+
+RUNNER = """if True:
+    import json, sys, warnings
+    import snooker_env  # ids are registered, as they are where it is installed
+    warnings.simplefilter("error")
+    for number, block in enumerate(json.load(sys.stdin)):
+        print("block", number, flush=True)
+        exec(compile(block, f"block {number}", "exec"), {"__name__": "__main__"})
+"""
+DIFFS = ROOT / "docs" / "develop" / "diffs"
+"""A page that has one shows what runs once it is applied: tests/repository/test_develop_diffs.py runs it so."""
+CODE = [(page, [] if (DIFFS / f"{page.stem}.diff").exists() else blocks(page.read_text(encoding="utf-8"))) for page in PAGES]
+
+
+@pytest.mark.parametrize(("page", "code"), [(p, c) for p, c in CODE if c], ids=[n for n, (_, c) in zip(NAMES, CODE, strict=True) if c])
+def test_python_blocks_run(page, code, tmp_path):
+    env = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]), "MPLBACKEND": "Agg"}
+    command = [sys.executable, "-c", RUNNER]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=env | {"SDL_VIDEODRIVER": "dummy"}, input=json.dumps(code), text=True, timeout=600, capture_output=True,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, f"{page.name}\n{done.stdout[-1500:]}\n{done.stderr[-3000:]}"
+
+
+def test_the_python_of_a_command_line_runs():
+    """``python -c "..."`` of the specification."""
+    page = (ROOT / "docs/environment/specification.md").read_text(encoding="utf-8")
+    code = page.partition('python -c "')[2].partition('"')[0]
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True, text=True)
+    assert "Action space" in done.stdout

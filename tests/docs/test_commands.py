@@ -1,0 +1,72 @@
+"""Does each command of the documentation run? In a short form, or in the test named beside it; and does it have the options given?"""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+from tests.docs.named_commands import ELSEWHERE, NOT_RUN, SHORT
+from tests.docs.pages import PAGES, ROOT, commands
+
+GIVEN = {name: set() for page in PAGES for name, _ in commands(page.read_text(encoding="utf-8"))}
+"""Module or file -> the options that some page gives it."""
+for _page in PAGES:
+    for _name, _words in commands(_page.read_text(encoding="utf-8")):
+        GIVEN[_name].update(found[0] for word in _words if (found := re.match(r"--[a-z][\w-]*", word)))
+
+
+def test_every_command_is_known():
+    known = [*SHORT, *ELSEWHERE, *NOT_RUN]
+    assert len(GIVEN) > 20 and not set(GIVEN) - set(known)
+    assert len(set(known)) == len(known)
+    assert set(NOT_RUN) <= set(GIVEN) and all(NOT_RUN.values())
+
+
+def named(command, text):
+    """Does a test's text name the command? As a module, as a file, or by the module whose ``main`` the command is."""
+    if command.endswith(".py"):
+        return f'"{command.rpartition("/")[2]}"' in text
+    if "." not in command:
+        return f"-m {command}" in text
+    file = ROOT / (command.replace(".", "/") + ".py")
+    main = re.search(r"^from \.([\w.]+) import main$", file.read_text(encoding="utf-8"), re.MULTILINE) if file.is_file() else None
+    last = main[1].rpartition(".")[2] if main else command.rpartition(".")[2]
+    return bool(re.search(rf"\b{re.escape(command)}\b|\bimport (?:\w+, )*{last}\b", text))
+
+
+@pytest.mark.parametrize("command", sorted(ELSEWHERE))
+def test_the_test_beside_a_command_names_it(command):
+    assert named(command, (ROOT / ELSEWHERE[command]).read_text(encoding="utf-8"))
+    assert not named(command, (ROOT / "tests/repository/test_notices.py").read_text(encoding="utf-8"))
+
+
+def test_the_reader_of_commands_sees_every_kind():
+    text = "`python -m a.b --c 1`, `.venv/bin/python d.py`\n```bash\npython3 -m e \\\n  --f && g\n```\npython -m COMMAND; python -m h..."
+    assert commands(text) == [("a.b", ["--c", "1"]), ("d.py", []), ("e", ["--f"])]
+
+
+@pytest.mark.parametrize("name", sorted(set(GIVEN) - set(NOT_RUN) - {"pytest", "sphinx", "venv"}))
+def test_commands_have_the_options_that_are_given(name):
+    """They stand in the source of the command, or in what all commands of its kind share: in quotes, or as fields of a dataclass."""
+    top = name.split("/")[0] if name.endswith(".py") else name.split(".")[0]
+    shared = {"train.py": ("agents", "commands"), "agents": ("agents", "commands"), "benchmarks": ("benchmarks", "commands")}
+    files = [file for folder in shared.get(top, (top,)) for file in (ROOT / folder).rglob("*.py")]
+    files += [ROOT / name] if name.endswith(".py") else []
+    source = "\n".join(file.read_text(encoding="utf-8") for file in files)
+    fields = {option: option[2:].replace("-", "_") for option in GIVEN[name]}
+    assert not [option for option in fields if not re.search(rf'"{option}"|^    {fields[option]}: ', source, re.MULTILINE)]
+
+
+@pytest.mark.parametrize("name", sorted(set(GIVEN) & set(SHORT)))
+def test_commands_run(name, tmp_path):
+    arguments = [a.format(tmp=tmp_path) for a in SHORT[name]]
+    command = [sys.executable, name] if name.endswith(".py") else [sys.executable, "-m", name]
+    env = os.environ | {"SDL_VIDEODRIVER": "dummy", "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
+    done = subprocess.run([*command, *arguments], cwd=ROOT, check=True, timeout=300, capture_output=True, text=True, env=env)
+    assert done.stdout.strip()
+    if name == "tests.rules_cases":
+        assert done.stdout.splitlines()[-1].endswith(", 0 failed")
+    if name == "docs/films/make.py":
+        assert (tmp_path / "pot_easy.mp4").stat().st_size > 5_000

@@ -1,0 +1,225 @@
+"""Is a picture drawn as it says? Pockets, cushions, lamps mirrored by the law of reflection, paths' widths, ghosts, spots and letters."""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.game.balls import BLACK, BROWN, CUE, N_BALLS, SPOTS
+from snooker_env.geometry import BALL_RADIUS
+from snooker_env.render import pygame_balls, pygame_lines
+from snooker_env.render.outline import outline
+from snooker_env.render.palette import COLOURS, PALETTE
+from snooker_env.render.pygame_view import SIZE, View, rgb_array, to_pixels
+from snooker_env.render.scene import scene
+from snooker_env.render.table_picture import LAMP_HEIGHT, LAMPS, _inside, _to_line, lamps, table_picture
+from snooker_env.render.turning import rotation
+
+MATCH = sn.Table.preset("match")
+NOBODY = np.zeros(N_BALLS, bool)
+
+
+def only(*balls):
+    here = NOBODY.copy()
+    here[list(balls)] = True
+    return here
+
+
+def pixel(picture, point):
+    column, row = np.floor(to_pixels(point)).astype(int)
+    return picture[row, column].astype(float)
+
+
+@pytest.fixture(scope="module")
+def empty():
+    return rgb_array(scene("match", SPOTS, NOBODY))
+
+
+def test_a_picture_is_full_hd_with_the_table_above_the_bar(empty):
+    assert SIZE == (1920, 1080) and empty.shape == (1080, 1920, 3)
+    view = View.of(MATCH)
+    (left, top), (right, bottom) = view(np.array([(-0.889 - 0.155, -1.7845 - 0.155), (0.889 + 0.155, 1.7845 + 0.155)]))
+    assert 0 < top < 10 and view.height - view.bar - 10 < bottom < view.height - view.bar and 0 < left < 50 and right == 1920 - left
+    assert 2 * BALL_RADIUS * view.scale > 25  # a ball, in pixels
+    assert view.metres(view(np.array((0.3, -1.1)))) == pytest.approx((0.3, -1.1))
+
+
+@pytest.mark.parametrize("size", [(640, 360), (1000, 300), (301, 999)])
+def test_a_picture_of_any_size_holds_the_whole_table(size):
+    picture = rgb_array(scene("match", SPOTS), size=size)
+    assert picture.shape == (size[1], size[0], 3)
+    view = View.of(MATCH, size=size)
+    corners = view(np.array([(-1.044, -1.9395), (1.044, 1.9395)]))
+    assert corners.min() >= 0 and corners[1, 0] <= size[0] and corners[1, 1] <= size[1] - view.bar
+    one, x, y = view(np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]))
+    assert x - one == pytest.approx((0.0, view.scale)) and y - one == pytest.approx((view.scale, 0.0))
+
+
+def test_pockets_have_leather_and_depth(empty):
+    for x0, y0, x1, y1, half in outline(MATCH).throats:
+        back = np.array([x1 - x0, y1 - y0]) / np.hypot(x1 - x0, y1 - y0)
+        leather = pixel(empty, (x1, y1) + back * (half + 0.008))
+        red, green, blue = leather
+        assert 1.75 * green > red > green > blue and 50 < red < 190
+        assert pixel(empty, (x1, y1) + back * (half - 0.002)).sum() > pixel(empty, (x1, y1)).sum() + 10  # the inside fades away
+        assert pixel(empty, (x1, y1)).max() < 15
+        wood = pixel(empty, (x1, y1) + back * (half + 0.035)) if abs(y1) < 0.1 else pixel(empty, (0.99, 0.8))
+        assert wood[0] > 1.8 * wood[1]
+
+
+def test_the_cloth_has_a_nap_that_runs_along_the_table(empty):
+    left, right = np.floor(to_pixels([(-0.5, -0.9), (0.5, -0.1)])).astype(int)
+    cloth = empty[left[1] : right[1], left[0] : right[0]].astype(float)
+    assert cloth.mean(axis=(0, 1)) == pytest.approx(PALETTE["cloth"], abs=8)
+    assert 0.7 < cloth[..., 1].std() < 4
+    along, across = (np.abs(np.diff(cloth[..., 1], axis=axis)).mean() for axis in (1, 0))
+    assert along < 0.8 * across
+
+
+def test_the_inside_of_a_polygon_and_the_distance_to_a_line():
+    """Against windings and distances of single points."""
+    rng = np.random.default_rng(3)
+    x, y = np.linspace(-1, 1, 41)[:, None], np.linspace(-1.5, 1.5, 61)[None, :]
+    for polygon in outline(MATCH).cushions[:2]:
+        shape = (polygon - polygon.mean(axis=0)) / np.abs(polygon - polygon.mean(axis=0)).max(axis=0) + rng.normal(0, 1e-4, polygon.shape)
+        inside, far = _inside(x, y, shape), _to_line(x, y, shape, 0.6)
+        for i in range(0, 41, 3):
+            for j in range(0, 61, 3):
+                p = np.array([x[i, 0], y[0, j]])
+                turn = np.diff(np.unwrap(np.arctan2(*(np.vstack([shape, shape[:1]]) - p).T))).sum()
+                assert inside[i, j] == (abs(turn) > 3), p
+                a, b = shape[:-1], shape[1:]
+                part = np.clip(((p - a) * (b - a)).sum(axis=1) / ((b - a) ** 2).sum(axis=1), 0, 1)[:, None]
+                assert far[i, j] == pytest.approx(min(0.6, np.hypot(*(a + part * (b - a) - p).T).min()), abs=1e-6)
+
+
+def test_cushions_are_drawn_to_their_true_ends(empty):
+    """Along each nose and jaw of the outline: lighter 3 mm into the cushion than the shadow 3 mm outside."""
+    for nose in outline(MATCH).noses:
+        middle = (nose[:-1] + nose[1:]) / 2
+        step = nose[1:] - nose[:-1]
+        normal = np.stack([-step[:, 1], step[:, 0]], axis=1) / np.hypot(*step.T)[:, None]
+        if normal[24] @ middle[24] < 0:
+            normal = -normal  # into the cushion
+        for k in (4, 12, 24, 36, 44):
+            inside, outside = (pixel(empty, middle[k] + side * 0.003 * normal[k])[1] for side in (1, -1))
+            assert inside > outside + 25, (k, middle[k])
+
+
+def test_lamps_are_mirrored_where_the_law_of_reflection_says():
+    """In a black ball: where the ray from the eye, straight above, is thrown to the middle of a lamp, it is bright; beside it is not."""
+    places = np.array([(0.0, 0.0), (0.5, 1.2), (-0.7, -1.5), (0.6, -0.3)])
+    for place in places:
+        picture = rgb_array(scene("match", np.tile(place, (N_BALLS, 1)), only(BLACK)), size=(4000, 2160)).astype(float)
+        view = View.of(MATCH, size=(4000, 2160))
+        for lamp in lamps(MATCH):
+            light = np.array([*(lamp - place), LAMP_HEIGHT])
+            normal = light / np.linalg.norm(light) + (0, 0, 1)
+            normal /= np.linalg.norm(normal)
+            assert 2 * normal[2] * normal - (0, 0, 1) == pytest.approx(light / np.linalg.norm(light))  # that is the law
+            column, row = np.floor(view(place + BALL_RADIUS * normal[:2])).astype(int)
+            assert picture[row - 1 : row + 2, column - 1 : column + 2].min(axis=2).max() > 150, (place, lamp)
+            if np.hypot(*(lamp - place)) > 1.0:
+                continue  # farther ones run into each other
+            rows, columns = np.mgrid[row - 4 : row + 5, column - 3 : column + 4]
+            bright = np.clip(picture[rows, columns].min(axis=2) - 160, 0, None)
+            middle = [(bright * (axis + 0.5)).sum() / bright.sum() for axis in (columns, rows)]
+            assert middle == pytest.approx(view(place + BALL_RADIUS * normal[:2]), abs=0.8), (place, lamp)
+        beside = np.floor(view(place + BALL_RADIUS * np.array([0.75, 0.0]))).astype(int)
+        assert picture[beside[1], beside[0]].max() < 60
+    assert len(lamps(MATCH)) == LAMPS >= 3
+
+
+def test_a_path_is_three_pixels_wide_with_a_dark_edge_at_every_angle():
+    middle = np.array([0.1, 0.6])
+    for angle in np.radians([0, 17, 45, 60, 90, 133]):
+        along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+        picture = rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: [middle - 0.3 * along, middle + 0.3 * along]}))
+        offsets = np.arange(-8, 8.01, 0.25) / 477.27
+        points = middle + np.linspace(-0.05, 0.05, 41)[:, None, None] * along + offsets[:, None] * across
+        profile = np.array([[pixel(picture, point)[0] for point in row] for row in points])
+        profile = profile.mean(axis=0)  # red: the cloth has 36, the line 253, the edge 10
+        assert profile.max() > 240
+        width = (profile > 131).sum() * 0.25
+        assert 3.0 <= width <= 4.0, (angle, width)
+        middle_at = int(np.argmax(profile))
+        assert min(profile[:middle_at]) < 27 > min(profile[middle_at:])
+
+
+def test_a_path_that_grew_is_as_if_it_was_drawn_at_once():
+    turn = np.linspace(0, 3, 300)
+    points = np.stack([0.5 * np.sin(2 * turn), turn - 1.5 + 0.2 * np.sin(9 * turn)], axis=1)
+    for length in range(2, 300, 7):
+        grown = rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points[:length]}))
+    pygame_lines._piece.cache_clear()
+    assert np.array_equal(grown, rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points[:length]})))
+    still = np.tile((0.1, 0.1), (5, 1))
+    assert np.array_equal(rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: still})), rgb_array(scene("match", SPOTS, NOBODY)))
+
+
+def test_pieces_of_a_path_meet_without_a_seam(monkeypatch):
+    turn = np.linspace(0, 2, 400)
+    for points in (np.array([(-0.7, -1.5), (0.6, 1.6)]), np.stack([0.6 * np.sin(3 * turn), 1.4 * turn - 1.4], axis=1)):
+        pieces = rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points})).astype(int)
+        with monkeypatch.context() as patch:
+            patch.setattr(pygame_lines, "_POINTS", 10**6)
+            whole = rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points})).astype(int)
+        assert np.abs(pieces - whole).max() <= 20
+
+
+def test_ghosts_are_faded_balls(empty):
+    place = np.array([0.3, 0.5])
+    off = np.add(place, (0.4 * BALL_RADIUS, 0.0))
+    cloth, ball = pixel(empty, off), pixel(rgb_array(scene("match", np.tile(place, (N_BALLS, 1)), only(CUE))), off)
+    ghost = pixel(rgb_array(scene("match", SPOTS, NOBODY, ghosts={CUE: [place]})), off)
+    share = (ghost - cloth)[0] / (ball - cloth)[0]
+    assert 0.3 < share < 0.6
+
+
+def test_spots_turn_with_the_ball():
+    """A spot lies on top; the ball turned by 45 degrees about +y carries it towards +x, which is down in the picture."""
+    place = np.array([0.3, 0.5])
+    balls = np.tile(place, (N_BALLS, 1))
+    for angle in (0.0, np.pi / 4):
+        picture = rgb_array(scene("match", balls, only(CUE), turns={CUE: rotation(np.array([0.0, angle, 0.0]))}))
+        column, row = to_pixels(place)
+        rows, columns = np.nonzero((picture[..., 0] > 120) & (picture[..., 1] < 70))
+        near = (np.hypot(columns + 0.5 - column, rows + 0.5 - row) < 0.85 * 12.5) & (np.abs(columns + 0.5 - column) < 4)
+        found = (rows[near] + 0.5).mean() - row if angle == 0 else (rows[near & (rows > row)] + 0.5).mean() - row
+        assert found == pytest.approx(12.53 * np.sin(angle), abs=1.2), angle
+    plain = rgb_array(scene("match", balls, only(CUE)))[int(row) - 13 : int(row) + 13, int(column) - 13 : int(column) + 13]
+    assert not np.any((plain[..., 0] > 120) & (plain[..., 1] < 70))
+
+
+def test_letters_are_on_the_six_colours():
+    plain, lettered = (rgb_array(scene("match", SPOTS, lettered=which)) for which in (False, True))
+    rows, columns = np.nonzero(np.any(plain != lettered, axis=2))
+    changed = np.stack([columns, rows], axis=1) + 0.5
+    far = np.hypot(*(changed[:, None] - to_pixels(SPOTS[16:])).transpose(2, 0, 1))
+    assert (far.min(axis=1) < 14).all() and sorted(set(far.argmin(axis=1).tolist())) == list(range(6))
+    for k in range(6):
+        mine = changed[far.argmin(axis=1) == k]
+        assert (mine.min(axis=0) + mine.max(axis=0)) / 2 == pytest.approx(to_pixels(SPOTS[16 + k]), abs=3.0)
+        assert 8 < np.ptp(mine[:, 1]) < 20
+
+
+def test_shadows_fall_away_from_the_lamps(empty):
+    """At the black end the cloth behind the ball, seen from the middle, is darker than before it."""
+    picture = rgb_array(scene("match", np.tile((0.0, 1.6), (N_BALLS, 1)), only(BROWN)))
+    before, behind = ((pixel(empty, at) - pixel(picture, at))[1] for at in ((0.0, 1.6 - 1.4 * BALL_RADIUS), (0.0, 1.6 + 1.4 * BALL_RADIUS)))
+    assert behind > before + 8
+
+
+def test_the_table_is_drawn_once_and_never_drawn_on():
+    view = View.of(MATCH)
+    kept = table_picture(MATCH, view)
+    copy = kept.copy()
+    rgb_array(scene("match", SPOTS))
+    assert table_picture(MATCH, view) is kept and np.array_equal(kept, copy) and not kept.flags.writeable
+    table_picture.cache_clear()
+    assert np.array_equal(table_picture(MATCH, view), copy)
+
+
+def test_balls_outside_the_picture_do_no_harm():
+    far = rgb_array(scene(None, [(1e5, 1e5), (0.0, 0.0)], paths={0: [(1e6, 1e6), (-1e6, 0.0)]}, ghosts={1: [(1e7, 0.0)]}))
+    assert far.shape == (1080, 1920, 3)
+    assert tuple(COLOURS[1]) and pygame_balls.dot(1, 9.0).get_width() > 18
