@@ -43,7 +43,7 @@ class Line:
 
     def __call__(self, name, body=None, *, method=None, path=None, host=None, token=None, headers=None):
         """(status, JSON or bytes, headers) of one request; a body that is no bytes is sent as JSON."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.server.server_port, timeout=30)
+        connection = http.client.HTTPConnection("127.0.0.1", self.server.server_port, timeout=120)
         raw = body if body is None or isinstance(body, bytes) else json.dumps(body).encode()
         head = {"Host": host or f"127.0.0.1:{self.server.server_port}"}
         if raw is not None:

@@ -2,6 +2,7 @@
 
 import ast
 import dataclasses
+import os
 import re
 import subprocess
 import sys
@@ -189,16 +190,18 @@ def test_what_does_not_fit_together_is_refused(call, field, value, allowed):
 
 DOCUMENT = (PACKAGE.parent / "docs" / "physics" / "tables.md").read_text()
 BLOCKS = re.findall(r"```python\n(.*?)```", DOCUMENT, re.S)
-SAYS = ("top right", "middle right", "three cushions")
+SHOWS = (("top right", ()), ("middle right", ()), ("", ("three_cushions.html", "three_cushions.png")))
 
 
 @pytest.mark.parametrize("k", range(3))
-def test_the_examples_of_the_document_run(k):
+def test_the_examples_of_the_document_run(k, tmp_path):
     assert len(BLOCKS) == 3
+    environment = {**os.environ, "PYTHONPATH": str(PACKAGE.parent)}
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", BLOCKS[k]], cwd=PACKAGE.parent, check=True, timeout=300, capture_output=True
+        [sys.executable, "-W", "error", "-c", BLOCKS[k]], cwd=tmp_path, env=environment, check=True, timeout=300, capture_output=True
     )
-    assert SAYS[k] in done.stdout.decode()
+    printed, files = SHOWS[k]
+    assert printed in done.stdout.decode() and tuple(sorted(path.name for path in tmp_path.iterdir())) == files
 
 
 def test_the_document_names_every_preset_and_the_sizes_that_the_arrays_have():

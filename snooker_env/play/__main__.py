@@ -107,10 +107,10 @@ def main(argv: list[str] | None = None) -> int:
     given = _arguments(argv)
     from .server import PlayServer
 
-    print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
     try:
         service = service_of(given)
         server = PlayServer(service, given.port)
+        print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
         warm_up(service)
     except (ValueError, OSError, OverflowError) as error:
         print(f"snooker_env.play: {error}", file=sys.stderr)

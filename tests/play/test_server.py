@@ -260,7 +260,7 @@ def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
     assert lines[2].strip().startswith("http://127.0.0.1:") and len(lines[2].strip()) > 50
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=20)
-    assert process.returncode == 0 and err == "" and "Traceback" not in out
+    assert process.returncode == 0 and err == "Loading the players and the simulator ...\n" and "Traceback" not in out
 
 
 @pytest.mark.parametrize(
