@@ -20,6 +20,7 @@ with needs("agents.report"):
     from snooker_env.benchmark import CENTURY, MAXIMUM, most_points, unseen
     from snooker_env.checks import refuse
 
+    from . import tournament_report
     from .text_tables import TextTable, say
 
 SEEDS = 5
@@ -96,7 +97,9 @@ def _listed(words):
 
 
 def title(report):
-    """What is compared: an axis under whose values agents were trained and play, or agents and where they play."""
+    """What is compared: an axis under whose values agents were trained and play, or agents and where they play; or who met."""
+    if tournament_report.is_tournament(report):
+        return tournament_report.title(report)
     p, layouts = report["protocol"], _listed(report["protocol"]["layouts"])
     for axis in AXES:
         made = {str(run[axis]) for agent in report["agents"] for run in agent["runs"] if axis in run}
@@ -269,6 +272,9 @@ LEGEND = (
 
 def parts(report):
     """Everything in order: ``TextTable`` (none wider than ``WIDTH``) or str."""
+    if tournament_report.is_tournament(report):
+        yield from tournament_report.parts(report)
+        return
     all_parts = [*agents_tables(report), *fairness(report), *comparison(report), *crossed(report), *conditions(report), LEGEND]
     if "incomplete" in report:
         all_parts.insert(0, f"INCOMPLETE: {report['incomplete']}.")
@@ -287,6 +293,8 @@ def show(report):
 
 def markdown(report, picture=None):
     """The same as one Markdown text."""
+    if tournament_report.is_tournament(report):
+        return tournament_report.markdown(report)
     version = report.get("version", "of an unknown version")
     out = [
         f"# {title(report)}", "", "Made by", "", "```bash", report["command"], "```", "",
@@ -316,7 +324,7 @@ def read(file):
         list(parts(report))
         title(report)
     except (OSError, ValueError, KeyError, TypeError, IndexError, AttributeError):
-        raise refuse("file", str(file), "must be what agents.evaluate writes with --json") from None
+        raise refuse("file", str(file), "must be what agents.evaluate writes with --json, or agents.tournament with --out") from None
     return report
 
 
@@ -324,7 +332,9 @@ def read(file):
 def main(argv=None):
     """Make the Markdown again from kept figures, or print them. Exit code 0."""
     p = argparse.ArgumentParser("python -m agents.report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("files", nargs="+", type=Path, metavar="FILE.json", help="what agents.evaluate wrote with --json")
+    p.add_argument(
+        "files", nargs="+", type=Path, metavar="FILE.json", help="what agents.evaluate wrote with --json, or agents.tournament with --out"
+    )
     p.add_argument("--show", action="store_true", help="print the tables, write nothing")
     args = p.parse_args(argv)
     try:

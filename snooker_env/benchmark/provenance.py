@@ -65,6 +65,13 @@ def software() -> dict[str, str | None]:
     Returns
     -------
     dict
+        Name -> version.
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import software
+    >>> "numpy" in software()
+    True
     """
     from .. import __version__
 
@@ -83,6 +90,13 @@ def machine() -> dict[str, Any]:
     Returns
     -------
     dict
+        "platform", "cpu", "cores" and "load".
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import machine
+    >>> machine()["cores"] >= 1
+    True
     """
     return {
         "platform": f"{platform.system()} {platform.machine()}", "cpu": processor(), "cores": os.cpu_count() or 1,

@@ -79,22 +79,39 @@ PATTERNS = {
 """Texts that must have a form."""
 
 
-def faults_of_fields(found: Any) -> list[str]:
+def faults_of_fields(
+    found: Any, fields: dict[str, tuple[Any, bool, str]] | None = None, ranges: dict[str, tuple[float, float]] | None = None,
+    version: int = VERSION,
+) -> list[str]:  # fmt: skip
     """What is wrong with the fields of a result, a line each.
 
     Parameters
     ----------
     found : object
         As ``json`` reads it.
+    fields : dict, optional
+        Dotted name -> type, whether it may be null, meaning; default: those of a result of this benchmark.
+    ranges : dict, optional
+        Lowest and highest value of fields that are numbers, besides those of this benchmark.
+    version : int
+        Of the fields, for the messages.
 
     Returns
     -------
     list of str
+        Empty if all fields are there and sound.
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import faults_of_fields
+    >>> faults_of_fields({"date": "today"}, {"date": (str, False, "when, in UTC")})
+    ["date = 'today': must be a time in UTC, as 2026-11-22T19:00:00Z"]
     """
+    fields, ranges = FIELDS if fields is None else fields, RANGES | (ranges or {})
     if not isinstance(found, dict):
         return ["the file must hold one JSON object"]
-    said, known = [], set(FIELDS)
-    for name, (kind, empty, _) in FIELDS.items():
+    said, known = [], set(fields)
+    for name, (kind, empty, _) in fields.items():
         value: Any = found
         for part in name.split("."):
             value = value.get(part, _MISSING) if isinstance(value, dict) else _MISSING
@@ -103,10 +120,10 @@ def faults_of_fields(found: Any) -> list[str]:
         elif not (value is None and empty) and not _fits(value, kind):
             said.append(f"{name} = {shortened(value)}: must be {_words(kind)}{' or null' if empty else ''}")
         elif value is not None:
-            said += _faults_of_value(name, value)
+            said += _faults_of_value(name, value, ranges)
     for name, value in found.items():
         inner = [f"{name}.{key}" for key in value] if isinstance(value, dict) and name not in known else [name]
-        said += [f"{other}: is no field of version {VERSION}" for other in inner if other not in known]
+        said += [f"{other}: is no field of version {version}" for other in inner if other not in known]
     return said
 
 
@@ -122,11 +139,11 @@ def _words(kind):
     return {str: "a text", int: "a whole number", bool: "true or false", list: "a list", dict: "an object"}.get(kind, "a number")
 
 
-def _faults_of_value(name, value):
+def _faults_of_value(name, value, ranges):
     """What is wrong with the value of a field that has the right type."""
     what = None
-    if name in RANGES and not RANGES[name][0] <= value <= RANGES[name][1]:
-        what = f"between {RANGES[name][0]:g} and {RANGES[name][1]:g}"
+    if name in ranges and not ranges[name][0] <= value <= ranges[name][1]:
+        what = f"between {ranges[name][0]:g} and {ranges[name][1]:g}"
     elif name in PATTERNS and not PATTERNS[name][0].fullmatch(value):
         what = PATTERNS[name][1]
     elif name == "date" and not _is_date(value):

@@ -1,5 +1,6 @@
 """Can the commands behind agents/results/*.md be run as agents/experiments.sh writes them? Each is read as its program would read it."""
 
+import json
 import os
 import shlex
 import subprocess
@@ -8,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import train
+from agents.evaluation import tournament
 from agents.evaluation.protocol import parser
 from agents.players.by_name import NAMES
 
@@ -55,3 +57,14 @@ def test_a_choice_of_no_run_is_an_error(tmp_path, only):
     command = ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path / "runs")]
     done = subprocess.run(command, env=os.environ | {"ONLY": only, "LIST": ""}, capture_output=True, text=True, timeout=60)
     assert done.returncode == 2 and f"ONLY='{only}' names no run" in done.stderr
+
+
+def test_the_command_of_the_ladder_is_the_one_that_made_the_file(tmp_path):
+    """And a tournament takes it."""
+    command = ["bash", str(ROOT / "agents/ladder.sh")]
+    done = subprocess.run(command, env=os.environ | {"LIST": "1"}, capture_output=True, text=True, check=True, timeout=60)
+    words = shlex.split(done.stdout)
+    made = shlex.split(json.loads((ROOT / "agents/results/ladder.json").read_text(encoding="utf-8"))["command"])
+    assert words[:3] == ["python", "-m", "agents.tournament"] and words == made
+    parsed = tournament.parser().parse_intermixed_args(words[3:])
+    assert parsed.resume and parsed.out == Path("agents/results/ladder.json") and parsed.markdown == parsed.out.with_suffix(".md")

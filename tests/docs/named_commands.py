@@ -42,6 +42,7 @@ ELSEWHERE = {
     "snooker_env.benchmark": "tests/benchmark/test_results.py",
     "agents.curves": "tests/agents/evaluation/test_learning_curves.py",
     "agents.publish": "tests/agents/evaluation/test_publish.py",
+    "agents.tournament": "tests/agents/evaluation/test_tournament.py",
     "examples/fit_your_data.py": "tests/examples/test_fit.py",
 }
 """Module or file -> the test that runs it."""

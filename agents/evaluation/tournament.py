@@ -1,0 +1,379 @@
+"""Who is the better player of whole frames? A round robin: every player against every other, each seed twice, both colours of the break.
+
+    python -m agents.tournament random ghost_ball ppo_mask --frames 200
+    python -m agents.tournament "mine=runs/ppo_mask-0" lookahead search --frames 200 --fewer search=20 --out ladder.json --resume
+    python -m agents.tournament ppo_mask lookahead --match 7 --frames 40 --noise amateur
+    python -m agents.tournament --check ladder.json
+    python -m agents.tournament --show ladder.json --markdown ladder.md
+
+A player is a NAME (a player of agents/players, a model of agents/pretrained), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS for
+a player of your own, whose module is imported. --trust and --options are those of ``python -m agents.evaluate``.
+What is played and what the figures mean: docs/agents/tournament.md.
+"""
+
+import argparse
+import shlex
+import sys
+import time
+import zlib
+from pathlib import Path
+
+from commands.lifecycle import command, needs
+
+with needs("agents.tournament"):
+    import snooker_env
+    from commands.files import writable, write_atomic
+    from commands.physics_option import physics_option
+    from snooker_env import Options
+    from snooker_env.benchmark import RESAMPLES, machine, read_result, write_result
+    from snooker_env.checks import choice, integer, refuse
+
+    from ..learning.models import pretrained
+    from ..players.by_name import NAMES, is_player, player_of
+    from .entrants import Entrant, options_of
+    from .text_tables import say
+    from .tournament_figures import ANCHOR_ELO, schedule
+    from .tournament_file import faults, kept, result_of, seeds_of
+    from .tournament_play import CHUNK, TABLES, TimedPlayer, play_pair
+    from .tournament_report import markdown, parts
+    from .tournament_strengths import PRIOR
+
+ANCHOR = "ghost_ball"
+"""The anchor if it plays; else the first player is."""
+SAVED = 60.0
+"""Seconds between two files while it plays."""
+
+
+def parser():
+    """The command line.
+
+    Returns
+    -------
+    argparse.ArgumentParser
+    """
+    p = argparse.ArgumentParser("python -m agents.tournament", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    names = ", ".join((*NAMES, *pretrained()))
+    p.add_argument("players", nargs="*", metavar="PLAYER", help=f"NAME, MODEL, LABEL=PATH or MODULE:CLASS; NAME: {names}")
+    p.add_argument("--frames", type=int, default=100, metavar="N", help="frames of each pair, or matches with --match; even [100]")
+    p.add_argument("--fewer", nargs="+", default=[], metavar="LABEL=N", help="only so many of each pair with a slow player")
+    p.add_argument("--match", type=int, default=1, metavar="BEST_OF", help="play matches, each the best of so many frames; odd [1]")
+    p.add_argument("--noise", default="professional", help="level of execution noise [professional]")
+    p.add_argument("--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
+    p.add_argument("--miss", default="off", help="rule for a foul and a miss [off]")
+    p.add_argument("--rules", default="snooker", help="set of rules [snooker]")
+    p.add_argument("--max-strokes", type=int, default=1000, help="strokes after which a frame is stopped, half a win for each [1000]")
+    p.add_argument("--seed", type=int, default=0, help="seed of the first match of each pair [0]")
+    p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
+    p.add_argument("--anchor", metavar="LABEL", help=f"the player whose Elo is {ANCHOR_ELO:.0f} [{ANCHOR}, else the first]")
+    p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
+    p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
+    p.add_argument(
+        "--options", nargs="+", default=[], metavar="KEY=VALUE", help="how the actions of such models are read, for example aim=target"
+    )
+    p.add_argument("--threads", type=int, help="threads that play the tables [one for each core]")
+    p.add_argument("--out", type=Path, metavar="FILE", help="write every frame and figure here, as JSON")
+    p.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here")
+    p.add_argument("--resume", action="store_true", help="go on with an incomplete --out; leave a complete one as it is")
+    p.add_argument("--force", action="store_true", help="replace --out if it is there")
+    p.add_argument("--quiet", action="store_true", help="show no progress")
+    p.add_argument("--check", nargs="+", type=Path, metavar="FILE", help="verify files of tournaments instead; exit code 1 if one is wrong")
+    p.add_argument("--show", type=Path, metavar="FILE", help="show a file of a tournament instead")
+    return p
+
+
+def game_of(args):
+    """The options of the frames, as they stand in the file. Raises ValueError.
+
+    Parameters
+    ----------
+    args : argparse.Namespace
+
+    Returns
+    -------
+    dict
+    """
+    choice("rules", args.rules, ("snooker", "six_red", "shoot_out"))
+    game = {"noise": args.noise, "physics": args.physics, "miss": args.miss, "max_strokes": args.max_strokes}
+    return game | ({} if args.rules == "snooker" else {"rules": args.rules})
+
+
+def played_with(game):
+    """The same as keywords of ``Options``."""
+    return game | {"physics": physics_option(game["physics"])}
+
+
+def checked(args):
+    """(entrants, protocol, game) of the command line. Raises ValueError before anything is played.
+
+    Parameters
+    ----------
+    args : argparse.Namespace
+
+    Returns
+    -------
+    tuple
+    """
+    options = options_of(args.options)
+    entrants = [Entrant.of(text, args.trust, options) for text in args.players]
+    labels = [entrant.label for entrant in entrants]
+    if len(labels) < 2:
+        raise refuse("players", " ".join(args.players), "must be two or more")
+    for entrant, text in zip(entrants, args.players, strict=True):
+        if labels.count(entrant.label) > 1:
+            raise refuse("player", entrant.label, "must be another for each player: give LABEL=PATH")
+        if len(entrant.runs) > 1:
+            raise refuse("player", text, "must be one player or model: give each training seed a label of its own")
+        entrant.trained()  # reads its model
+    if options and not any(entrant.foreign for entrant in entrants):
+        raise refuse("options", " ".join(args.options), "must be left out: it is for models that train.py did not make")
+    anchor = args.anchor or (ANCHOR if ANCHOR in labels else labels[0])
+    protocol = {
+        "first_seed": integer("seed", args.seed, 0, 2**53), "matches": _even("frames", args.frames, 2**20),
+        "fewer": dict(_fewer(text, labels, args.frames) for text in args.fewer), "best_of": integer("match", args.match, 1, 99),
+        "tables": TABLES, "chunk": CHUNK, "search_budget": integer("budget", args.budget, 2, 2**31),
+        "resamples": integer("resamples", args.resamples, 100, 10**6), "prior": PRIOR, "anchor": choice("anchor", anchor, tuple(labels)),
+        "anchor_elo": ANCHOR_ELO,
+    }  # fmt: skip
+    if args.match % 2 == 0:
+        raise refuse("match", args.match, "must be odd: the best of so many frames")
+    game = game_of(args)
+    for entrant in entrants:
+        player = TimedPlayer(player_for(entrant, "", 0, args.budget))
+        Options(task="frame", **player.options, **played_with(game), opponent=player)  # makes sure that they can meet
+    if args.threads is not None:
+        integer("threads", args.threads, 1, 1024)
+    if args.out and args.out.exists() and not (args.resume or args.force):
+        raise refuse("out", str(args.out), "must be a new file; --resume goes on with an incomplete one, --force replaces it")
+    if args.resume and not args.out:
+        raise refuse("resume", True, "must be given together with --out")
+    for name in ("out", "markdown"):
+        writable(name, getattr(args, name))
+    return entrants, protocol, game
+
+
+def _even(name, n, most):
+    if integer(name, n, 2, most) % 2:
+        raise refuse(name, n, "must be even: each seed is played twice, opened once by each player")
+    return n
+
+
+def _fewer(text, labels, most):
+    label, _, n = text.rpartition("=")
+    if label not in labels or not n.isdecimal():
+        raise refuse("fewer", text, f"must be LABEL=N with one of {', '.join(labels)}")
+    return label, _even("fewer", int(n), most)
+
+
+def player_for(entrant, other, first, budget):
+    """A fresh player for the matches against the label ``other`` from the seed ``first`` on; what it draws depends on nothing else.
+
+    Parameters
+    ----------
+    entrant : Entrant
+    other : str
+    first, budget : int
+
+    Returns
+    -------
+    object
+    """
+    run = entrant.runs[0]
+    if is_player(run):
+        return player_of(run, budget=budget, seed=zlib.crc32(f"{entrant.label}\n{other}\n{first}".encode()))
+    return entrant.player(0, budget)
+
+
+class Tournament:
+    """The round robin as far as it was played.
+
+    Parameters
+    ----------
+    entrants : list of Entrant
+    protocol, game : dict
+        As in the file.
+    command : str
+        The command line.
+    before : dict, optional
+        The content of an incomplete file to go on with.
+    """
+
+    def __init__(self, entrants, protocol, game, command, before=None):
+        self.entrants, self.protocol, self.game, self.command = entrants, protocol, game, command
+        self.labels, self.load = [entrant.label for entrant in entrants], machine()
+        self.rows = list(before["rows"]) if before else []
+        times = [(p["decisions"], p["seconds"]) for p in before["players"]] if before else [(0, 0.0)] * len(entrants)
+        self.times = [list(time) for time in times]
+
+    @property
+    def parts(self):
+        """What is played in one go, in order: pairs and some of their seeds."""
+        found = []
+        for pair in schedule(self.labels):
+            seeds = seeds_of(self.protocol, self.labels, pair)
+            found += [(pair, seeds[k : k + CHUNK]) for k in range(0, len(seeds), CHUNK)]
+        return found
+
+    def play(self, threads=None, tick=None, saved=None):
+        """Play all parts that are not in the rows yet.
+
+        Parameters
+        ----------
+        threads : int, optional
+        tick : callable, optional
+            Called with the number of matches that have ended.
+        saved : callable, optional
+            Called after each part.
+        """
+        done = {tuple(row[:3]) for row in self.rows}
+        ended = len({tuple(row[:4]) for row in self.rows})
+        if tick is not None:
+            tick(ended)
+        game, budget = played_with(self.game), self.protocol["search_budget"]
+        for pair, seeds in self.parts:
+            if all((*pair, seed) in done for seed in seeds):
+                continue
+            players = tuple(
+                TimedPlayer(player_for(self.entrants[k], self.labels[other], seeds[0], budget))
+                for k, other in (pair, pair[::-1])
+            )  # fmt: skip
+            so_far = None if tick is None else lambda n, before=ended: tick(before + n)
+            rows = play_pair(pair, players, game, seeds, self.protocol["best_of"], threads, so_far)
+            self.rows += rows
+            ended += 2 * len(seeds)
+            for k, player in zip(pair, players, strict=True):
+                self.times[k][0] += player.decisions
+                self.times[k][1] += player.seconds
+            if saved is not None:
+                saved()
+
+    def result(self, incomplete=None):
+        """The content of the file.
+
+        Parameters
+        ----------
+        incomplete : str, optional
+            Why frames are missing.
+
+        Returns
+        -------
+        dict
+        """
+        players = [
+            {
+                "label": entrant.label, "source": entrant.runs[0], "options": dict(player_for(entrant, "", 0, 2).options),
+                "training": entrant.trained()[0], "decisions": decisions, "seconds": seconds,
+            } for entrant, (decisions, seconds) in zip(self.entrants, self.times, strict=True)
+        ]  # fmt: skip
+        how = {"command": self.command, "load": self.load, "incomplete": incomplete}
+        return result_of(self.protocol, self.game, players, self.rows, **how)
+
+
+@command("agents.tournament")
+def main(argv=None):
+    """Check, play, report. Exit code 0; 1 if a checked file is wrong; 2 for wrong arguments; 130 if it was interrupted: what was played
+    is kept.
+    """
+    p = parser()
+    argv = sys.argv[1:] if argv is None else argv
+    args = p.parse_intermixed_args(argv)
+    if args.check:
+        return _check(args.check)
+    try:
+        if args.show:
+            return _shown(_sound(args.show), args.markdown)
+        entrants, protocol, game = checked(args)
+        before = None
+        if args.resume and args.out.exists():
+            before = kept(args.out, protocol, game, [(e.label, e.runs[0]) for e in entrants])
+    except ValueError as error:
+        p.error(str(error))
+    if before is not None and before["incomplete"] is None:
+        return _shown(before, args.markdown)
+    tournament = Tournament(entrants, protocol, game, "python -m agents.tournament " + shlex.join(argv), before)
+    snooker_env.warmup()
+    why = _play(tournament, args)
+    if why is not None:
+        print(f"agents.tournament: {why}", file=sys.stderr)
+    if not tournament.rows:
+        return 130
+    found = tournament.result(why)
+    if args.out:
+        write_result(args.out, found)
+    _shown(found, args.markdown)
+    if args.out:
+        print(f"out: {args.out}")
+    return 0 if why is None else 130
+
+
+def _play(tournament, args):
+    """Play, with a bar of progress; why it is incomplete, or None."""
+    from rich.console import Console
+    from rich.progress import Progress, TimeRemainingColumn
+
+    last = [time.monotonic()]
+
+    def saved():
+        if args.out and time.monotonic() - last[0] > SAVED:
+            write_result(args.out, tournament.result("it was still running"))
+            last[0] = time.monotonic()
+
+    total, units = sum(2 * len(seeds) for _, seeds in tournament.parts), "frames" if args.match == 1 else "matches"
+    columns = (*Progress.get_default_columns()[:-1], TimeRemainingColumn(elapsed_when_finished=True))
+    with Progress(*columns, console=Console(stderr=True), transient=True, disable=args.quiet) as bar:
+        task = bar.add_task(units, total=total)
+        try:
+            tournament.play(args.threads, lambda n: bar.update(task, completed=n), saved)
+        except KeyboardInterrupt:
+            ended = len({tuple(row[:4]) for row in tournament.rows})
+            return f"interrupted after {ended:,} of {total:,} {units}: " + ("these are kept" if ended else "nothing is kept")
+        except BaseException as error:
+            if args.out and tournament.rows:  # of a player's own code: its traceback is for its author, what was played is kept
+                write_result(args.out, tournament.result(f"{type(error).__name__}: {error}"))
+            raise
+    return None
+
+
+def _shown(found, file):
+    """Print the tables and write them as Markdown."""
+    if found["figures"] is None:
+        raise refuse("show", "a file", "must hold frames")
+    for part in parts(found):
+        if isinstance(part, str):
+            say(part)
+        else:
+            part.show()
+    if file:
+        write_atomic(file, (markdown(found) + "\n").encode())
+        print(f"markdown: {file}")
+    return 0
+
+
+def _sound(file):
+    """The content of a file without faults. Raises ValueError."""
+    try:
+        found = read_result(file)
+    except OSError as error:
+        raise refuse("show", str(file), f"must be a file that can be read ({error.strerror})") from None
+    said = faults(found)
+    if said:
+        raise refuse("show", str(file), f"must be the file of a tournament ({said[0]})")
+    return found
+
+
+def _check(files):
+    wrong = False
+    for file in files:
+        try:
+            found = read_result(file)
+            said = faults(found)
+        except ValueError as error:
+            said = [str(error)]
+        except OSError as error:
+            said = [f"cannot be read: {error.strerror}"]
+        for line in said:
+            print(f"{file}: {line}")
+        if not said:
+            state = "complete" if found["incomplete"] is None else "sound, incomplete"
+            print(f"{file}: {state}, {len(found['players'])} players, {len(found['rows']):,} frames")
+        wrong |= bool(said)
+    return int(wrong)

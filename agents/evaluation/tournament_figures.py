@@ -1,0 +1,234 @@
+"""Which figures follow from the frames of a tournament? Shares of wins, breaks, fouls and strengths, each with its interval.
+
+Everything is computed from the rows alone. What is resampled are the seeds: the two matches on one seed, one opened by each player, stay
+together, and all pairs with the same number of seeds have the same seeds in each bootstrap sample. Intervals are 95 % percentile intervals
+(``snooker_env.benchmark``). A share of 0 % or 100 % has the exact one-sided bound instead, by which each seed counts once.
+"""
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from snooker_env.benchmark import RESAMPLES, Resamples, figure, unseen
+
+from .tournament_strengths import ELO, PRIOR, bound, compared, linked, strengths
+
+KEYS = ("first", "second", "seed", "opener", "frame", "winner")
+"""Of a row: indices of the two players; seed of the match; who of them (0 or 1) broke in its first frame; the frame's index in the match;
+who won it, -1 if it was stopped."""
+COUNTED = ("points", "scored", "visits", "strokes", "fouls", "best")
+"""What is counted for each player: points, those of his own pots, visits to the table, strokes, fouls, points of his best visit."""
+COLUMNS = (*KEYS, *(f"{name}_{side}" for name in COUNTED for side in KEYS[:2]))
+ANCHOR_ELO = 1000.0
+"""Elo of the anchor."""
+RATIOS = {
+    "points_a_frame": ("points", "frames"), "average_break": ("scored", "visits"), "fouls_a_frame": ("fouls", "frames"),
+    "strokes_a_frame": ("strokes", "frames"),
+}  # fmt: skip
+"""Figures of a player that are ratios of two sums over all his frames."""
+
+
+@dataclass
+class PlayedPair:
+    """The frames of two players, summed for each seed.
+
+    Attributes
+    ----------
+    players : tuple of int
+        Their indices.
+    sums : dict
+        Name -> float (2, seeds), one row for each player; "won" and "matches": of matches, draws as halves; "frames_won" and "frames".
+    opened : float (2, seeds)
+        Wins of each player in the matches that he opened.
+    draws : int
+        Matches without a winner.
+    stopped : int
+        Frames without a winner.
+    best : tuple of int
+        The best visit of each.
+    """
+
+    players: tuple
+    sums: dict
+    opened: np.ndarray
+    draws: int
+    stopped: int
+    best: tuple
+
+    @classmethod
+    def of(cls, players, rows):
+        """From the rows (n, len(COLUMNS)) of the pair."""
+        column = {name: rows[:, c] for c, name in enumerate(COLUMNS)}
+        seeds, at = np.unique(column["seed"], return_inverse=True)
+        m = len(seeds)
+
+        def total(values, where=None):
+            return np.bincount(at if where is None else at[where], values, m)
+
+        sides = (column["winner"] == 0) + 0.5 * (column["winner"] < 0), (column["winner"] == 1) + 0.5 * (column["winner"] < 0)
+        lead = np.zeros((2, m))  # frames of the match, by its opener
+        np.add.at(lead, (column["opener"], at), sides[0] - sides[1])
+        won = 0.5 * (1.0 + np.sign(lead))  # of the first player
+        sums = {"won": np.stack([won.sum(0), (1.0 - won).sum(0)]), "matches": np.full((2, m), 2.0)}
+        sums["frames_won"] = np.stack([total(side) for side in sides])
+        sums["frames"] = np.stack([total(np.ones(len(rows)))] * 2)
+        for name in COUNTED:
+            sums[name] = np.stack([total(column[f"{name}_{side}"]) for side in KEYS[:2]])
+        opened = np.stack([won[0], 1.0 - won[1]])
+        best = tuple(int(column[f"best_{side}"].max()) for side in KEYS[:2])
+        return cls(players, sums, opened, int((lead == 0).sum()), int((column["winner"] < 0).sum()), best)
+
+    @property
+    def seeds(self):
+        """How many seeds were played."""
+        return self.opened.shape[1]
+
+    def samples(self, values, resamples):
+        """Bootstrap samples of the sum of ``values`` (seeds,)."""
+        return Resamples(1, self.seeds, resamples).sums(values[None])
+
+
+def pairs_of(rows):
+    """The ``PlayedPair`` of every pair in the rows, in order.
+
+    Parameters
+    ----------
+    rows : list of list of int
+        Columns ``COLUMNS``.
+
+    Returns
+    -------
+    list of PlayedPair
+    """
+    table = np.array(rows, np.int64).reshape(-1, len(COLUMNS))
+    found = sorted({(int(a), int(b)) for a, b in table[:, :2]})
+    return [PlayedPair.of(pair, table[(table[:, 0] == pair[0]) & (table[:, 1] == pair[1])]) for pair in found]
+
+
+def _share(won, matches, drawn, seeds):
+    """A share with its interval; of 0 % or 100 % with the exact bound of so many seeds."""
+    value = won / matches
+    if value in (0.0, 1.0):
+        most = unseen(seeds)
+        return {"value": value, "low": 0.0 if value == 0.0 else 1.0 - most, "high": most if value == 0.0 else 1.0}
+    return figure(value, drawn)
+
+
+def figures_of(labels, rows, anchor, resamples=RESAMPLES):
+    """All figures of a tournament.
+
+    Parameters
+    ----------
+    labels : list of str
+        Labels of the players.
+    rows : list of list of int
+        One for each frame, columns ``COLUMNS``.
+    anchor : str
+        The label whose Elo is ``ANCHOR_ELO``.
+    resamples : int
+        Number of bootstrap samples.
+
+    Returns
+    -------
+    dict
+        "players": for each label "matches", "frames", "won", "drawn", "win_rate" (the mean over his opponents), "frame_rate",
+        "elo", "elo_by_prior", the ratios of ``RATIOS`` and "highest_break". "pairs": for each pair "first", "second", "matches", "won",
+        "drawn", "win_rate" of the first player and "when_opening", that of each in the matches that he opened. "opener": the share of
+        matches won by the player who opened them; "stopped": frames that were stopped. A figure is {"value", "low", "high"}.
+    """
+    pairs = pairs_of(rows)
+    elo = _elo(pairs, len(labels), labels.index(anchor), resamples)
+    players = {}
+    for k, label in enumerate(labels):
+        mine = [(pair, pair.players.index(k)) for pair in pairs if k in pair.players]
+        players[label] = _player(mine, resamples) | elo[k] if mine else None
+    shares = [_pair(pair, labels, resamples) for pair in pairs]
+    return {"players": players, "pairs": shares, "opener": _opener(pairs, resamples), "stopped": sum(pair.stopped for pair in pairs)}
+
+
+def _player(mine, resamples):
+    """The figures of a player in these pairs; with each his place in it."""
+    sums, drawn = {}, {}
+    for pair, side in mine:
+        for name, values in pair.sums.items():
+            sums[name] = sums.get(name, 0.0) + values[side].sum()
+            drawn[name] = drawn.get(name, 0.0) + pair.samples(values[side], resamples)
+    seeds = sum(pair.seeds for pair, _ in mine)
+    found = {"matches": int(sums["matches"]), "frames": int(sums["frames"]), "won": sums["won"], "drawn": sum(p.draws for p, _ in mine)}
+    for name, won, many in (("win_rate", "won", "matches"), ("frame_rate", "frames_won", "frames")):
+        shares = [pair.sums[won][side].sum() / pair.sums[many][side].sum() for pair, side in mine]
+        samples = [pair.samples(pair.sums[won][side], resamples) / pair.samples(pair.sums[many][side], resamples) for pair, side in mine]
+        found[name] = _share(np.mean(shares), 1.0, np.mean(samples, axis=0), seeds)
+    for name, (above, below) in RATIOS.items():
+        found[name] = figure(sums[above] / sums[below], drawn[above] / drawn[below]) if sums[below] else figure(np.nan, [np.nan])
+    return found | {"highest_break": max(pair.best[side] for pair, side in mine)}
+
+
+def _pair(pair, labels, resamples):
+    """The figures of two players against each other."""
+    won, matches = pair.sums["won"], pair.sums["matches"][0].sum()
+    opening = [
+        _share(pair.opened[side].sum(), pair.seeds, pair.samples(pair.opened[side], resamples) / pair.seeds, pair.seeds) for side in (0, 1)
+    ]  # fmt: skip
+    return {
+        "first": labels[pair.players[0]], "second": labels[pair.players[1]], "matches": int(matches), "won": float(won[0].sum()),
+        "drawn": pair.draws, "win_rate": _share(won[0].sum(), matches, pair.samples(won[0], resamples) / matches, pair.seeds),
+        "when_opening": opening,
+    }  # fmt: skip
+
+
+def _opener(pairs, resamples):
+    """The share of matches that were won by the player who opened them."""
+    matches = sum(2 * pair.seeds for pair in pairs)
+    drawn = sum(pair.samples(pair.opened.sum(0), resamples) for pair in pairs) / matches
+    return _share(sum(pair.opened.sum() for pair in pairs) / matches, 1.0, drawn, matches / 2)
+
+
+def _elo(pairs, k, anchor, resamples):
+    """For each of k players "elo" and whether only the prior decides its distance to the anchor."""
+    wins, drawn, seeds = np.zeros((k, k)), np.zeros((resamples, k, k)), np.zeros((k, k))
+    for pair in pairs:
+        for (i, j), values in zip((pair.players, pair.players[::-1]), pair.sums["won"], strict=True):
+            wins[i, j], drawn[:, i, j], seeds[i, j] = values.sum(), pair.samples(values, resamples), pair.seeds
+    met = linked(seeds > 0, anchor)
+    here = np.flatnonzero(met)
+    at = int(np.searchsorted(here, anchor))
+    among = np.ix_(here, here)
+    both = strengths(np.concatenate([wins[None], drawn])[(slice(None), *among)], PRIOR)
+    elo = ANCHOR_ELO + ELO * (both - both[:, at : at + 1])
+    sound = compared(wins[among], at)
+    found = [{"elo": figure(np.nan, [np.nan]), "elo_by_prior": True} for _ in range(k)]
+    for j, i in enumerate(here):
+        mine = figure(elo[0, j], elo[1:, j])
+        if not sound[j]:
+            mine |= _bounds(elo[0], j, sound, wins[among], seeds[among])
+        found[i] = {"elo": mine, "elo_by_prior": not sound[j]}
+    return found
+
+
+def _bounds(elo, j, sound, wins, seeds):
+    """ "low" and "high" of a player who won all his matches, or none, against those who can be compared with the anchor."""
+    others = np.flatnonzero(sound & (seeds[j] > 0))
+    strength, many = elo[others] / ELO, seeds[j, others]
+    if not wins[others, j].any():
+        low = float(ELO * bound(strength, many))
+        return {"low": low if np.isfinite(low) else None, "high": None}
+    high = float(-ELO * bound(-strength, many))
+    return {"low": None, "high": high if np.isfinite(high) else None}
+
+
+def schedule(labels):
+    """All pairs of players.
+
+    Parameters
+    ----------
+    labels : list
+        The players.
+
+    Returns
+    -------
+    list of (int, int)
+        Indices, each pair once.
+    """
+    return list(combinations(range(len(labels)), 2))

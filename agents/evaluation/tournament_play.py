@@ -1,0 +1,235 @@
+"""How do two players meet? Many frames side by side, on the tables of one vector environment; each seed twice, opened once by each.
+
+The first player is the environment's agent, the second its opponent. A table whose match has ended takes the next one; when more than half
+of the tables have nothing left to play, the others go on in a smaller environment. The frames of a match follow each other on one table,
+broken in turn; the best of N ends when one player has won more than N / 2, or after N frames. What a table draws depends on its seed only.
+
+A visit is all strokes of a player in succession: also over the lot at a re-spotted black.
+"""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from snooker_env import Options, SnookerVectorEnv
+from snooker_env.benchmark import AtFrames
+
+from .tournament_figures import COUNTED
+
+TABLES = 128
+"""Tables side by side."""
+CHUNK = 100
+"""Seeds that are played in one go. A player is made anew for each, so that a tournament can be resumed between two of them."""
+
+
+class TimedPlayer:
+    """A player whose decisions are timed.
+
+    Parameters
+    ----------
+    player : object
+        With ``options`` and ``act(tables, observations, going)``.
+
+    Attributes
+    ----------
+    decisions : int
+        How many it took.
+    seconds : float
+        What that took together [s].
+    """
+
+    def __init__(self, player):
+        self._player, self.options = player, player.options
+        self.frames = getattr(player, "frames", False)
+        self.decisions, self.seconds = 0, 0.0
+
+    def act(self, tables, observations, going):
+        """The player's actions."""
+        began = time.perf_counter()
+        actions = self._player.act(tables, observations, going)
+        self.seconds += time.perf_counter() - began
+        self.decisions += int(np.sum(going))
+        return actions
+
+
+@dataclass
+class Encounter:
+    """Some matches of two players, and how far each table is.
+
+    Attributes
+    ----------
+    pair : tuple of int
+        Indices of the players, for the rows.
+    queue : list of (int, int)
+        Seed and opener of the matches that no table has begun.
+    best_of : int
+        Frames of a match.
+    rows : list of list of int
+        One row for each frame that has ended, columns ``COLUMNS``.
+    """
+
+    pair: tuple
+    queue: list
+    best_of: int
+    rows: list = field(default_factory=list)
+
+    def __post_init__(self):
+        n = min(TABLES, len(self.queue))
+        self.unit = np.full((n, 2), -1)  # seed and opener
+        self.frame, self.won = np.zeros(n, int), np.zeros((n, 2))
+        self.sums = {name: np.zeros((n, 2), int) for name in COUNTED}
+        self.visit, self.fresh = np.zeros(n, int), np.ones(n, bool)  # the agent's visit, and whether its next stroke begins another
+        self.played = np.zeros(n, int)  # strokes of both
+        for k in range(n):
+            self.unit[k] = self.queue.pop(0)
+
+    @property
+    def n(self):
+        """How many tables there are."""
+        return len(self.frame)
+
+    @property
+    def going(self):
+        """Tables with a match."""
+        return self.unit[:, 0] >= 0
+
+    @property
+    def breakers(self):
+        """Who breaks in the frame of each table."""
+        return np.where(self.going, (self.unit[:, 1] + self.frame) % 2, 0)
+
+    def begun(self, which, info):
+        """The frames on the tables ``which`` (n,) bool have begun; the opponent may have had a visit."""
+        for values in (*self.sums.values(), self.visit, self.played):
+            values[which] = 0
+        self.fresh[which] = True
+        self._opponent(which, info["opponent_score"], info["score"], info["opponent_strokes"])
+        self._score(which, info)
+
+    def stepped(self, which, info):
+        """One step was made on the tables ``which`` (n,) bool."""
+        own = which & (info["strokes"] - self.played - info["opponent_strokes"] > 0)
+        points, penalty = np.where(own, info["points"], 0).astype(int), np.where(own, info["penalty"], 0).astype(int)
+        gained = info["opponent_score"].astype(int) - self.sums["points"][:, 1] - penalty
+        given = info["score"].astype(int) - self.sums["points"][:, 0] - points
+        self.visit[own & self.fresh] = 0
+        self.visit += points
+        self.sums["visits"][:, 0] += own & self.fresh
+        self.sums["strokes"][:, 0] += own
+        self.sums["fouls"][:, 0] += own & (info["fouls"] != 0)
+        self.sums["scored"][:, 0] += points
+        self._best(own, 0, self.visit)
+        self.fresh = np.where(own, points == 0, self.fresh) | (which & (info["opponent_strokes"] > 0))
+        self._opponent(which, gained, given, info["opponent_strokes"])
+        self._score(which, info)
+
+    def _opponent(self, which, scored, given, strokes):
+        """One visit of the opponent, if he had any stroke; ``given``: points for his fouls."""
+        struck = which & (strokes > 0)
+        scored = np.where(struck, scored, 0).astype(int)
+        self.sums["visits"][:, 1] += struck
+        self.sums["strokes"][:, 1] += np.where(struck, strokes, 0)
+        self.sums["fouls"][:, 1] += struck & (given > 0)  # a foul ends the visit
+        self.sums["scored"][:, 1] += scored
+        self._best(struck, 1, scored)
+
+    def _best(self, which, side, points):
+        best = self.sums["best"]
+        best[which, side] = np.maximum(best[which, side], points[which])
+
+    def _score(self, which, info):
+        self.played[which] = info["strokes"][which]
+        for side, name in enumerate(("score", "opponent_score")):
+            self.sums["points"][which, side] = info[name][which]
+
+    def ended(self, which, info):
+        """The frames on the tables ``which`` (n,) bool have ended: write the rows, and give each table its next frame."""
+        for k in np.flatnonzero(which).tolist():
+            winner = int(info["winner"][k])
+            sums = [int(self.sums[name][k, side]) for name in COUNTED for side in (0, 1)]
+            self.rows.append([*self.pair, *self.unit[k].tolist(), int(self.frame[k]), winner, *sums])
+            self.won[k] += 0.5 if winner < 0 else [winner == 0, winner == 1]
+            self.frame[k] += 1
+            if self.frame[k] == self.best_of or self.won[k].max() > 0.5 * self.best_of:
+                self.frame[k], self.won[k] = 0, 0.0
+                self.unit[k] = self.queue.pop(0) if self.queue else -1
+
+    def keep(self, which):
+        """Go on with the tables ``which`` (n,) bool only."""
+        self.sums = {name: values[which] for name, values in self.sums.items()}
+        for name in ("unit", "frame", "won", "visit", "fresh", "played"):
+            setattr(self, name, getattr(self, name)[which])
+
+
+def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
+    """Play two matches on each seed.
+
+    Parameters
+    ----------
+    pair : (int, int)
+        Indices of the players, for the rows.
+    players : (object, object)
+        The players.
+    game : dict
+        Options of the frames: noise, physics and the like.
+    seeds : list of int
+        Seeds of the matches.
+    best_of : int
+        Frames of a match.
+    threads : int, optional
+        As in ``SnookerVectorEnv``. The rows do not depend on it.
+    tick : callable, optional
+        Called with the number of matches that have ended, whenever that changes.
+
+    Returns
+    -------
+    list of list of int
+        One row for each frame, columns ``tournament_figures.COLUMNS``, in the order of seeds, openers and frames.
+    """
+    agent, opponent = players
+    options = Options(task="frame", **agent.options, **game, opponent=opponent)
+    agent = agent if getattr(agent, "frames", False) else AtFrames(agent)
+    meeting = Encounter(pair, [(seed, opener) for seed in seeds for opener in (0, 1)], best_of)
+    matches, ended = 2 * len(seeds), 0
+    tables = _tables(meeting.n, options, threads)
+    observations, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
+    meeting.begun(meeting.going, info)
+    moved = np.zeros(meeting.n, bool)  # since the reset: only then is a state sure to hold a stroke to play
+    while (going := meeting.going).any():
+        observations, _, terminated, truncated, info = tables.step(agent.act(tables, observations, going))
+        meeting.stepped(going, info)
+        done = terminated | truncated
+        moved = ~done
+        if done.any():
+            before = meeting.unit.copy()
+            meeting.ended(going & done, info)
+            observations, moved = _renewed(tables, meeting, done, before, moved)
+        now = matches - len(meeting.queue) - int(meeting.going.sum())
+        if tick is not None and now != ended:
+            tick(now)
+        ended = now
+        if 0 < (left := meeting.going).sum() <= meeting.n / 2 and moved[left].all():
+            states = [state for state, some in zip(tables.get_state(), left, strict=True) if some]
+            tables.close()
+            meeting.keep(left)
+            tables = _tables(meeting.n, options, threads)
+            observations, info = tables.reset(options={"states": states})
+    tables.close()
+    return sorted(meeting.rows)
+
+
+def _tables(n, options, threads):
+    return SnookerVectorEnv(n, options, threads=threads, autoreset_mode="Disabled")
+
+
+def _renewed(tables, meeting, done, before, moved):
+    """Begin the next frames where frames have ended; the observations of all tables, and which of them have played since their reset.
+
+    A new match is dealt from its seed; in the next frame of a match the table's random numbers go on. Tables without a match: dealt, too.
+    """
+    anew = (meeting.unit != before).any(1) & meeting.going
+    seeds = [int(seed) if new else None for seed, new in zip(meeting.unit[:, 0], anew, strict=True)]
+    seen, info = tables.reset(seed=seeds, options={"reset_mask": done, "breaker": meeting.breakers})
+    meeting.begun(done & meeting.going, info)
+    return seen, moved & ~done

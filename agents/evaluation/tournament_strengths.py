@@ -1,0 +1,143 @@
+"""How strong is each player, on one scale? The model of Bradley and Terry, fitted to wins, draws and losses of all pairs.
+
+Player i beats player j with probability p_ij = 1 / (1 + exp(t_j - t_i)) [Bradley & Terry, Biometrika 39 (1952) 324]. A draw is half a win
+for each. The strengths t maximise the sum of w_ij log p_ij over all pairs, w_ij being the wins of i over j. With 0 % or 100 % wins there is
+no maximum: so each pair that met gets ``PRIOR`` drawn matches more, half a win for each. On the scale of Elo a strength counts
+400 / ln 10 points, so that 400 points more mean ten wins for one loss.
+"""
+
+import numpy as np
+
+PRIOR = 1.0
+"""Drawn matches that are added to each pair that met."""
+ELO = 400.0 / np.log(10.0)
+"""Points of Elo for one unit of strength."""
+SMALLEST = 1e-10
+"""The fit ends when no player's expected wins differ by more from his own, as a share of his matches."""
+LONGEST = 2.0
+"""Longest step of Newton's method in a strength: further from the maximum it would overshoot."""
+ROUNDS = 200
+
+
+def strengths(wins, prior=PRIOR):
+    """The strengths of k players, with mean 0, for one or many tables of wins.
+
+    Parameters
+    ----------
+    wins : array_like, float (..., k, k)
+        ``wins[..., i, j]``: how often i beat j, draws as halves. Every player must be linked to every other by pairs that met.
+    prior : float
+        Drawn matches that are added to each pair that met in the first table of wins.
+
+    Returns
+    -------
+    float64 (..., k)
+        The strengths. Without a prior they are infinite for a player who always or never won; the search then stops far out.
+    """
+    w = np.array(wins, np.float64)
+    k = w.shape[-1]
+    first = w.reshape(-1, k, k)[0]
+    w = w + 0.5 * prior * ((first + first.T) > 0)
+    n = w + np.swapaxes(w, -1, -2)
+    many, t = np.maximum(n.sum(-1), 1e-300), np.zeros(w.shape[:-1])
+    for _ in range(ROUNDS):
+        p = chance(t[..., :, None] - t[..., None, :])
+        slope = w.sum(-1) - (n * p).sum(-1)
+        if np.abs(slope / many).max(initial=0.0) < SMALLEST:
+            break
+        curve = n * p * (1.0 - p)
+        bend = -curve + 1.0 / k  # the mean stays 0
+        bend[..., range(k), range(k)] += curve.sum(-1)
+        step = np.linalg.solve(bend, slope[..., None])[..., 0]
+        longest = np.abs(step).max(-1, keepdims=True)
+        t += step * np.minimum(1.0, LONGEST / np.maximum(longest, LONGEST))
+    return t - t.mean(-1, keepdims=True)
+
+
+def chance(ahead):
+    """The chance to win of a player whose strength is ``ahead`` of the other's.
+
+    Parameters
+    ----------
+    ahead : array_like, float
+        Difference of strengths.
+
+    Returns
+    -------
+    float64
+        Of the same shape.
+    """
+    return 0.5 * (1.0 + np.tanh(0.5 * np.asarray(ahead, np.float64)))
+
+
+def linked(edges, start):
+    """Which players can be reached from one, step by step.
+
+    Parameters
+    ----------
+    edges : bool (k, k)
+        Whether a step from the first to the second is possible.
+    start : int
+        The player.
+
+    Returns
+    -------
+    bool (k,)
+        With himself.
+    """
+    found = np.zeros(len(edges), bool)
+    found[start] = True
+    for _ in range(len(edges)):
+        found |= edges[found].any(0)
+    return found
+
+
+def compared(wins, anchor):
+    """Who can be compared with a player by results alone: he won something of him, and lost something, perhaps by way of others.
+
+    The distance of all others to him is decided by the prior.
+
+    Parameters
+    ----------
+    wins : float (k, k)
+        As in ``strengths``.
+    anchor : int
+        The player.
+
+    Returns
+    -------
+    bool (k,)
+        With himself.
+    """
+    won = np.asarray(wins) > 0
+    return linked(won, anchor) & linked(won.T, anchor)
+
+
+def bound(others, matches, level=0.95):
+    """The least strength of a player who won every match, by what is not too unlikely; of one who lost all it is the greatest, negated.
+
+    At the bound, winning all of them has the probability 1 - level. The others' strengths count as known.
+
+    Parameters
+    ----------
+    others : float (m,)
+        Strengths of his opponents; negated for a player who lost all.
+    matches : float (m,)
+        How many independent matches he played against each.
+    level : float
+        Confidence level.
+
+    Returns
+    -------
+    float
+        The bound; -inf without any match.
+    """
+    others, matches = np.asarray(others, np.float64), np.asarray(matches, np.float64)
+    if matches.sum() <= 0:
+        return -np.inf
+    low, high = others.min() - 50.0, others.max() + 50.0
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        likely = (matches * np.log(np.maximum(chance(middle - others), 1e-300))).sum() > np.log(1.0 - level)
+        low, high = (low, middle) if likely else (middle, high)
+    return 0.5 * (low + high)

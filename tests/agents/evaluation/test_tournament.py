@@ -1,0 +1,268 @@
+"""Does ``agents.tournament`` play, keep and check what it is asked to, and refuse what it should, whatever stops it?"""
+
+import copy
+import json
+import re
+
+import pytest
+
+from agents.evaluation import tournament
+from agents.evaluation.tournament_figures import COLUMNS, figures_of
+from agents.evaluation.tournament_file import FIELDS, NUMBER, PLAYER, faults
+from tests.processes import ROOT
+
+OWN = """
+import numpy as np
+
+class Softly:
+    options = {"aim": "target"}
+    def act(self, tables, observations, going):
+        actions = np.zeros((len(going), 4), np.float32)
+        actions[:, 0] = -0.4
+        return actions
+
+class Mute:
+    options, act = {}, None
+"""
+PLAYERS = ("ghost_ball", "random", "mine:Softly")
+QUICK = ("--frames", "6", "--resamples", "100", "--max-strokes", "120", "--threads", "1", "--quiet")
+
+
+@pytest.fixture(autouse=True)
+def own(tmp_path, monkeypatch):
+    (tmp_path / "mine.py").write_text(OWN)
+    monkeypatch.syspath_prepend(tmp_path)
+
+
+@pytest.fixture
+def parts(monkeypatch):
+    """Two seeds are played in one go, so that there are several parts of each pair."""
+    monkeypatch.setattr(tournament, "CHUNK", 2)
+
+
+def played(tmp_path, *more, name="t.json", players=PLAYERS, code=0):
+    file = tmp_path / name
+    assert tournament.main([*players, *QUICK, "--out", str(file), *more]) == code
+    return json.loads(file.read_text(), parse_constant=lambda text: pytest.fail(f"{text} is not JSON"))
+
+
+def test_json_markdown_check_and_show(tmp_path, capsys):
+    found = played(tmp_path, "--markdown", str(tmp_path / "t.md"), "--fewer", "random=2")
+    assert faults(found) == [] and found["incomplete"] is None
+    assert [p["label"] for p in found["players"]] == ["ghost_ball", "random", "Softly"]
+    assert found["protocol"]["anchor"] == "ghost_ball" and found["game"]["noise"] == "professional"
+    assert len(found["rows"]) == 2 + 6 + 2 and {(row[2], row[3]) for row in found["rows"]} == {(s, o) for s in range(3) for o in (0, 1)}
+    for player in found["players"]:
+        label, decisions = player["label"], player["decisions"]
+        k = [p["label"] for p in found["players"]].index(label)
+        own = sum(row[COLUMNS.index("strokes_first" if row[0] == k else "strokes_second")] for row in found["rows"] if k in row[:2])
+        # An opponent also decides on tables that wait for the others to end, where nothing is counted.
+        assert decisions >= own > 0 and (decisions == own or k > 0) and player["seconds"] > 0
+    text, printed = (tmp_path / "t.md").read_text(), capsys.readouterr()
+    assert printed.err == "" and "Who wins" in printed.out and found["command"] in text
+    for label in ("ghost_ball", "random", "Softly"):
+        assert label in text and label in printed.out
+    assert "2 with random" in " ".join(printed.out.split())
+    for p in found["figures"]["players"].values():
+        assert f"{p['elo']['value']:.0f}" in text and f"{p['average_break']['value']:.2f}" in text
+    for line, under in zip(text.splitlines(), text.splitlines()[1:], strict=False):
+        if under and set(under) <= set("|:- "):
+            assert line.count("|") == under.count("|")
+    assert tournament.main(["--check", str(tmp_path / "t.json")]) == 0
+    assert capsys.readouterr().out == f"{tmp_path / 't.json'}: complete, 3 players, 10 frames\n"
+    assert tournament.main(["--show", str(tmp_path / "t.json"), "--markdown", str(tmp_path / "again.md")]) == 0
+    assert (tmp_path / "again.md").read_text() == text
+
+
+def test_a_match_is_the_unit(tmp_path, capsys):
+    found = played(tmp_path, "--match", "3", "--noise", "none", players=("ghost_ball", "mine:Softly"))
+    assert faults(found) == [] and len(found["rows"]) > 6 == found["figures"]["players"]["Softly"]["matches"]
+    assert "matches, each the best of 3 frames" in " ".join(capsys.readouterr().out.split())
+
+
+def interrupted_at(monkeypatch, call, error=KeyboardInterrupt):
+    """Stopped when ``play_pair`` is called for the so-manyth time."""
+    original, calls = tournament.play_pair, []
+
+    def play_pair(*arguments):
+        calls.append(1)
+        if len(calls) == call:
+            raise error
+        return original(*arguments)
+
+    monkeypatch.setattr(tournament, "play_pair", play_pair)
+    return calls
+
+
+def test_resumed_is_as_if_it_had_never_stopped(tmp_path, monkeypatch, capsys, parts):
+    whole = played(tmp_path, name="whole.json")
+    with monkeypatch.context() as patch:
+        interrupted_at(patch, 4)
+        part = played(tmp_path, code=130)
+    assert capsys.readouterr().err == "agents.tournament: interrupted after 10 of 18 frames: these are kept\n"
+    assert part["incomplete"] == "interrupted after 10 of 18 frames: these are kept" and faults(part) == []
+    assert part["rows"] == whole["rows"][:10] and part["figures"] != whole["figures"]
+    calls = interrupted_at(monkeypatch, 99)
+    again = played(tmp_path, "--resume")
+    assert len(calls) == 3  # of 6 parts
+    assert again["rows"] == whole["rows"] and again["figures"] == whole["figures"] and again["incomplete"] is None
+    assert [p["decisions"] for p in again["players"]] == [p["decisions"] for p in whole["players"]]
+    before = (tmp_path / "t.json").read_bytes()
+    played(tmp_path, "--resume")  # a complete one is left as it is
+    assert (tmp_path / "t.json").read_bytes() == before and len(calls) == 3
+
+
+def test_what_a_player_fails_at_keeps_what_was_played(tmp_path, monkeypatch, parts):
+    interrupted_at(monkeypatch, 3, RuntimeError("no chalk"))
+    with pytest.raises(RuntimeError, match="no chalk"):
+        played(tmp_path)
+    found = json.loads((tmp_path / "t.json").read_text())
+    assert found["incomplete"] == "RuntimeError: no chalk" and len(found["rows"]) == 6 and faults(found) == []
+
+
+def test_ctrl_c_at_once_keeps_nothing(tmp_path, monkeypatch, capsys):
+    interrupted_at(monkeypatch, 1)
+    assert tournament.main([*PLAYERS, *QUICK, "--out", str(tmp_path / "t.json")]) == 130
+    assert not (tmp_path / "t.json").exists() and "nothing is kept" in capsys.readouterr().err
+
+
+def test_frames_do_not_depend_on_the_company(tmp_path):
+    rows = [
+        [row[2:] for row in found["rows"] if {found["players"][k]["label"] for k in row[:2]} == {"ghost_ball", "random"}]
+        for found in (played(tmp_path, name="a.json"), played(tmp_path, name="b.json", players=("ghost_ball", "random")))
+    ]  # fmt: skip
+    assert rows[0] == rows[1] and len(rows[0]) == 6
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["ghost_ball"], "players = 'ghost_ball': must be two or more"),
+        (["ghost_ball", "nobody"], "agent = 'nobody': must be random, "),
+        (["ghost_ball", "ghost_ball"], "player = 'ghost_ball': must be another"),
+        (["ghost_ball", "x=ghost_ball,random"], "player = 'x=ghost_ball,random': must be one player"),
+        (["ghost_ball", "mine:Mute"], "agent = 'mine:Mute': must be MODULE:CLASS"),
+        (["ghost_ball", "random", "--frames", "7"], "frames = 7: must be even"),
+        (["ghost_ball", "random", "--frames", "0"], "frames = 0: must be an integer in \\[2"),
+        (["ghost_ball", "random", "--match", "4"], "match = 4: must be odd"),
+        (["ghost_ball", "random", "--fewer", "me=2"], "fewer = 'me=2': must be LABEL=N"),
+        (["ghost_ball", "random", "--fewer", "random=200"], "fewer = 200: must be an integer in \\[2, 100\\]"),
+        (["ghost_ball", "random", "--anchor", "me"], "anchor = 'me': must be one of"),
+        (["ghost_ball", "random", "--noise", "loud"], "noise = 'loud': must be one of"),
+        (["ghost_ball", "random", "--physics", "mars"], "physics = 'mars': must be one of"),
+        (["ghost_ball", "random", "--miss", "always"], "miss = 'always': must be one of"),
+        (["ghost_ball", "random", "--rules", "pool"], "rules = 'pool': must be one of"),
+        (["ghost_ball", "random", "--max-strokes", "0"], "max_strokes = 0: must be an integer"),
+        (["ghost_ball", "random", "--threads", "0"], "threads = 0: must be an integer"),
+        (["ghost_ball", "random", "--options", "aim=target"], "options = 'aim=target': must be left out"),
+        (["ghost_ball", "random", "--resume"], "resume = True: must be given together with --out"),
+        (["ghost_ball", "random", "--out", "pyproject.toml"], "out = 'pyproject.toml': must be a new file"),
+        (["ghost_ball", "random", "--out", "pyproject.toml", "--resume"], "pyproject.toml: must be JSON"),
+        (["ghost_ball", "random", "--out", "tests", "--force"], "out = 'tests': must be a file"),
+        (["--show", "nothing.json"], "show = 'nothing.json': must be a file that can be read"),
+        (["--show", "agents/results/main.json"], "show = 'agents/results/main.json': must be the file of a tournament"),
+    ],
+)
+def test_bad_input_ends_with_one_clear_line(options, says, capsys, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    with pytest.raises(SystemExit) as stop:
+        tournament.main(options)
+    assert stop.value.code == 2
+    assert re.search(says, capsys.readouterr().err.strip().splitlines()[-1])
+
+
+def test_another_tournament_is_not_gone_on_with(tmp_path, capsys, parts, monkeypatch):
+    with monkeypatch.context() as patch:
+        interrupted_at(patch, 2)
+        played(tmp_path, code=130)
+    for change, what in ((["--noise", "club"], "game"), (["--seed", "5"], "protocol"), (["--max-strokes", "9"], "game")):
+        with pytest.raises(SystemExit):
+            played(tmp_path, "--resume", *change)
+        assert f"must be a file with the same {what} to go on with" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        played(tmp_path, "--resume", players=("ghost_ball", "random"))
+    assert "same players" in capsys.readouterr().err
+
+
+def sound():
+    """The content of a file of two players, without playing."""
+    rows = [[0, 1, s, o, 0, (s + o) % 2, 60, 30, 50, 30, 10, 10, 30, 20, 0, 2, 20, 12] for s in range(3) for o in (0, 1)]
+    found = json.loads((ROOT / "agents" / "results" / "ladder.json").read_text())
+    players = [found["players"][k] | {"label": label} for k, label in enumerate("ab")]
+    protocol = found["protocol"] | {"matches": 6, "fewer": {}, "anchor": "a", "resamples": 100}
+    return found | {"players": players, "protocol": protocol, "rows": rows, "figures": figures_of(["a", "b"], rows, "a", 100)}
+
+
+def changed(path, value):
+    def change(found):
+        *way, last = path
+        for part in way:
+            found = found[part]
+        found[last] = value
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (changed(["schema", "name"], "other"), "schema.name = 'other'"),
+        (changed(["protocol", "best_of"], "7"), "protocol.best_of = '7': must be a whole number"),
+        (changed(["protocol", "anchor"], "c"), "players: must be two or more"),
+        (changed(["protocol", "prior"], 0.5), "protocol.prior = 0.5"),
+        (changed(["protocol", "fewer"], {"c": 2}), "protocol.fewer: 'c' is no player"),
+        (changed(["protocol", "fewer"], {"b": 3}), "protocol: b = 3: must be an even number"),
+        (changed(["protocol", "matches"], 8), "rows: must be 8 matches, not 6"),
+        (changed(["machine", "cores"], 0), "machine.cores = 0"),
+        (changed(["commit"], "dirty"), "commit = 'dirty'"),
+        (changed(["date"], "today"), "date = 'today'"),
+        (changed(["more"], 1), "more: is no field"),
+        (changed(["players", 0, "seconds"], "1"), "players\\[0\\].seconds"),
+        (changed(["players", 0, "label"], "b"), "players: must be two or more with different labels"),
+        (changed(["columns"], ["first"]), "columns"),
+        (changed(["rows", 2], [1]), "rows\\[2\\]: must be 18 whole numbers"),
+        (changed(["rows", 2, 5], 3), "winner = 3"),
+        (changed(["rows", 2, 3], 1), "rows: a match of players"),
+        (changed(["rows", 2, 4], 1), "frame 1 must not follow"),
+        (changed(["rows", 2, 5], 1), "figures"),  # the winner exchanged
+        (changed(["rows", 2, 8], 70), "scored = 70: must be possible with 10 visits, the best of 20|points = 60"),
+        (changed(["rows", 2, 16], 4), "scored = 50: must be possible with 10 visits, the best of 4"),
+        (changed(["rows", 2, 6], 57), "points = 57: must be 50 and 4 or more for each of 2 fouls"),
+        (changed(["rows", 2, 14], 12), "fouls must be at most the visits"),
+        (changed(["rows", 2, 12], -1), "must be 0 or more"),
+        (changed(["figures", "players", "a", "elo", "value"], 1001.0), "figures.players.a.elo.value"),
+        (changed(["figures", "pairs", 0, "drawn"], 1), "figures.pairs\\[0\\].drawn"),
+    ],
+)
+def test_each_fault_of_a_file_is_named(change, says, tmp_path, capsys):
+    found = sound()
+    assert faults(found) == []
+    wrong = copy.deepcopy(found)
+    change(wrong)
+    assert any(re.search(says, line) for line in faults(wrong)), faults(wrong)
+    (tmp_path / "t.json").write_text(json.dumps(wrong))
+    assert tournament.main(["--check", str(tmp_path / "t.json"), str(tmp_path / "none.json")]) == 1
+    assert "cannot be read" in capsys.readouterr().out
+
+
+def test_the_ladder_of_the_repository_is_sound(capsys):
+    """And its page is what its figures say."""
+    folder = ROOT / "agents" / "results"
+    assert tournament.main(["--check", str(folder / "ladder.json")]) == 0
+    assert "complete" in capsys.readouterr().out
+    found = json.loads((folder / "ladder.json").read_text())
+    from agents.evaluation.tournament_report import markdown
+
+    assert (folder / "ladder.md").read_text() == markdown(found) + "\n"
+    labels = {p["label"] for p in found["players"]}
+    assert labels >= {"random", "ghost_ball", "geometric", "ppo_target", "ppo_mask", "ppo_foresight", "lookahead"}
+
+
+def test_the_page_explains_every_field():
+    text = (ROOT / "docs" / "agents" / "tournament.md").read_text()
+    words = {str: "text", int: "integer", bool: "boolean", list: "list", dict: "object", NUMBER: "number"}
+    for name, (kind, empty, meaning) in FIELDS.items():
+        assert f"| `{name}` | {words[kind]}{' or null' if empty else ''} | {meaning} |" in text
+    for name, (kind, meaning) in PLAYER.items():
+        assert f"| `{name}` | {words[kind]} | {meaning} |" in text
+    assert not [name for name in COLUMNS if f"`{name}`" not in text]

@@ -1,0 +1,128 @@
+"""Is each frame of a tournament played and counted as it should be? Stroke by stroke beside it, and from both sides of the table."""
+
+import numpy as np
+import pytest
+
+from agents.evaluation import tournament_play
+from agents.evaluation.tournament_figures import COLUMNS
+from agents.evaluation.tournament_play import TimedPlayer, play_pair
+from agents.players.built_in import Geometric, GhostBall, Random
+from snooker_env import SnookerVectorEnv
+from snooker_env.tasks.stroke import FOULS, PLAYER, SCORED
+
+GAME = {"noise": "professional", "max_strokes": 1000}
+
+
+class Softly:
+    """A player of one's own: every stroke along the potting line, at one speed."""
+
+    options = {"aim": "target"}  # noqa: RUF012
+
+    def act(self, tables, observations, going):
+        actions = np.zeros((len(going), 4), np.float32)
+        actions[:, 0] = -0.4
+        return actions
+
+
+def frames(rows):
+    """Each row by column."""
+    return [dict(zip(COLUMNS, row, strict=True)) for row in rows]
+
+
+def play(first, second, seeds, *, tables=128, monkeypatch=None, **more):
+    """The rows of two players who are made anew."""
+    if monkeypatch is not None:
+        monkeypatch.setattr(tournament_play, "TABLES", tables)
+    best_of, threads = more.pop("best_of", 1), more.pop("threads", 1)
+    return play_pair((0, 1), (TimedPlayer(first), TimedPlayer(second)), GAME | more, list(seeds), best_of, threads)
+
+
+@pytest.fixture
+def strokes(monkeypatch):
+    """All strokes on one table: (player, points, fouls) each, as the referee judged them."""
+    seen = []
+
+    class SeenTables(SnookerVectorEnv):
+        def __init__(self, *arguments, **more):
+            super().__init__(*arguments, **more)
+            self._crew.watch = lambda k, b, j, own: seen.append(b.seen[j, [PLAYER, SCORED, FOULS]].tolist())
+
+    monkeypatch.setattr(tournament_play, "SnookerVectorEnv", SeenTables)
+    monkeypatch.setattr(tournament_play, "TABLES", 1)
+    return seen
+
+
+@pytest.mark.parametrize("miss", ["off", "clear_path"])
+def test_what_is_counted_is_what_the_referee_saw(strokes, miss):
+    rows = frames(play(GhostBall(), Softly(), [3, 4, 5], miss=miss))
+    assert len(rows) == 6 and [r["opener"] for r in rows] == [0, 1] * 3
+    for r in rows:
+        mine, strokes[:] = strokes[: r["strokes_first"] + r["strokes_second"]], strokes[r["strokes_first"] + r["strokes_second"] :]
+        assert mine[0][0] == r["opener"]  # who breaks
+        for side, name in enumerate(("first", "second")):
+            visits, before = [], None
+            for player, points, _ in mine:
+                if player == side and (before is None or before[0] != side or before[1] == 0):
+                    visits.append(0)
+                if player == side:
+                    visits[-1] += points
+                before = player, points
+            assert r[f"scored_{name}"] == sum(visits) and r[f"visits_{name}"] == len(visits) and r[f"best_{name}"] == max(visits)
+            assert r[f"strokes_{name}"] == sum(player == side for player, _, _ in mine)
+            assert r[f"fouls_{name}"] == sum(player == side and fouls != 0 for player, _, fouls in mine)
+        if miss == "off":
+            assert r["winner"] == int(r["points_second"] > r["points_first"])
+    assert not strokes and sum(r["fouls_first"] for r in rows) > 0 < sum(r["best_second"] for r in rows)
+
+
+def test_rows_depend_neither_on_threads_nor_on_how_many_tables_there_are(monkeypatch):
+    seeds = range(20, 28)
+    want = play(GhostBall(), Softly(), seeds)
+    assert play(GhostBall(), Softly(), seeds, tables=5, monkeypatch=monkeypatch) == want
+    assert play(GhostBall(), Softly(), seeds, threads=2, tables=16, monkeypatch=monkeypatch) == want
+    assert play(GhostBall(), Softly(), list(seeds)[3:5]) == want[6:10]
+
+
+@pytest.mark.parametrize("second", [GhostBall, Softly, Geometric])
+def test_it_does_not_matter_who_is_the_agent_and_who_the_opponent(second):
+    """The same frames with the sides exchanged."""
+    one, other = frames(play(GhostBall(), second(), range(4))), frames(play(second(), GhostBall(), range(4)))
+    turned = sorted(other, key=lambda r: (r["seed"], 1 - r["opener"]))
+    for a, b in zip(one, turned, strict=True):
+        assert (a["seed"], a["opener"], a["winner"]) == (b["seed"], 1 - b["opener"], 1 - b["winner"])
+        for name in COLUMNS[6:]:
+            side = {"first": "second", "second": "first"}[name.rpartition("_")[2]]
+            assert a[name] == b[f"{name.rpartition('_')[0]}_{side}"], name
+    assert len({(r["points_first"], r["points_second"]) for r in one}) > 4
+
+
+def test_a_frame_that_is_stopped_has_no_winner():
+    rows = frames(play(GhostBall(), Softly(), [0, 1], max_strokes=7))
+    assert [r["winner"] for r in rows] == [-1] * 4 and {r["strokes_first"] + r["strokes_second"] for r in rows} == {7}
+    assert {r["frame"] for r in rows} == {0}
+
+
+def test_a_frame_that_the_opponent_wins_in_his_first_visit_counts():
+    rows = frames(play(Softly(), GhostBall(), range(40), layout="pots:easy"))
+    at_once = [r for r in rows if r["strokes_first"] == 0]
+    assert at_once and all(r["winner"] == 1 and r["opener"] == 1 and r["visits_second"] == 1 for r in at_once)
+    assert len(rows) == 80
+
+
+def test_the_frames_of_a_match_are_broken_in_turn(strokes):
+    rows = frames(play(GhostBall(), Softly(), [0, 1, 2], best_of=3))
+    matches = {}
+    for r in rows:
+        first, strokes[:] = strokes[0], strokes[r["strokes_first"] + r["strokes_second"] :]
+        assert first[0] == (r["opener"] + r["frame"]) % 2
+        matches.setdefault((r["seed"], r["opener"]), []).append(r["winner"])
+    assert len(matches) == 6 and {len(won) for won in matches.values()} <= {2, 3}
+    for won in matches.values():
+        assert max(won.count(0), won.count(1)) == 2 and won.count(won[-1]) == 2  # it ends when it is decided
+    alone = frames(play(GhostBall(), Softly(), [0, 1, 2]))
+    assert [r for r in rows if r["frame"] == 0] == alone
+
+
+def test_a_random_player_meets_a_planner_of_discrete_choices():
+    rows = frames(play(Random(seed=1), GhostBall(), [0, 1], max_strokes=60))
+    assert len(rows) == 4 and all(r["strokes_second"] > 0 for r in rows)
