@@ -13,7 +13,7 @@ import numpy as np
 
 from .._jit import kernel
 from .._types import Bools, Floats, Ints, MissRule
-from .balls import COLOURS_MASK, N_BALLS, REDS_MASK, VALUES, BallOn, balls_on_kernel, count, next_on_kernel
+from .balls import BLACK, COLOURS_MASK, N_BALLS, REDS_MASK, VALUES, BallOn, balls_on_kernel, count, next_on_kernel
 from .frame import PHASES, Frame, Saved
 from .ruling import FOUL, OUTCOME
 
@@ -162,6 +162,24 @@ def choose(row, what):
 def draw(row, first):
     """Player ``first`` begins at the re-spotted black: ``Frame.draw``."""
     row[PHASE], row[STRIKER], row[POINTS] = STROKE, first, 0
+
+
+@kernel
+def may_claim(row):
+    """Whether the striker may claim the frame: ``Frame.may_claim``."""
+    return row[PHASE] == STROKE and row[ON_TABLE] == 1 << BLACK and lead_of(row, row[STRIKER]) > VALUES[BLACK]
+
+
+@kernel
+def claim(row):
+    """The striker claims the frame, as he may: ``Frame.claim``."""
+    _end(row, row[STRIKER])
+
+
+@kernel
+def concede(row):
+    """The striker concedes the frame: ``Frame.concede``."""
+    _end(row, 1 - row[STRIKER])
 
 
 def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int) -> Frame:
