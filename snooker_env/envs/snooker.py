@@ -60,7 +60,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | decision after a foul | the offender plays again | the balls are replaced, he plays again | ``decision=True`` |
     | declaration | concedes | claims the frame | ``concede``, ``claim``, ``lot`` |
 
-    A tip offset outside the disc of radius 0.5 R (the miscue limit) is moved back to its edge. The aim is the direction in which the cue
+    A tip offset outside the disc of radius 0.5 R (the miscue limit) is moved to its edge. The aim is the direction in which the cue
     ball leaves without noise: squirt is compensated. The best potting line is that of the widest direct pot or, without one, the line to
     the nearest ball on. The place counts only when the cue ball is in hand; without it, the cue ball stands at its usual place for the
     break-off, or near it. The decision counts only in a frame when the opponent has just fouled. Between -1/3 and 1/3 the agent plays, with
@@ -115,9 +115,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | "visit" | "legal" | 1 for a stroke without a foul, else 0 |
     | "frame", "match" | "points" (default) | the agent's points minus the opponent's since the last reward, penalties included |
     | "frame", "match" | "win" | +1 or -1 when the frame or match ends, else 0 |
-    | "match" | "frames" | frames won minus frames lost since the last reward |
-
-    The rewards of a frame add up to the final difference: the first one includes the opponent's opening visit.
+    | "match" | "frames" | frames won minus frames lost since the last reward: the first one includes the opponent's opening visit |
 
     ## Starting state
     | layout | table |
@@ -261,8 +259,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         seed : int, optional
             Seed of all random numbers from now on; default None: the stream goes on.
         options : dict, optional
-            {"state": a state from ``get_state``} or {"position": a ``snooker_env.Position`` or its ``to_dict()``} starts from there, see
-            States. {"breaker": 0 or 1}: the agent or the opponent breaks.
+            "state" or "position": starts from there, see States. "breaker": 0 or 1, the agent or the opponent breaks.
 
         Returns
         -------

@@ -266,7 +266,7 @@ class Frames(Tables):
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
         """The info of the first table as ``player`` sees it; ``last``: the output of the last stroke, or None if there is none."""
-        out = self.output()
+        out = self.output()  # the entries that depend on the player
         frame_kernels.inform(player, self.game, out.reals, out.counts)
         if last is not None:
             for column in (I_POINTS, I_SECONDS):

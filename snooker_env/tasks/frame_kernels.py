@@ -49,6 +49,7 @@ from ..game.frame_columns import (
 )  # fmt: skip
 from ..game.paths import clear_path, full_ball_path
 from ..game.philox import pair
+from ..game.rule_sets import SNOOKER
 from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import Status
@@ -66,7 +67,7 @@ from .declarations import (
 )
 from .observations import FRAME_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, earned, frame_reward_of
-from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, SPEED, TOUCHING, place, see, write_ruling
+from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, TOUCHING, place, see, write_ruling
 from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
@@ -154,7 +155,7 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
             continue
         k = which[j]
         p, on, row = positions[k], on_table[k], game[k]
-        see(j, event_time, event_what, n_events, potted, p, on, shots[j, SPEED], seen)
+        see(j, event_time, event_what, n_events, potted, p, on, shots, seen)
         for i in range(N_BALLS):
             p[i, 0], p[i, 1] = r[j, i, 0], r[j, i, 1]
         ball_on = row[BALL_ON]
@@ -164,7 +165,7 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
         )  # fmt: skip
         nominated[k] = AUTO
         write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result, seen)
-        after_stroke(row, result, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], miss)
+        after_stroke(row, result, SNOOKER, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], True, miss, 0, 0)
         row[STROKES] += 1
         if row[PHASE] == LOT:
             u, _ = pair(streams[k])

@@ -196,7 +196,7 @@ class Options:
         limit, opponent = NEVER, None
         frames = self._frames()
         if frame:
-            choice("miss", self.miss, MISS_RULES)
+            choice("miss", self.miss, MISS_RULES[:2])
             choice("game", self.game, GAMES)
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             opponent = opponent_of(self.opponent, self.observation, actions, self.trust, replaced=self.miss != "off")
