@@ -61,20 +61,6 @@ class AtFrames:
     ----------
     player : object
         With ``options`` and ``act``.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import snooker_env as sn
-    >>> from snooker_env.benchmark import AtFrames
-    >>> class Soft:
-    ...     options = {}
-    ...     def act(self, tables, observations, going):
-    ...         return np.full((len(going), 4), -1.0)
-    >>> frames = sn.SnookerVectorEnv(2, task="frame", threads=1)
-    >>> observations, _ = frames.reset(seed=0)
-    >>> AtFrames(Soft()).act(frames, observations, np.ones(2, bool)).shape
-    (2, 4)
     """
 
     def __init__(self, player: Any):
@@ -83,22 +69,7 @@ class AtFrames:
         self._visits: Any = None
 
     def act(self, frames: Any, observations: Any, going: Bools) -> Any:
-        """The player's actions, which mean the same in a frame.
-
-        Parameters
-        ----------
-        frames : SnookerVectorEnv
-            The n tables, with ``task="frame"``.
-        observations : numpy.ndarray
-            Theirs; the player gets those of a visit instead.
-        going : numpy.ndarray
-            bool (n,): tables on which the player is to play.
-
-        Returns
-        -------
-        numpy.ndarray
-            An action for each table.
-        """
+        """The player's actions, which mean the same in a frame."""
         if self._frames is not frames:
             same = {name: getattr(frames.options, name) for name in ("noise", "physics", "table", "fidelity")}
             self._visits = SnookerVectorEnv(frames.num_envs, threads=frames.threads, **{**self.options, **same})
