@@ -1,8 +1,10 @@
 """How do two players meet? Many frames side by side, on the tables of one vector environment; each seed twice, opened once by each.
 
-The first player is the environment's agent, the second its opponent. A table whose match has ended takes the next one; when more than half
-of the tables have nothing left to play, the others go on in a smaller environment. The frames of a match follow each other on one table,
-broken in turn; the best of N ends when one player has won more than N / 2, or after N frames. What a table draws depends on its seed only.
+In one of the two matches on a seed the first player is the environment's agent, in the other the second is: the two sides are not quite
+alike, since a cue ball in hand waits for a player without placement at its usual place, or where "ghost_ball" would put it. On even seeds
+the agent opens, on odd ones the opponent. A table whose match has ended takes the next one; when more than half of the tables have nothing
+left to play, the others go on in a smaller environment. The frames of a match follow each other on one table, broken in turn; the best of N
+ends when one player has won more than N / 2, or after N frames. What a table draws depends on its seed only.
 
 A visit is all strokes of a player in succession: also over the lot at a re-spotted black.
 """
@@ -41,7 +43,7 @@ class TimedPlayer:
 
     def __init__(self, player):
         self._player, self.options = player, player.options
-        self.frames = getattr(player, "frames", False)
+        self.frames = getattr(player, "frames", False) is True
         self.decisions, self.seconds = 0, 0.0
 
     def act(self, tables, observations, going):
@@ -55,14 +57,16 @@ class TimedPlayer:
 
 @dataclass
 class Encounter:
-    """Some matches of two players, and how far each table is.
+    """Some matches of two players, and how far each table is. Side 0 is the agent, side 1 the opponent.
 
     Attributes
     ----------
     pair : tuple of int
         Indices of the players, for the rows.
+    exchanged : bool
+        Whether the second of the pair is the agent.
     queue : list of (int, int)
-        Seed and opener of the matches that no table has begun.
+        Seed and opening side of the matches that no table has begun.
     best_of : int
         Frames of a match.
     rows : list of list of int
@@ -70,6 +74,7 @@ class Encounter:
     """
 
     pair: tuple
+    exchanged: bool
     queue: list
     best_of: int
     rows: list = field(default_factory=list)
@@ -146,9 +151,10 @@ class Encounter:
     def ended(self, which, info):
         """The frames on the tables ``which`` (n,) bool have ended: write the rows, and give each table its next frame."""
         for k in np.flatnonzero(which).tolist():
-            winner = int(info["winner"][k])
-            sums = [int(self.sums[name][k, side]) for name in COUNTED for side in (0, 1)]
-            self.rows.append([*self.pair, *self.unit[k].tolist(), int(self.frame[k]), winner, *sums])
+            winner, (seed, opener) = int(info["winner"][k]), self.unit[k].tolist()
+            sides = (1, 0) if self.exchanged else (0, 1)  # of the pair's first player and of its second
+            sums = [int(self.sums[name][k, side]) for name in COUNTED for side in sides]
+            self.rows.append([*self.pair, seed, sides[opener], int(self.frame[k]), -1 if winner < 0 else sides[winner], *sums])
             self.won[k] += 0.5 if winner < 0 else [winner == 0, winner == 1]
             self.frame[k] += 1
             if self.frame[k] == self.best_of or self.won[k].max() > 0.5 * self.best_of:
@@ -187,11 +193,24 @@ def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
     list of list of int
         One row for each frame, columns ``tournament_figures.COLUMNS``, in the order of seeds, openers and frames.
     """
-    agent, opponent = players
+    rows = []
+    for exchanged in (False, True):
+        meeting = Encounter(pair, exchanged, [(seed, seed % 2) for seed in seeds], best_of)
+        _play(meeting, *(players[::-1] if exchanged else players), game, threads, _after(tick, len(seeds) * exchanged))
+        rows += meeting.rows
+    return sorted(rows)
+
+
+def _after(tick, before):
+    """``tick`` with so many matches before."""
+    return None if tick is None else lambda n: tick(before + n)
+
+
+def _play(meeting, agent, opponent, game, threads, tick):
+    """Play all matches of an encounter."""
     options = Options(task="frame", **agent.options, **game, opponent=opponent)
-    agent = agent if getattr(agent, "frames", False) else AtFrames(agent)
-    meeting = Encounter(pair, [(seed, opener) for seed in seeds for opener in (0, 1)], best_of)
-    matches, ended = 2 * len(seeds), 0
+    agent = agent if agent.frames else AtFrames(agent)
+    matches, ended = len(meeting.queue) + meeting.n, 0
     tables = _tables(meeting.n, options, threads)
     observations, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
     meeting.begun(meeting.going, info)
@@ -216,7 +235,6 @@ def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
             tables = _tables(meeting.n, options, threads)
             observations, info = tables.reset(options={"states": states})
     tables.close()
-    return sorted(meeting.rows)
 
 
 def _tables(n, options, threads):
