@@ -29,7 +29,7 @@ class Specification:
         self.positions, self.on_table = tables.positions[k].copy(), tables.on_table[k].copy()
         self.table = tables.rules.table
         self.jaws = self.table.jaws[:, :3]
-        self.miss = tables.rules.miss
+        self.miss = tables.rules.misses
 
     def decide(self, action):
         """What the action's last number says after a foul; is there a stroke?"""
