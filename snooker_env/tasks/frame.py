@@ -26,6 +26,7 @@ from ..game.frame_columns import (
     COLUMNS,
     FREE_BALL,
     IN_HAND,
+    OPPONENT,
     PHASE,
     POINTS,
     SCORE_0,
@@ -41,6 +42,7 @@ from ..game.ruling import AUTO
 from . import frame_kernels
 from .frame_kernels import AGENT
 from .observations import FRAME_SIZE
+from .opponents import asked
 from .options import NEVER, Rules
 from .rewards import FRAME_REWARDS
 from .states import FrameState, checked_frame
@@ -190,12 +192,12 @@ class Frames(Tables):
         opponent = self.rules.opponent
         assert opponent is not None  # without an opponent there are no replies
         while len(which := which[(self.game[which, STRIKER] != AGENT) & ~self.ended()[which]]):
-            actions: Any = opponent.ask(self, which, crew.generators)
+            for player, tables, actions in asked(opponent, self, which, crew.generators):
 
-            def play(part, buffers, actions=actions):
-                self.complete(opponent.prepare(self, part, actions, buffers), out, buffers, crew, own=False)
+                def play(part, buffers, player=player, actions=actions):
+                    self.complete(player.prepare(self, part, actions, buffers), out, buffers, crew, own=False)
 
-            crew(which, play)
+                crew(tables, play)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
         """New frames on the tables ``wanted`` (n,) bool; the results of the reset for all tables into ``out``."""
@@ -240,7 +242,7 @@ class Frames(Tables):
         """Table k as JSON types: the fields of a ``states.FrameState`` except "rng"."""
         return {
             "positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist(), "frame": self.frame(k).to_dict(),
-            "strokes": int(self.game[k, STROKES]), "stream": self.streams[k].tolist(),
+            "strokes": int(self.game[k, STROKES]), "opponent": int(self.game[k, OPPONENT]), "stream": self.streams[k].tolist(),
         }  # fmt: skip
 
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False) -> FrameState:
@@ -264,6 +266,7 @@ class Frames(Tables):
         """Restore a valid ``states.FrameState`` on table k."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
+        self.game[k, OPPONENT] = state.opponent
         self.streams[k] = np.array(state.stream, np.uint64)
         self._replies[k], self.begun[k] = 0, True
 

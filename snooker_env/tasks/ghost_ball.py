@@ -9,7 +9,7 @@ import numpy as np
 from .._jit import entry, kernel
 from .._types import Ints
 from ..game.balls import bits
-from ..game.frame_columns import CHOICE, IN_HAND, PHASE, PLAY, SAVED, choose, strikeable
+from ..game.frame_columns import CHOICE, IN_HAND, LOT, PHASE, PLAY, SAVED, STRIKER, choose, draw, strikeable
 from ..game.philox import pair
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
@@ -76,6 +76,8 @@ def _ghost_ball(which, positions, on_table, game, streams, options, noise, r, v,
         p, on, row, stream = positions[k], on_table[k], game[k], streams[k]
         if row[PHASE] == CHOICE:
             choose(row, PLAY)
+        elif row[PHASE] == LOT:
+            draw(row, row[STRIKER])
         mask = strikeable(row, bits(on) & ~1)
         if row[IN_HAND]:
             put(p, on, mask, found, stream)

@@ -41,6 +41,8 @@ class FrameState(NamedTuple):
     positions: Floats
     on_table: Bools
     strokes: int
+    opponent: int
+    """Which member of a pool of opponents plays, counted from 1; 0: none is drawn."""
     stream: list[int]
     """Key and counter of the table's stream of random numbers."""
     rng: dict[str, Any]
@@ -159,7 +161,8 @@ def checked_frame(state: Any, miss: MissRule, table: Table, R: float, generator:
         frame = replace(frame, saved=_checked_saved(frame, table, R))
     stream = check_stream(state["stream"])
     check_rng(state["rng"], generator)
-    return FrameState(frame, positions, on_table, strokes, stream, state["rng"])
+    opponent = integer("state.opponent", state["opponent"], 0, MOST)
+    return FrameState(frame, positions, on_table, strokes, opponent, stream, state["rng"])
 
 
 def _checked_saved(frame, table, R):
