@@ -1,4 +1,4 @@
-"""May any player of the project be the opponent, seen from his own side and by his own actions? Views, places, free balls, seeds, errors."""
+"""May any player of the project be the opponent, seen from his own side, by his own actions? Views, places, free balls, seeds, errors."""
 
 import copy
 import json
