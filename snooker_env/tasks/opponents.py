@@ -99,9 +99,11 @@ class SavedPolicy:
     kind: ObservationKind
     actions: Actions | Choices
     trust: bool
+    replaced: bool
+    """Whether the environment shows the layout that "replace" restores."""
 
-    def __init__(self, path: str | Path, kind: ObservationKind, actions: Actions | Choices, trust: bool):
-        self.path, self.kind, self.actions, self.trust = Path(path), kind, actions, trust
+    def __init__(self, path: str | Path, kind: ObservationKind, actions: Actions | Choices, trust: bool, replaced: bool = False):
+        self.path, self.kind, self.actions, self.trust, self.replaced = Path(path), kind, actions, trust, replaced
         self._network = self._load()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -118,24 +120,28 @@ class SavedPolicy:
             self._network = self._load()
         if self._network.observation_space == observations.space(self.kind):
             observation = visit_part(observation)
+        elif self.replaced and self._network.observation_space == observations.space(self.kind, frame=True):
+            observation = without_replaced(observation)
         if isinstance(self.actions, Choices):
-            masked = {"action_masks": masks} if self._masked and masks is not None else {}
+            masked = {"action_masks": masks[:, : self._network.action_space.n]} if self._masked and masks is not None else {}
             return self._network.predict(observation, deterministic=True, **masked)[0]
         actions = np.clip(self._network.predict(observation, deterministic=True)[0], -1.0, 1.0)
-        if actions.shape[1] < self.actions.size:
-            return np.append(actions, np.zeros((len(actions), 1), actions.dtype), axis=1)
-        return actions
+        missing = self.actions.size - actions.shape[1]
+        return np.append(actions, np.zeros((len(actions), missing), actions.dtype), axis=1) if missing else actions
 
     def _load(self):
         seen = [observations.space(self.kind), observations.space(self.kind, frame=True)]
-        discrete = isinstance(self.actions, Choices)
-        sizes = sorted({self.actions.size, self.actions.size - self.actions.decision})
-        fitting = [("Discrete", str(CHOICES))] if discrete else [("Box", [size]) for size in sizes]
+        seen += [observations.space(self.kind, frame=True, replaced=True)] if self.replaced else []
+        discrete, actions = isinstance(self.actions, Choices), self.actions
+        most = actions.choices if isinstance(actions, Choices) else actions.size
+        strokes = CHOICES if discrete else actions.size - actions.decision - actions.declares
+        sizes = [most] if actions.nominate else sorted({strokes, most})  # a nomination cannot be left out
+        fitting: list[tuple[str, Any]] = [("Discrete", str(size)) if discrete else ("Box", [size]) for size in sizes]
         saved = SavedModel.of(self.path, "opponent")
         if saved.action[0] != fitting[0][0]:
             raise saved.refused(f"must be a model whose actions are a {fitting[0][0]}")
         other_view = saved.refused(f'must be a model that sees observation="{self.kind}" of the visit or frame task and nothing else')
-        other_actions = saved.refused(f"must be a model with {CHOICES if discrete else ' or '.join(map(str, sizes))} actions")
+        other_actions = saved.refused(f"must be a model with {' or '.join(map(str, sizes))} actions")
         if saved.observation not in [outline(space) for space in seen]:
             raise other_view
         if tuple(saved.action) not in [tuple(one) for one in fitting]:
@@ -163,25 +169,33 @@ def asked(opponent: Opponent, frames: "Frames", which: Ints, generators: Sequenc
 
 def visit_part(observation: Observation) -> Observation:
     """The part of a frame's observations that the visit task has too."""
-    extra = len(observations.FRAME_ENTRIES)
     if isinstance(observation, dict):
-        return observation | {"state": observation["state"][..., :-extra]}
-    return observation[..., :-extra]
+        return {"balls": observation["balls"], "state": observation["state"][..., : len(observations.STATE_ENTRIES)]}
+    return observation[..., : observations.SIZE]
+
+
+def without_replaced(observation: Observation) -> Observation:
+    """A frame's observations without the layout that "replace" restores."""
+    if isinstance(observation, dict):
+        return {"balls": observation["balls"], "state": observation["state"]}
+    return observation[..., : observations.FRAME_SIZE]
 
 
 def opponent_of(
-    opponent: OpponentLike, kind: ObservationKind, actions: Actions | Choices, trust: bool = False, *, game: Mapping[str, Any]
-) -> Opponent | None:
+    opponent: OpponentLike, kind: ObservationKind, actions: Actions | Choices, trust: bool = False, *, shared: Mapping[str, Any],
+    replaced: bool = False,
+) -> Opponent | None:  # fmt: skip
     """The player that ``opponent`` names; None for "none".
 
-    ``kind``: of the observation; ``trust``: code in a model's file may run; ``game``: the options that both players share.
+    ``kind``: of the observation; ``trust``: code in a model's file may run; ``shared``: the options that both players share; ``replaced``:
+    the observation holds the layout that "replace" restores.
     """
     truth("trust", trust)
     if isinstance(opponent, OpponentPool):
-        return PoolOpponent(opponent, partial(opponent_of, kind=kind, actions=actions, trust=trust, game=game))
+        return PoolOpponent(opponent, partial(opponent_of, kind=kind, actions=actions, trust=trust, shared=shared, replaced=replaced))
     if not isinstance(opponent, str | Path):
         if is_player(opponent):
-            return PlayerOpponent(opponent, actions.physics, game)
+            return PlayerOpponent(opponent, actions.physics, shared)
         if not (callable(opponent) or callable(getattr(opponent, "many", None))):
             raise refuse("opponent", opponent, ALLOWED)
         return AskedOpponent(opponent)
@@ -189,7 +203,7 @@ def opponent_of(
     if name in OPPONENTS:
         return {"none": lambda: None, "random": UniformOpponent, "ghost_ball": GhostBallOpponent}[name]()
     if Path(name).suffix == ".zip" and not _of_train(name):
-        return AskedOpponent(SavedPolicy(name, kind, actions, trust))
+        return AskedOpponent(SavedPolicy(name, kind, actions, trust, replaced))
     if not name:
         raise refuse("opponent", name, ALLOWED)
     try:
@@ -198,7 +212,7 @@ def opponent_of(
         if Path(name).exists() or ":" in name:
             raise ValueError(f"opponent = {name!r}: {error}") from error
         raise refuse("opponent", opponent, ALLOWED) from error
-    return PlayerOpponent(player, actions.physics, game, name)
+    return PlayerOpponent(player, actions.physics, shared, name)
 
 
 def _of_train(name: str) -> bool:
