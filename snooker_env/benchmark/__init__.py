@@ -1,12 +1,13 @@
 """The benchmark: named tasks with frozen options, and how agents are judged on them. ``python -m snooker_env.benchmark`` runs it."""
 
+from ..envs.at_frames import AtFrames
 from .agents import Agent
 from .checking import faults, replayed
 from .counts import FIGURES, counts, figure
 from .figures import figures_of
 from .leaderboard import page
 from .models import FittingModel, ForeignModelPlayer
-from .playing import COLUMNS, AtFrames, PlayedEpisodes, play_episodes
+from .playing import COLUMNS, PlayedEpisodes, play_episodes
 from .program import AgentError, ProgramPlayer
 from .provenance import commit, machine, processor, software
 from .results import budget_of, read_result, write_result
