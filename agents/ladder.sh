@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# How was agents/results/ladder.md made? A tournament of the players of this repository: about 20 minutes on one core.
+# How was agents/results/ladder.md made? A tournament of the players of this repository: about 5 minutes on one idle core.
 #
 #     bash agents/ladder.sh [FILE.json]     agents/results/ladder.json, and the tables beside it
 #
@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 file=${1:-agents/results/ladder.json}
 export OMP_NUM_THREADS=1 # the networks are small: more threads than one make them slower
 command=(python -m agents.tournament random ghost_ball geometric ppo_target ppo_mask ppo_foresight lookahead search_200=search
-    --budget 200 --frames 200 --fewer ppo_foresight=100 search_200=100 --threads 1 --resume --out "$file" --markdown "${file%.json}.md")
+    --budget 200 --frames 60 --fewer ppo_foresight=20 search_200=20 --threads 1 --resume --out "$file" --markdown "${file%.json}.md")
 if [[ -n ${LIST:-} ]]; then
     printf '%q ' "${command[@]}"
     echo

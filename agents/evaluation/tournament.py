@@ -60,7 +60,7 @@ def parser():
     p.add_argument("--noise", default="professional", help="level of execution noise [professional]")
     p.add_argument("--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
     p.add_argument("--miss", default="off", help="rule for a foul and a miss [off]")
-    p.add_argument("--rules", default="snooker", help="set of rules [snooker]")
+    p.add_argument("--rules", default="snooker", help="the option game of frames: which rules [snooker]")
     p.add_argument("--max-strokes", type=int, default=1000, help="strokes after which a frame is stopped, half a win for each [1000]")
     p.add_argument("--seed", type=int, default=0, help="seed of the first match of each pair [0]")
     p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
@@ -92,9 +92,8 @@ def game_of(args):
     -------
     dict
     """
-    choice("rules", args.rules, ("snooker", "six_red", "shoot_out"))
     game = {"noise": args.noise, "physics": args.physics, "miss": args.miss, "max_strokes": args.max_strokes}
-    return game | ({} if args.rules == "snooker" else {"rules": args.rules})
+    return game | ({} if args.rules == "snooker" else {"game": args.rules})
 
 
 def played_with(game):

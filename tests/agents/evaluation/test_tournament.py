@@ -56,8 +56,7 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
         label, decisions = player["label"], player["decisions"]
         k = [p["label"] for p in found["players"]].index(label)
         own = sum(row[COLUMNS.index("strokes_first" if row[0] == k else "strokes_second")] for row in found["rows"] if k in row[:2])
-        # An opponent also decides on tables that wait for the others to end, where nothing is counted.
-        assert decisions >= own > 0 and (decisions == own or k > 0) and player["seconds"] > 0
+        assert 1.5 * own > decisions >= own > 0 and player["seconds"] > 0  # an opponent also decides where nothing is counted any more
     text, printed = (tmp_path / "t.md").read_text(), capsys.readouterr()
     assert printed.err == "" and "Who wins" in printed.out and found["command"] in text
     for label in ("ghost_ball", "random", "Softly"):
@@ -151,7 +150,7 @@ def test_frames_do_not_depend_on_the_company(tmp_path):
         (["ghost_ball", "random", "--noise", "loud"], "noise = 'loud': must be one of"),
         (["ghost_ball", "random", "--physics", "mars"], "physics = 'mars': must be one of"),
         (["ghost_ball", "random", "--miss", "always"], "miss = 'always': must be one of"),
-        (["ghost_ball", "random", "--rules", "pool"], "rules = 'pool': must be one of"),
+        (["ghost_ball", "random", "--rules", "pool"], "game = 'pool': must be one of"),
         (["ghost_ball", "random", "--max-strokes", "0"], "max_strokes = 0: must be an integer"),
         (["ghost_ball", "random", "--threads", "0"], "threads = 0: must be an integer"),
         (["ghost_ball", "random", "--options", "aim=target"], "options = 'aim=target': must be left out"),
