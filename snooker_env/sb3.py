@@ -88,7 +88,8 @@ class SnookerVecEnv(VecEnv):
         """Begin new episodes on all tables, with the seeds and options set before.
 
         ``set_options([{"state": ...}, ...])`` starts from states, ``set_options([{"position": ...}, ...])`` from positions, one for each
-        table; ``set_options([{"breaker": 0}, ...])`` says who breaks. States hold their random streams; after a call of ``seed`` too, those of the seeds replace them.
+        table; ``set_options([{"breaker": 0}, ...])`` says who breaks. States hold their random
+        streams; after a call of ``seed`` too, those of the seeds replace them.
 
         Returns
         -------

@@ -50,7 +50,8 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
     * ``nominate=True`` adds the nomination before the decision; ``concede``, ``claim`` and ``lot`` add a declaration at the end: see
       ``SnookerEnv``. Without them the colour after a red, and the free ball, is the one first struck, and nobody concedes or claims.
 
-    ``action="discrete"``: ``Discrete(540)`` or longer as in ``Snooker-v0``, without place and decision. The available choices of the player whose
+    ``action="discrete"``: ``Discrete(540)`` or longer as in ``Snooker-v0``, without place and decision.
+    The available choices of the player whose
     turn it is are ``action_mask(agent)`` and, as in PettingZoo's own games, ``infos[agent]["action_mask"]``.
 
     ## Observation space
