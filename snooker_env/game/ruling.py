@@ -252,8 +252,9 @@ def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, o
             fouls |= foul
             penalty = max(penalty, base)
 
-    # 6. No snooker behind the free ball, unless only pink and black are left.
-    if free and flags & FLAG.BEHIND_FREE_BALL and reds_and_colours & ~(down & on) != (1 << PINK | 1 << BLACK):
+    # 6. No snooker behind the free ball after a stroke that does not score, unless only pink and black are left.
+    behind = free and flags & FLAG.BEHIND_FREE_BALL and (fouls or not down)
+    if behind and reds_and_colours != (1 << PINK | 1 << BLACK):
         fouls |= FOUL.BEHIND_FREE_BALL
         penalty = max(penalty, base)
 

@@ -41,7 +41,7 @@ from ..geometry import BALL_RADIUS
 from ..physics.engine import Status
 from .observations import SIZE, observe_into
 from .rewards import frame_reward_of
-from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, SPEED, TOUCHING, place, see, write_ruling
+from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, TOUCHING, place, see, write_ruling
 from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
@@ -109,7 +109,7 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
             continue
         k = which[j]
         p, on, row = positions[k], on_table[k], game[k]
-        see(j, event_time, event_what, n_events, potted, p, on, shots[j, SPEED], seen)
+        see(j, event_time, event_what, n_events, potted, p, on, shots, seen)
         for i in range(N_BALLS):
             p[i, 0], p[i, 1] = r[j, i, 0], r[j, i, 1]
         ball_on = row[BALL_ON]
