@@ -17,6 +17,8 @@ D2 = 2 * R
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
 BAULK, D_RADIUS = -1.0475, 0.292
 SPOTS = {16: (0.292, BAULK), 17: (-0.292, BAULK), 18: (0.0, BAULK), 19: (0.0, 0.0), 20: (0.0, 0.89225), 21: (0.0, 1.4605)}
+CLEARANCE = 2e-6
+"""A ball that is placed beside another is placed this far off it, so that it does not touch [m]."""
 NEAR = 1e-9
 """Two lengths that differ by less are equal to rounding [m]."""
 
@@ -35,7 +37,7 @@ def decided(question: Callable[[float], bool], slack: float = NEAR) -> bool | No
     return generous if generous == strict else None
 
 
-def _enter(origin, direction, centre, radius):
+def enter(origin, direction, centre, radius):
     """Distance along a ray at which it enters a circle; inf if it never does, 0 from the inside if it goes further in."""
     to = np.asarray(centre) - origin
     along = float(to @ direction)
@@ -58,15 +60,19 @@ def edges(cue, ball):
 
 
 def blockers(cue, ball, others, slack=0.0):
-    """Indices of the balls in ``others`` (k, 2) that stop the stroke at either extreme edge of ``ball`` (Section 2 Rule 17)."""
-    found = set()
+    """Indices of the balls in ``others`` (k, 2) that stop the stroke at either extreme edge of ``ball`` (Section 2 Rule 17).
+
+    None of them if the curved face of a cushion stops one of the two strokes and is nearer than any of the balls (17(e)).
+    """
+    found, nearest, curved = set(), math.inf, math.inf
     for direction, length in edges(cue, ball):
-        curved = min((_enter(cue, direction, jaw[:2], jaw[2] + R) for jaw in JAWS), default=math.inf)
+        curved = min([curved, *(at for jaw in JAWS if (at := enter(cue, direction, jaw[:2], jaw[2] + R)) < length)])
         for k, other in enumerate(others):
-            at = _enter(cue, direction, other, D2 + slack)
-            if at < length and at < curved:
+            at = enter(cue, direction, other, D2 + slack)
+            if at < length:
                 found.add(k)
-    return found
+                nearest = min(nearest, at)
+    return set() if curved < nearest else found
 
 
 def snookered_on(cue, ball, others, slack=0.0):
@@ -159,17 +165,22 @@ def snookered_in_hand(balls_on, others, everything):
         if best > NEAR:
             return False, best
         centres, step = near[np.argsort(-at)[:12]], 0.6 * step
+    for ball in balls_on:  # a curved face may be nearer than what hides the ball: then it is not snookered
+        if np.hypot(*(JAWS[:, :2] - ball).T).min() < 0.2:
+            room = np.hypot(*np.moveaxis(GRID[:, None] - everything[None], -1, 0)).min(axis=1) >= D2
+            if any(not snookered_on(place, ball, others) for place in GRID[room][::4]):
+                return False, math.inf
     return True, best
 
 
 def _stops(cue, direction, ball, others, slack):
     """How far a straight stroke goes until it hits ``ball``, if nothing stops it before; else None."""
-    hit = _enter(cue, direction, ball, D2)
+    hit = enter(cue, direction, ball, D2)
     if not math.isfinite(hit):
         return None
-    if any(_enter(cue, direction, other, D2 + slack) < hit for other in others):
+    if any(enter(cue, direction, other, D2 + slack) < hit for other in others):
         return None
-    if any(_enter(cue, direction, jaw[:2], jaw[2] + R) < hit for jaw in JAWS):
+    if any(enter(cue, direction, jaw[:2], jaw[2] + R) < hit for jaw in JAWS):
         return None
     x, y = cue + hit * direction
     outside = (abs(x) > HALF_WIDTH - R and 0.109185 < abs(y) < HALF_LENGTH - 0.0976346) or (
@@ -260,7 +271,7 @@ def spotted_place(ball, others, slack=0.0):
     others = np.asarray(others, float).reshape(-1, 2)
     for sense in (1, -1):
         beside = others[np.abs(others[:, 0] - x) < D2]
-        reach = np.sqrt(D2 * D2 - (beside[:, 0] - x) ** 2)
+        reach = np.sqrt((D2 + CLEARANCE) ** 2 - (beside[:, 0] - x) ** 2)
         limits = sorted(t for t in np.concatenate([sense * (beside[:, 1] - y) + reach]) if t > 0)
         for t in limits:
             at = (x, y + sense * t)
@@ -275,7 +286,7 @@ def nearest_in_d(wish, others):
     if free(wish, others):
         return wish
     centre = np.array([0.0, BAULK])
-    circles = [(o, D2) for o in others if np.hypot(*(o - centre)) < D_RADIUS + D2]
+    circles = [(o, D2 + 50 * CLEARANCE) for o in others if np.hypot(*(o - centre)) < D_RADIUS + D2]
     points = [centre + [s * D_RADIUS, 0.0] for s in (1, -1)]
     for o, r in circles:
         off = wish - o

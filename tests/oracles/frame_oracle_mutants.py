@@ -44,7 +44,7 @@ RULES = {
 }
 """Errors in ``frame_oracle_rules``: what is replaced, and by what."""
 GEOMETRY = {
-    "snookered only if both edges are hidden": ("if at < length and at < curved:\n                found.add(k)", "if at < length - 0.02:\n                found.add(k)"),
+    "snookered only if both edges are hidden": ("for direction, length in edges(cue, ball):\n        curved", "for direction, length in edges(cue, ball)[:1]:\n        curved"),
     "balls seem 2 mm wider": ("D2 = 2 * R", "D2 = 2 * R + 0.002"),
     "only the line of centres counts": ("far = float(np.hypot(*to))\n    if far <= D2:\n        return []", "return []"),
     "a clear path to the middle only": ("marks = {-half, half}", "marks = {-1e-6, 1e-6}\n        half = 1e-6"),

@@ -9,6 +9,7 @@ Balls have the ids of the environment: 0 the cue ball, 1 to 15 the reds, 16 to 2
 
 from __future__ import annotations
 
+import math
 from copy import deepcopy
 from dataclasses import dataclass, field
 
@@ -89,8 +90,10 @@ class Stroke:
     potted: list[int]
     rest: np.ndarray
     """Where the balls came to rest [m]."""
-    first_is_immediate: bool = False
-    """Whether nothing happened to the cue ball before its first impact."""
+    leaving: list[tuple[int, float]] = field(default_factory=list)
+    """The balls that the cue ball struck before its first cushion, and when [s]."""
+    velocity: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    """Of the cue ball as it is struck [m/s]."""
     nominated: int | None = None
     """The colour named; None where players name none and the one struck first counts."""
 
@@ -122,6 +125,13 @@ def touching(state: State, cue: np.ndarray) -> list[int]:
     return [i for i in state.balls if np.hypot(*(state.positions[i] - cue)) - geometry.D2 < TOUCH]
 
 
+def _into(ball: np.ndarray, stroke: Stroke, time: float) -> bool:
+    """Whether the cue ball was played into a touching ball: its straight line meets it, or they met at once."""
+    speed = float(np.hypot(*stroke.velocity))
+    ahead = math.isfinite(geometry.enter(stroke.cue, stroke.velocity / speed, ball, geometry.D2))
+    return ahead or (time * speed <= 10e-6 and float(stroke.velocity @ (ball - stroke.cue)) > 0)
+
+
 def judge(state: State, stroke: Stroke, rules: Rules) -> tuple[Verdict, State]:
     """The verdict on a stroke, and the frame after it."""
     verdict, after = Verdict(), deepcopy(state)
@@ -135,10 +145,10 @@ def judge(state: State, stroke: Stroke, rules: Rules) -> tuple[Verdict, State]:
     costs: list[int] = []
     touched = touching(state, stroke.cue)
     first = list(stroke.first)
-    pushed = [i for i in first if i in touched and stroke.first_is_immediate]
+    pushed = [i for i, time in stroke.leaving if i in touched and _into(state.positions[i], stroke, time)]
     if pushed:  # Section 3 Rule 8: he must play away from it without moving it
         verdict.fouls.add(PUSH)
-        costs += [base, *(value(i) for i in pushed)]
+        costs += [base, *(value(i) for i in pushed if i not in nominee)]  # a free ball has the value of the ball on
     else:
         declared = [i for i in touched if i in legal]
         if declared:
@@ -202,10 +212,12 @@ def _targets(state: State, stroke: Stroke, rules: Rules) -> tuple[list[int], lis
             named = colours[0] if colours else None
             if not colours and (touched := [i for i in touching(state, stroke.cue) if i in COLOURS]):
                 named = touched[0]
-        return ([named] if named else on), []
+        return ([named] if named else []), []
     if state.free_ball:
         if not rules.nominate:
             others = [i for i in first if i not in on and i in state.balls]
+            if not first:
+                others = [i for i in touching(state, stroke.cue) if i not in on]
             named = others[0] if others else None
         return on, [named] if named and named not in on else []
     return on, []
@@ -218,7 +230,7 @@ def _spot(colours: list[int], after: State, verdict: Verdict) -> None:
     for own in (True, False):
         for i in list(waiting):
             others = after.positions[standing]
-            is_free = geometry.decided(lambda slack, i=i, others=others: geometry.free(geometry.SPOTS[i], others, slack))
+            is_free = geometry.decided(lambda slack, i=i, others=others: geometry.free(geometry.SPOTS[i], others, slack), 2e-6)
             if is_free is None:
                 verdict.unsure.add("spot")
             if own and not is_free:
@@ -337,7 +349,7 @@ def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
     others = [i for i in state.balls if i not in on]
     where = stroke.cue, state.positions[on], state.positions[others]
     clear = geometry.decided(lambda slack: geometry.clear_path(*where, slack))
-    full = geometry.decided(lambda slack: geometry.full_ball(*where, slack))
+    full = geometry.decided(lambda slack: _full_ball(state, on, others, stroke.cue, slack))
     if clear is None or full is None:
         verdict.unsure.add("miss")
     before = abs(state.scores[0] - state.scores[1])
@@ -358,6 +370,15 @@ def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
         return
     after.miss_called, after.warned = True, False
     after.saved = deepcopy(state)
+
+
+def _full_ball(state: State, on: list[int], others: list[int], cue: np.ndarray, slack: float) -> bool:
+    """Section 3 Rule 14(d): "central, full-ball contact"; of a red, its complete diameter, which other reds do not obstruct."""
+    for i in on:
+        between = others if i in REDS else [k for k in state.balls if k != i]
+        if geometry.full_ball(cue, state.positions[[i]], state.positions[between], slack):
+            return True
+    return False
 
 
 def play_again(state: State) -> State:

@@ -1,0 +1,18 @@
+"""Which kinds of frames does the oracle check? The options of each, and who plays."""
+
+from __future__ import annotations
+
+from .frame_oracle_play import Kind
+
+KINDS = {
+    kind.name: kind
+    for kind in (
+        Kind("random", "random", {}),
+        Kind("off", "steady", {}),
+        Kind("clear_path", "steady", {"miss": "clear_path"}),
+        Kind("ghost_ball", "ghost_ball", {"miss": "clear_path", "noise": "club"}),
+        Kind("against_ghost_ball", "steady", {"miss": "clear_path", "opponent": "ghost_ball"}),
+        Kind("tables", "steady", {"miss": "clear_path"}, tables=True),
+    )
+}
+"""By name. "steady" pots now and then, so that frames are short; "tables" begins from random tables with touching balls and taken spots."""
