@@ -37,6 +37,7 @@ from ..game.frame_columns import (
 )  # fmt: skip
 from ..game.paths import clear_path, full_ball_path
 from ..game.philox import pair
+from ..game.rule_sets import SNOOKER
 from ..geometry import BALL_RADIUS
 from ..physics.engine import Status
 from .observations import SIZE, observe_into
@@ -118,7 +119,7 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
             0, nominated[k], 0, jaws, BALL_RADIUS,
         )  # fmt: skip
         write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result, seen)
-        after_stroke(row, result, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], miss)
+        after_stroke(row, result, SNOOKER, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], True, miss, 0, 0)
         row[STROKES] += 1
         if row[PHASE] == LOT:  # the winner of the lot is assumed to play first
             u, _ = pair(streams[k])
