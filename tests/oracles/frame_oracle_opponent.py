@@ -11,6 +11,7 @@ import numpy as np
 
 import snooker_env as sn
 
+from . import frame_oracle_decisions as decisions
 from . import frame_oracle_geometry as geometry
 from . import frame_oracle_rules as oracle
 from .frame_oracle_play import Case, Checker, Kind, differences, state_of, stroke_of
@@ -92,11 +93,11 @@ class OpponentChecker(Checker):
         if state.phase != "choice":
             return state
         if player == state.striker:
-            return oracle.play_on(state)
-        again = oracle.play_again(state)
+            return decisions.play_on(state)
+        again = decisions.play_again(state)
         if not state.miss_called:
             return again
-        back = oracle.replace(state)
+        back = decisions.replace(state)
         balls = [i for i in range(22) if back.on_table[i] and (i or not back.in_hand)]
         if np.allclose(back.positions[balls], start[balls], rtol=0, atol=1e-12):
             self.tally.seen["replaced"] += 1

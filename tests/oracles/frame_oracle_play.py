@@ -14,6 +14,7 @@ import numpy as np
 
 import snooker_env as sn
 
+from . import frame_oracle_decisions as decisions
 from . import frame_oracle_geometry as geometry
 from . import frame_oracle_rules as oracle
 from .frame_oracle_tables import table
@@ -130,7 +131,12 @@ class Checker:
         self.cases: list[Case] | None = [] if record else None
         self.env = sn.match_env(**{"aim": "target", "max_strokes": None, **kind.options})
         self.env.keep_history = True
-        self.rules = Rules(miss=kind.options.get("miss", "off"), nominate=kind.options.get("nominate", False))
+        given = {name: kind.options[name] for name in ("miss", "nominate", "concede", "claim", "lot") if name in kind.options}
+        self.rules = Rules(**given)
+        names = ["speed", "side", "top", "aim", "across", "back"] + ["nominate"] * self.rules.nominate + ["decision"]
+        names += ["declaration"] * (self.rules.concede or self.rules.claim or self.rules.lot)
+        self.at = {name: k for k, name in enumerate(names)}
+        """The number of an action that says what."""
 
     def frame(self, seed: int, most: int = 5000) -> None:
         """Play and check one frame."""
@@ -165,7 +171,6 @@ class Checker:
         shot = env.last_shot
         player = self._decide(state, action)
         if shot is None:
-            self.tally.seen["replaced" if state.miss_called and action[-1] > 1 / 3 else "played again as left"] += 1
             names, expected, unsure = differences(player, found), player, set()
         else:
             env.keep_history = False  # forget the strokes so far
@@ -180,20 +185,33 @@ class Checker:
 
     def _decide(self, state, action):
         """The state in which a stroke is played, after a decision; or the one that a decision alone leaves."""
+        says = decisions.declared(state, float(action[self.at["declaration"]]), self.rules) if "declaration" in self.at else None
+        if says:
+            self.tally.seen[says] += 1
+        if says in ("concede", "claim"):
+            return decisions.ended(state, 1 - state.striker if says == "concede" else state.striker)
+        if state.phase == "lot":
+            after = deepcopy(state)
+            after.phase = "stroke"
+            after.striker = 1 - state.striker if says else state.striker
+            return after
         if state.phase != "choice":
             return state
-        decision = float(action[-1])
+        decision = float(action[self.at["decision"]])
         if decision < -1 / 3:
-            return oracle.play_again(state)
+            self.tally.seen["played again as left"] += 1
+            return decisions.play_again(state)
         if decision > 1 / 3 and state.miss_called:
-            return oracle.replace(state)
-        return oracle.play_on(state)
+            self.tally.seen["replaced"] += 1
+            return decisions.replace(state)
+        return decisions.play_on(state)
 
     def _stroke(self, state, action, shot, found):
-        stroke = stroke_of(shot)
+        said = decisions.named(state, float(action[self.at["nominate"]])) if self.rules.nominate else None
+        stroke = stroke_of(shot, said)
         if state.in_hand:
-            x = float(action[-3]) * geometry.D_RADIUS
-            y = geometry.BAULK - np.sqrt(max(0.0, geometry.D_RADIUS**2 - x * x)) * (float(action[-2]) + 1) / 2
+            x = float(action[self.at["across"]]) * geometry.D_RADIUS
+            y = geometry.BAULK - np.sqrt(max(0.0, geometry.D_RADIUS**2 - x * x)) * (float(action[self.at["back"]]) + 1) / 2
             wish = geometry.nearest_in_d((x, y), state.positions[state.balls])
             if np.hypot(*(wish - stroke.cue)) > PLACE:
                 self._disagree("placed", ["placed"], state, state, (wish, stroke.cue))
@@ -241,6 +259,8 @@ class Checker:
         if self.kind.player == "ghost_ball" and rng.random() < 0.85:
             return self._soft_pot(state, rng)
         action = rng.uniform(-1.0, 1.0, self._shape())
+        if "declaration" in self.at and rng.random() < 0.995 and state.phase != "lot" and state.balls != [21]:
+            action[self.at["declaration"]] *= 0.6  # a player who resigns at random never comes to the end
         if self.kind.player == "steady" and rng.random() < 0.7:
             action[0] = rng.uniform(-0.75, -0.1)
             action[1:3] *= 0.2

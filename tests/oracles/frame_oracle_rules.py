@@ -118,6 +118,9 @@ class Rules:
 
     miss: str = "off"
     nominate: bool = False
+    concede: bool = False
+    claim: bool = False
+    lot: bool = False
 
 
 def touching(state: State, cue: np.ndarray) -> list[int]:
@@ -311,10 +314,10 @@ def _last_black(after: State, verdict: Verdict) -> None:
         after.positions[21] = geometry.SPOTS[21]
         after.break_points = 0
     else:
-        _over(after, int(after.scores[1] > after.scores[0]))
+        over(after, int(after.scores[1] > after.scores[0]))
 
 
-def _over(after: State, winner: int) -> None:
+def over(after: State, winner: int) -> None:
     after.phase, after.winner, after.ball_on, after.free_ball = "over", winner, -1, False
     after.miss_called, after.saved = False, None
 
@@ -326,7 +329,7 @@ def _foul(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
     after.striker = other
     if state.respotted_black:
         verdict.notes.add("foul on the re-spotted black")
-        _over(after, other)
+        over(after, other)
         return
     if state.ball_on == BLACK:
         _last_black(after, verdict)
@@ -366,7 +369,7 @@ def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
     after.failures = state.failures + 1 if full else 0
     if state.warned and full:
         verdict.notes.add("third miss")
-        _over(after, 1 - state.striker)
+        over(after, 1 - state.striker)
         return
     after.miss_called, after.warned = True, False
     after.saved = deepcopy(state)
@@ -379,27 +382,3 @@ def _full_ball(state: State, on: list[int], others: list[int], cue: np.ndarray, 
         if geometry.full_ball(cue, state.positions[[i]], state.positions[between], slack):
             return True
     return False
-
-
-def play_again(state: State) -> State:
-    """Section 3 Rule 13: the offender plays from the position left; a free ball is void."""
-    after = deepcopy(state)
-    after.striker, after.phase, after.free_ball, after.miss_called, after.saved = 1 - state.striker, "stroke", False, False, None
-    after.failures, after.warned = 0, False
-    return after
-
-
-def replace(state: State) -> State:
-    """Section 3 Rule 14(b): the balls go back, and the offender plays again, with the same ball on."""
-    assert state.saved is not None
-    after = deepcopy(state.saved)
-    after.scores, after.break_points, after.phase = list(state.scores), 0, "stroke"
-    after.failures, after.warned, after.saved, after.miss_called = state.failures, state.failures == 2, None, False
-    return after
-
-
-def play_on(state: State) -> State:
-    """The player who was fouled plays himself: the offender's failures are forgotten."""
-    after = deepcopy(state)
-    after.phase, after.miss_called, after.saved, after.failures, after.warned = "stroke", False, None, 0, False
-    return after
