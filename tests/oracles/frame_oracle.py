@@ -12,11 +12,12 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from collections import Counter
 
 from .frame_oracle_kinds import KINDS
 from .frame_oracle_mutants import mutants, strokes_to_see
 from .frame_oracle_opponent import OpponentChecker
-from .frame_oracle_play import LIKE, Case, Checker
+from .frame_oracle_play import Case, Checker
 
 
 def check(name: str, frames: int, seed: int) -> Checker:
@@ -34,9 +35,9 @@ def report(name: str, checker: Checker, seconds: float) -> None:
     print(f"{name}: {tally.frames} frames, {tally.strokes} strokes, {len(tally.disagreements)} disagreements, {seconds:.0f} s")
     print(f"  rounding decides: {dict(tally.undecidable) or 'nothing'}")
     print("  " + ", ".join(f"{what} {many}" for what, many in sorted(tally.seen.items())))
-    for what, names, expected, found, _ in tally.disagreements[:10]:
-        sides = {name: (getattr(expected, name), getattr(found, name)) for name in LIKE if getattr(expected, name) != getattr(found, name)}
-        print(f"  DISAGREE at the {what}: {names}; (oracle, environment): {sides}")
+    kinds = Counter((what, *names) for what, names, *_ in tally.disagreements)
+    for names, many in kinds.most_common():
+        print(f"  DISAGREE {many} times: {', '.join(names)}")
     sys.stdout.flush()
 
 

@@ -66,12 +66,13 @@ def blockers(cue, ball, others, slack=0.0):
     """
     found, nearest, curved = set(), math.inf, math.inf
     for direction, length in edges(cue, ball):
-        curved = min([curved, *(at for jaw in JAWS if (at := enter(cue, direction, jaw[:2], jaw[2] + R)) < length)])
+        for jaw in JAWS:
+            if enter(cue, direction, jaw[:2], jaw[2] + R) < length:
+                curved = min(curved, float(np.hypot(*(jaw[:2] - cue))) - jaw[2])
         for k, other in enumerate(others):
-            at = enter(cue, direction, other, D2 + slack)
-            if at < length:
+            if enter(cue, direction, other, D2 + slack) < length:
                 found.add(k)
-                nearest = min(nearest, at)
+                nearest = min(nearest, float(np.hypot(*(np.asarray(other) - cue))) - R - slack)
     return set() if curved < nearest else found
 
 

@@ -44,7 +44,7 @@ RULES = {
 }
 """Errors in ``frame_oracle_rules``: what is replaced, and by what."""
 GEOMETRY = {
-    "snookered only if both edges are hidden": ("for direction, length in edges(cue, ball):\n        curved", "for direction, length in edges(cue, ball)[:1]:\n        curved"),
+    "snookered only if both edges are hidden": ("for direction, length in edges(cue, ball):\n        for jaw", "for direction, length in edges(cue, ball)[:1]:\n        for jaw"),
     "balls seem 2 mm wider": ("D2 = 2 * R", "D2 = 2 * R + 0.002"),
     "only the line of centres counts": ("far = float(np.hypot(*to))\n    if far <= D2:\n        return []", "return []"),
     "a clear path to the middle only": ("marks = {-half, half}", "marks = {-1e-6, 1e-6}\n        half = 1e-6"),

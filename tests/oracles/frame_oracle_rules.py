@@ -153,7 +153,7 @@ def judge(state: State, stroke: Stroke, rules: Rules) -> tuple[Verdict, State]:
         verdict.fouls.add(PUSH)
         costs += [base, *(value(i) for i in pushed if i not in nominee)]  # a free ball has the value of the ball on
     else:
-        declared = [i for i in touched if i in legal]
+        declared = [i for i in touched if i in (nominee if nominee and rules.nominate else legal)]
         if declared:
             verdict.notes.add("touching ball on, played away")
             first = []
@@ -347,7 +347,7 @@ def _foul(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
 def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules) -> None:
     """Section 3 Rule 14(c) and (d)."""
     on = state.on()
-    if state.free_ball:
+    if state.free_ball and stroke.nominated != 0:  # any ball could be on, unless he declined the free ball
         on = state.balls
     others = [i for i in state.balls if i not in on]
     where = stroke.cue, state.positions[on], state.positions[others]
