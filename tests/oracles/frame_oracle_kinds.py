@@ -11,6 +11,7 @@ KINDS = {
         Kind("off", "steady", {}),
         Kind("clear_path", "steady", {"miss": "clear_path"}),
         Kind("nominate", "steady", {"miss": "clear_path", "nominate": True}),
+        Kind("attempt", "steady", {"miss": "attempt"}),
         Kind("declare", "steady", {"nominate": True, "concede": True, "claim": True, "lot": True}),
         Kind("match", "steady", {"task": "match", "frames": 5, "nominate": True, "concede": True}),
         Kind("ghost_ball", "ghost_ball", {"miss": "clear_path", "noise": "club"}),

@@ -75,7 +75,17 @@ def stroke_of(shot, nominated=None) -> Stroke:
     leaving = [(int(e["j"]), float(e["time"])) for e in impacts if e["time"] < rails.min(initial=np.inf)]
     potted = [int(i) for i in np.flatnonzero(np.asarray(shot.potted) >= 0)]
     at, velocities, _ = shot.at(0.0)
-    return Stroke(at[0], first, potted, np.array(shot.positions), leaving, velocities[0], nominated)
+    return Stroke(at[0], first, potted, np.array(shot.positions), leaving, velocities[0], nominated=nominated)
+
+
+def path_of(shot) -> np.ndarray:
+    """The cue ball's way up to its first impact with a ball, or to rest; close enough to know its distances to some nm."""
+    own = shot.events[(shot.events["i"] == 0) & (shot.events["kind"] == sn.EventKind.BALL_BALL)]
+    end = float(own["time"][0]) if len(own) else shot.duration
+    knots = shot.events["time"][(shot.events["i"] == 0) & (shot.events["time"] < end)]
+    times = np.unique(np.concatenate([np.linspace(0.0, end, 4001), knots]))
+    times = times[times <= end - 1e-12]
+    return shot.at(times)[0][:, 0]
 
 
 def differences(expected: State, found: State, unsure=(), skip=()) -> list[str]:
@@ -230,6 +240,8 @@ class Checker:
     def _stroke(self, state, action, shot, found):
         said = decisions.named(state, float(action[self.at["nominate"]])) if self.rules.nominate else None
         stroke = stroke_of(shot, said)
+        if self.rules.miss == "attempt":
+            stroke.path = path_of(shot)
         if state.in_hand:
             x = float(action[self.at["across"]]) * geometry.D_RADIUS
             y = geometry.BAULK - np.sqrt(max(0.0, geometry.D_RADIUS**2 - x * x)) * (float(action[self.at["back"]]) + 1) / 2

@@ -24,6 +24,10 @@ TOUCH = 50e-6
 """A referee sees no gap below this [m]."""
 
 
+ATTEMPT = geometry.D2
+"""``miss="attempt"``: the cue ball that comes as near as this to a ball on shows the best effort [m], by the environment's documentation."""
+
+
 def value(ball: int) -> int:
     """Points of a ball."""
     return 1 if ball in REDS else ball - 14 if ball in COLOURS else 0
@@ -94,6 +98,8 @@ class Stroke:
     """The balls that the cue ball struck before its first cushion, and when [s]."""
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(2))
     """Of the cue ball as it is struck [m/s]."""
+    path: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
+    """Of the cue ball's centre up to its first impact with a ball, or to rest, at close points [m]; only for ``miss="attempt"``."""
     nominated: int | None = None
     """The colour named; None where players name none and the one struck first counts."""
 
@@ -359,8 +365,15 @@ def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
     later = abs(after.scores[0] - after.scores[1])
     needed = before >= state.available() or later >= after.available()
     again = state.failures > 0 and full
-    called = bool(clear) and (again or not needed)
-    if clear and needed:
+    poor = bool(clear)
+    if rules.miss == "attempt" and not clear:
+        gap = min(float(np.hypot(*(stroke.path - state.positions[i]).T).min()) for i in on) - geometry.D2
+        if abs(gap - ATTEMPT) < 1e-6:
+            verdict.unsure.add("miss")
+        poor = gap > ATTEMPT
+        verdict.notes.add("a poor attempt at an escape" if poor else "a good attempt at an escape")
+    called = poor and (again or not needed)
+    if poor and needed:
         verdict.notes.add("no miss: penalty points needed" if not again else "miss although penalty points are needed")
     if not called:
         after.failures, after.warned = 0, False
