@@ -143,6 +143,7 @@ def after_stroke(row, result, rules, miss, clear, full, attempt, layout, time_to
         limit, late = shot_clock(row, rules), is_late(row, rules, time_to_play)
         row[CLOCK] += (min(time_to_play, limit) if row[CLOCK] else 0) + (0 if late else duration)
     if result.outcome == OUTCOME.STRIKER_WINS or result.outcome == OUTCOME.OPPONENT_WINS:
+        row[POINTS] = 0 if result.fouls else row[POINTS] + result.points
         _end(row, me if result.outcome == OUTCOME.STRIKER_WINS else other)
         return
     row[STRIKER] = other if result.stays == 0 else me

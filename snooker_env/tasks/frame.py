@@ -148,7 +148,8 @@ class Frames(Tables):
         if not len(which):
             return
         if self.rules.misses:
-            frame_kernels.remember(which, self.positions, self.on_table, self.game, self.saved, self.nominated, buffers.seen)
+            table, layout = self.rules.table, (self.positions, self.on_table, self.game, self.saved, self.nominated)
+            frame_kernels.remember(which, *layout, table.noses, table.jaws, buffers.seen)
         unfinished = self.run(which, buffers)
         self._conclude(which, buffers, out, own, alone)
         for j in unfinished:
