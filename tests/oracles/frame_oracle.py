@@ -44,7 +44,7 @@ def report(name: str, checker: Checker, seconds: float) -> None:
 def recorded(frames: int, tables: int, seed: int = 0) -> list[Case]:
     """Strokes of whole frames and of random tables, to look for errors in."""
     cases = []
-    for name, many in (("clear_path", frames), ("tables", tables)):
+    for name, many in (("clear_path", frames), ("tables", tables), ("tables_nominate", tables)):
         checker = Checker(KINDS[name], record=True)
         for k in range(many):
             checker.frame(seed + k)
@@ -61,7 +61,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--mutants", action="store_true", help="are errors in the rules seen?")
     given = parser.parse_args(arguments)
     if given.mutants:
-        cases = recorded(given.frames, 4 * given.frames, given.seed)
+        cases = recorded(given.frames, 15 * given.frames, given.seed)
         seen = {name: strokes_to_see(name, cases) for name in mutants()}
         for name, many in seen.items():
             print(f"{name}: " + ("NOT SEEN" if many is None else f"seen after {many} strokes"))

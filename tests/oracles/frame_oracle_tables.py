@@ -16,8 +16,9 @@ def table(state: dict, rng: np.random.Generator) -> dict:
     on_table[[0, *rng.choice(np.arange(1, 16), reds, replace=False), *range(first, 22)]] = True
     positions = np.array(state["positions"], float)
     placed: list[np.ndarray] = []
+    crowd = POCKETS[rng.integers(6)] * 0.96 if rng.random() < 0.4 else None
     for i in rng.permutation(np.flatnonzero(on_table)):
-        positions[i] = _place(int(i), positions, on_table, placed, rng)
+        positions[i] = _place(int(i), placed, crowd, rng)
         placed.append(positions[i])
     in_hand = bool(rng.random() < 0.15)
     if in_hand:
@@ -47,9 +48,13 @@ def _balls(rng):
     return 0, int(rng.choice([16, 17, 18, 19, 20, 20, 21, 21]))
 
 
-def _place(i, positions, on_table, placed, rng):
+def _place(i, placed, crowd, rng):
+    tries = 0
     while True:
+        tries += 1
         kind = rng.random()
+        if crowd is not None and (i == 0 or i > 15) and tries < 20:
+            kind = 0.9
         if kind < 0.25:
             at = POCKETS[rng.integers(6)] * rng.uniform(0.93, 0.985)
         elif kind < 0.5:
@@ -58,6 +63,8 @@ def _place(i, positions, on_table, placed, rng):
             turn = rng.uniform(0, 2 * np.pi)
             gap = rng.choice([2e-6, 20e-6, 45e-6, 80e-6, 1e-3, 0.03])
             at = placed[rng.integers(len(placed))] + (geometry.D2 + gap) * np.array([np.cos(turn), np.sin(turn)])
+        elif crowd is not None and tries < 20:  # many before one pocket: several go down in one stroke
+            at = crowd * (0.75 if i == 0 else 1.0) + rng.normal(0, 0.05, 2)
         else:
             at = rng.uniform([-0.86, -1.75], [0.86, 1.75])
         inside = abs(at[0]) < 0.8627 and abs(at[1]) < 1.758
