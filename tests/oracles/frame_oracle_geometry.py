@@ -7,6 +7,7 @@ asks with a slack of both signs; where the answers differ, rounding decides, and
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 
@@ -237,7 +238,7 @@ def clear_path(cue, balls_on, others, slack=0.0):
                         point[axis], point[1 - axis] = side, point[1 - axis] + s * other
                         mark(*(point - cue))
         order = sorted(m for m in marks if -half <= m <= half)
-        for low, high in zip(order[:-1], order[1:], strict=True):
+        for low, high in itertools.pairwise(order):
             if (high - low) * far < 1e-12:
                 continue
             angle = middle + 0.5 * (low + high)
@@ -288,7 +289,7 @@ def nearest_in_d(wish, others):
         return wish
     centre = np.array([0.0, BAULK])
     circles = [(o, D2 + 50 * CLEARANCE) for o in others if np.hypot(*(o - centre)) < D_RADIUS + D2]
-    points = [centre + [s * D_RADIUS, 0.0] for s in (1, -1)]
+    points = [centre + np.array([s * D_RADIUS, 0.0]) for s in (1, -1)]
     for o, r in circles:
         off = wish - o
         far = np.hypot(*off)
@@ -304,7 +305,5 @@ def nearest_in_d(wish, others):
                 h = math.sqrt(max(0.0, ra * ra - along * along))
                 u = (b - a) / d
                 points += [a + along * u + s * h * np.array([-u[1], u[0]]) for s in (1, -1)]
-    allowed = [
-        p for p in points if p[1] <= BAULK + NEAR and np.hypot(*(p - centre)) <= D_RADIUS + NEAR and free(p, others, -NEAR)
-    ]
+    allowed = [p for p in points if p[1] <= BAULK + NEAR and np.hypot(*(p - centre)) <= D_RADIUS + NEAR and free(p, others, -NEAR)]
     return min(allowed, key=lambda p: float(np.hypot(*(p - wish))))

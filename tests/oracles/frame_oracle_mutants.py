@@ -7,6 +7,7 @@ would be seen, on the same strokes.
 from __future__ import annotations
 
 import re
+import sys
 import types
 from collections.abc import Callable
 
@@ -25,7 +26,10 @@ RULES = {
     "the same player goes on after a miss": ("after.striker, after.ball_on = other, after.next_on()", "after.ball_on = after.next_on()"),
     "a red again after a red": ("after.ball_on = ANY\n", "after.ball_on = RED\n"),
     "the ball on moves on when only the free ball went down": ("or real:", "or True:"),
-    "a foul keeps the break": ("after.break_points, after.miss_called, after.saved = 0", "after.break_points, after.miss_called, after.saved = 1"),
+    "a foul keeps the break": (
+        "after.break_points, after.miss_called, after.saved = 0",
+        "after.break_points, after.miss_called, after.saved = 1",
+    ),
     "level scores at the end": ("if after.scores[0] == after.scores[1]", "if False"),
     "the winner of a foul on the black": ("int(after.scores[1] > after.scores[0])", "int(after.scores[0] > after.scores[1])"),
     "a foul on the last black does not end the frame": ("if state.ball_on == BLACK:\n        _last", "if False:\n        _last"),
@@ -37,14 +41,20 @@ RULES = {
     "a snooker behind the free ball is fair": ("    if answer:\n        verdict.fouls.add(BEHIND)", "    if False:\n        pass"),
     "behind the free ball after a scoring stroke too": ("and not costs and not worth", "and not costs"),
     "a miss whatever the score": ("poor and (again or not needed)", "poor"),
-    "no miss when level with what is left": ("before >= state.available() or later >= after", "before > state.available() or later > after"),
+    "no miss when level with what is left": (
+        "before >= state.available() or later >= after",
+        "before > state.available() or later > after",
+    ),
     "a miss for a wrong pot": ("{NO_CONTACT, WRONG_FIRST})", "{NO_CONTACT, WRONG_FIRST, WRONG_POT})"),
     "a part of a ball is enough for the third miss": ("if full else 0\n", "\n"),
     "points available without the colour after a red": ("seven = 7 if self.ball_on == ANY else 0", "seven = 0"),
 }
 """Errors in ``frame_oracle_rules``: what is replaced, and by what."""
 GEOMETRY = {
-    "snookered only if both edges are hidden": ("for direction, length in edges(cue, ball):\n        for jaw", "for direction, length in edges(cue, ball)[:1]:\n        for jaw"),
+    "snookered only if both edges are hidden": (
+        "for direction, length in edges(cue, ball):\n        for jaw",
+        "for direction, length in edges(cue, ball)[:1]:\n        for jaw",
+    ),
     "balls seem 2 mm wider": ("D2 = 2 * R", "D2 = 2 * R + 0.002"),
     "only the line of centres counts": ("far = float(np.hypot(*to))\n    if far <= D2:\n        return []", "return []"),
     "a clear path to the middle only": ("marks = {-half, half}", "marks = {-1e-6, 1e-6}\n        half = 1e-6"),
@@ -65,8 +75,6 @@ def _module(source: types.ModuleType, change, **names):
     module = types.ModuleType(source.__name__)
     module.__file__ = source.__file__
     module.__dict__.update(names, __package__=source.__package__)
-    import sys
-
     known, sys.modules[source.__name__] = sys.modules.get(source.__name__), module  # dataclasses look their module up
     try:
         exec(compile(text, source.__file__, "exec"), module.__dict__)
@@ -77,7 +85,9 @@ def _module(source: types.ModuleType, change, **names):
 
 def mutants() -> dict[str, Callable[[], types.ModuleType]]:
     """For each error, what makes the rules with it."""
-    made = {name: lambda change=change: _module(frame_oracle_rules, change, geometry=frame_oracle_geometry) for name, change in RULES.items()}
+    made = {
+        name: lambda change=change: _module(frame_oracle_rules, change, geometry=frame_oracle_geometry) for name, change in RULES.items()
+    }
     for name, change in GEOMETRY.items():
         made[name] = lambda change=change: _module(frame_oracle_rules, None, geometry=_module(frame_oracle_geometry, change))
     return made

@@ -109,7 +109,12 @@ class OpponentChecker(Checker):
         phase = "over" if played.over else "choice" if played.choice else "stroke"
         found = deepcopy(state)
         found.positions, found.on_table = played.positions.copy(), played.on_table.copy()
-        found.scores, found.striker, found.ball_on, found.in_hand = list(played.scores), played.next_player, int(played.next_on), played.in_hand
+        found.scores, found.striker, found.ball_on, found.in_hand = (
+            list(played.scores),
+            played.next_player,
+            int(played.next_on),
+            played.in_hand,
+        )
         found.free_ball, found.phase, found.winner, found.break_points = played.next_free_ball, phase, played.winner, played.break_points
         return found
 

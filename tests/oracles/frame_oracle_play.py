@@ -17,13 +17,18 @@ import snooker_env as sn
 from . import frame_oracle_decisions as decisions
 from . import frame_oracle_geometry as geometry
 from . import frame_oracle_rules as oracle
-from .frame_oracle_tables import table
 from .frame_oracle_rules import Rules, State, Stroke
+from .frame_oracle_tables import table
 
 FOULS = {1: oracle.NO_CONTACT, 2: oracle.WRONG_FIRST, 4: oracle.WRONG_POT, 8: oracle.CUE_POTTED, 128: oracle.PUSH, 4096: oracle.BEHIND}
 PLACE = 3e-6
 """How far apart two places of a ball may be that the two sides computed [m]."""
-FOLLOWS = {"free_ball": ["free_ball"], "miss": ["miss_called", "failures", "warned", "phase", "winner"], "spot": ["positions"], "behind": []}
+FOLLOWS = {
+    "free_ball": ["free_ball"],
+    "miss": ["miss_called", "failures", "warned", "phase", "winner"],
+    "spot": ["positions"],
+    "behind": [],
+}
 """What follows from a decision that hangs on rounding."""
 LIKE = ("scores", "striker", "ball_on", "in_hand", "free_ball", "respotted_black", "phase", "winner", "break_points", "miss_called",
         "failures", "warned")  # fmt: skip

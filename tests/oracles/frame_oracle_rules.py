@@ -25,7 +25,7 @@ TOUCH = 50e-6
 
 
 ATTEMPT = geometry.D2
-"""``miss="attempt"``: the cue ball that comes as near as this to a ball on shows the best effort [m], by the environment's documentation."""
+"""``miss="attempt"``: the cue ball that comes as near as this to a ball on shows the best effort [m], by the documentation."""
 
 
 def value(ball: int) -> int:
@@ -189,10 +189,9 @@ def judge(state: State, stroke: Stroke, rules: Rules) -> tuple[Verdict, State]:
         after.in_hand = False
     good = [i for i in stroke.potted if i in legal]
     real = [i for i in good if i not in nominee]
+    worth = von if good else 0  # Rule 12(e): ball on and free ball together count once
     if state.ball_on == RED:
         worth = len(good)
-    else:
-        worth = von if good else 0  # Rule 12(e): ball on and free ball together count once
     stays = set(i for i in stroke.potted if i in REDS)
     if not costs and state.ball_on >= YELLOW:
         stays |= set(real)
@@ -353,7 +352,7 @@ def _foul(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
 def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules) -> None:
     """Section 3 Rule 14(c) and (d)."""
     on = state.on()
-    if state.free_ball and stroke.nominated != 0:  # any ball could be on, unless he declined the free ball
+    if state.free_ball:  # any ball could be on
         on = state.balls
     others = [i for i in state.balls if i not in on]
     where = stroke.cue, state.positions[on], state.positions[others]

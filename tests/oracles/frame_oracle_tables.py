@@ -22,7 +22,8 @@ def table(state: dict, rng: np.random.Generator) -> dict:
         placed.append(positions[i])
     in_hand = bool(rng.random() < 0.15)
     if in_hand:
-        positions[0] = geometry.nearest_in_d(rng.uniform([-0.14, -0.25], [0.14, 0.0]) + [0, geometry.BAULK], positions[np.flatnonzero(on_table)[1:]])
+        wish = rng.uniform([-0.14, geometry.BAULK - 0.25], [0.14, geometry.BAULK])
+        positions[0] = geometry.nearest_in_d(wish, positions[np.flatnonzero(on_table)[1:]])
     ball_on = 1 if reds else first - 14
     if first == 16 and rng.random() < 0.3:
         ball_on = 0

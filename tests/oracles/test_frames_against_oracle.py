@@ -6,20 +6,20 @@ from .frame_oracle import check, recorded
 from .frame_oracle_kinds import KINDS
 from .frame_oracle_mutants import mutants, strokes_to_see
 
-FEW, MANY = 20, 300
+MANY = 300
 
 
 def agrees(name, frames, seed):
     tally = check(name, frames, seed).tally
     assert not tally.disagreements, [(what, names, before) for what, names, *_, before in tally.disagreements[:3]]
-    assert tally.frames == frames and tally.strokes >= 5 * frames
+    assert tally.frames >= frames and tally.strokes >= 5 * frames
     assert sum(tally.undecidable.values()) <= tally.strokes / 1000
     return tally
 
 
 @pytest.mark.parametrize("name", KINDS)
 def test_every_stroke_is_judged_as_the_rules_say(name):
-    agrees(name, FEW, 1000)
+    agrees(name, 60 if KINDS[name].tables else 4, 1000)
 
 
 @pytest.mark.slow
@@ -31,7 +31,7 @@ def test_every_stroke_of_many_frames_is_judged_as_the_rules_say(name):
 
 @pytest.fixture(scope="module")
 def strokes():
-    return recorded(frames=40, tables=1500)
+    return recorded(frames=60, tables=1500)
 
 
 @pytest.mark.slow
