@@ -3,7 +3,8 @@
     python -m tests.oracles.frame_oracle [--frames 2000] [--kind NAME ...] [--seed 0] [--mutants]
 
 Prints, for each kind, the strokes, the disagreements (there must be none), the decisions that rounding decides, and how often each
-rule was met, so that one sees what was left untested. ``--mutants`` puts errors into the rules one at a time and prints after how many strokes each is
+rule was met, so that one sees what was left untested. ``--mutants`` puts errors into the rules one at a time and prints after how many
+strokes each is
 seen. The oracle is ``frame_oracle_rules`` and ``frame_oracle_geometry``: written from the rules, not from ``snooker_env.game``.
 """
 
