@@ -215,15 +215,18 @@ def _play(meeting, agent, opponent, game, threads, tick):
     observations, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
     meeting.begun(meeting.going, info)
     moved = np.zeros(meeting.n, bool)  # since the reset: only then is a state sure to hold a stroke to play
+    over = info["winner"] >= 0  # won by the opponent in his first visit: the next step plays nothing
     while (going := meeting.going).any():
-        observations, _, terminated, truncated, info = tables.step(agent.act(tables, observations, going))
+        to_play = going & ~over
+        actions = agent.act(tables, observations, to_play) if to_play.any() else np.zeros_like(tables.action_space.sample())
+        observations, _, terminated, truncated, info = tables.step(actions)
         meeting.stepped(going, info)
         done = terminated | truncated
-        moved = ~done
+        moved, over = ~done, np.zeros(meeting.n, bool)
         if done.any():
             before = meeting.unit.copy()
             meeting.ended(going & done, info)
-            observations, moved = _renewed(tables, meeting, done, before, moved)
+            observations, over = _renewed(tables, meeting, done, before)
         now = matches - len(meeting.queue) - int(meeting.going.sum())
         if tick is not None and now != ended:
             tick(now)
@@ -234,6 +237,7 @@ def _play(meeting, agent, opponent, game, threads, tick):
             meeting.keep(left)
             tables = _tables(meeting.n, options, threads)
             observations, info = tables.reset(options={"states": states})
+            over = np.zeros(meeting.n, bool)
     tables.close()
 
 
@@ -241,8 +245,8 @@ def _tables(n, options, threads):
     return SnookerVectorEnv(n, options, threads=threads, autoreset_mode="Disabled")
 
 
-def _renewed(tables, meeting, done, before, moved):
-    """Begin the next frames where frames have ended; the observations of all tables, and which of them have played since their reset.
+def _renewed(tables, meeting, done, before):
+    """Begin the next frames where frames have ended; the observations of all tables, and where the next frame is over at once.
 
     A new match is dealt from its seed; in the next frame of a match the table's random numbers go on. Tables without a match: dealt, too.
     """
@@ -250,4 +254,4 @@ def _renewed(tables, meeting, done, before, moved):
     seeds = [int(seed) if new else None for seed, new in zip(meeting.unit[:, 0], anew, strict=True)]
     seen, info = tables.reset(seed=seeds, options={"reset_mask": done, "breaker": meeting.breakers})
     meeting.begun(done & meeting.going, info)
-    return seen, moved & ~done
+    return seen, done & (info["winner"] >= 0)
