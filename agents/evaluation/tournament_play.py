@@ -218,7 +218,9 @@ def _play(meeting, agent, opponent, game, threads, tick):
     over = info["winner"] >= 0  # won by the opponent in his first visit: the next step plays nothing
     while (going := meeting.going).any():
         to_play = going & ~over
-        actions = agent.act(tables, observations, to_play) if to_play.any() else np.zeros_like(tables.action_space.sample())
+        actions = (
+            agent.act(tables, observations, to_play) if to_play.any() else np.zeros(tables.action_space.shape, tables.action_space.dtype)
+        )
         observations, _, terminated, truncated, info = tables.step(actions)
         meeting.stepped(going, info)
         done = terminated | truncated
