@@ -223,7 +223,7 @@ def changed(path, value):
         (changed(["rows", 2, 5], 3), "winner = 3"),
         (changed(["rows", 2, 3], 1), "rows: a match of players"),
         (changed(["rows", 2, 4], 1), "frame 1 must not follow"),
-        (changed(["rows", 2, 5], 1), "figures"),  # the winner exchanged
+        (changed(["rows", 2, 5], 0), "figures"),  # the winner exchanged
         (changed(["rows", 2, 8], 70), "scored = 70: must be possible with 10 visits, the best of 20|points = 60"),
         (changed(["rows", 2, 16], 4), "scored = 50: must be possible with 10 visits, the best of 4"),
         (changed(["rows", 2, 6], 57), "points = 57: must be 50 and 4 or more for each of 2 fouls"),
