@@ -4,8 +4,8 @@
     python -m examples.self_play --out runs/self_play        # trains, then judges 1,000 frames against each built-in opponent
     python -m examples.self_play --out runs/self_play        # the same command continues an interrupted run, bit for bit
 
-A choice is one of 540: a pot, a speed, a side and a top; without a direct pot it is a full hit on the nearest ball on. The networks are those
-of ``train.py`` (``agents.learning.networks``). The reward is the growth of the lead. The built-in opponents take no part in the training.
+A choice is one of 540: a pot, a speed, a side and a top; without a direct pot it is a full hit on the nearest ball on. The networks are
+those of ``train.py`` (``agents.learning.networks``). The reward is the growth of the lead. The built-in opponents are not trained against.
 """
 
 import argparse
@@ -19,6 +19,7 @@ import shlex
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
@@ -33,17 +34,18 @@ from agents.learning.networks import TablePolicy, TableReader
 from commands.files import write_atomic
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.sb3 import SnookerVecEnv
-from snooker_env.tasks import CHOICES, OBSERVATION_SIZE, observation_space
+from snooker_env.tasks import CHOICES, OBSERVATION_SIZE, SIDES, SPEEDS, TOPS, choice_of, observation_space
 
-GAME = {"task": "frame", "action": "discrete", "noise": "professional", "reward": "points"}
-LEARNING = {"n_steps": 64, "n_epochs": 2, "gamma": 0.95, "gae_lambda": 0.5, "vf_coef": 0.01, "ent_coef": 0.003}  # as ppo_mask of train.py
+GAME: dict[str, Any] = {"task": "frame", "action": "discrete", "noise": "professional", "reward": "points"}
+LEARNING: dict[str, Any] = {"n_steps": 64, "n_epochs": 2, "gamma": 0.95, "gae_lambda": 0.5, "vf_coef": 0.01, "ent_coef": 0.003}
+"""As ``agents/hyperparams/ppo_mask.yml``, which gives the reasons."""
 SELVES = 20
 """Size of the pool at the end: one more past self for every twentieth of the shots."""
 MODEL = Path(__file__).with_suffix(".pt")
 
 
 def view(observations):
-    """What the network reads: the table and its four widest pots; without a pot, the way to the nearest ball on in the first pot's place."""
+    """What the network reads: the table and its four widest pots; without a pot, the way to the nearest ball on as the first."""
     shown = with_pots(observations[:, :OBSERVATION_SIZE])
     balls = shown[:, :110].reshape(-1, 22, 5)  # x, y, on the table, value, on
     way = (balls[:, 1:, :2] - balls[:, :1, :2]) * (HALF_WIDTH, HALF_LENGTH)
@@ -71,7 +73,7 @@ class FramePolicy(TablePolicy):
 
 
 class SelfPlayed:
-    """The trained agent as a player of frames: ``python -m snooker_env.benchmark run SnookerFrame-v0 --agent examples.self_play:SelfPlayed``."""
+    """The trained agent as a player of frames, for example with ``--agent examples.self_play:SelfPlayed``."""
 
     options = {"action": "discrete"}  # noqa: RUF012 - a player's options are read, never changed
     frames = True
@@ -101,7 +103,7 @@ class Pool:
 
     def __init__(self):
         self.weights = []
-        self.player = None
+        self.player: Any = None
 
     def draw(self, seed):
         """Let the past self that this seed draws play from now on."""
@@ -133,6 +135,14 @@ def wilson(won, n, z=1.96):
     """The 95 % interval of a share [Wilson 1927]."""
     middle, half = (won + z * z / 2) / (n + z * z), z * math.sqrt(won * (n - won) / n + z * z / 4) / (n + z * z)
     return middle - half, middle + half
+
+
+class Softly:
+    """For comparison: the widest pot at 2.3 m/s, whatever the table looks like. The environment solves the aim for it, too."""
+
+    def predict(self, observations, action_masks, deterministic):
+        """The same choice on each table."""
+        return np.full(len(observations), choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))), None
 
 
 class Run(BaseCallback):
@@ -209,10 +219,14 @@ def main(argv=None):
     torch.set_num_threads(1)
     torch.distributions.Distribution.set_default_validate_args(False)  # these checks cost a twentieth of the time
     model, curve, seconds = train(args)
-    judged = {name: judge(model.policy, name, args.frames, args.threads) for name in ("random", "ghost_ball")}
-    for name, found in judged.items():
-        low, high = found["interval"]
-        print(f"won {found['won']:.1%} [{low:.1%}, {high:.1%}] of {args.frames} frames against {name}, mean lead {found['lead']:.1f}")
+    judged = {
+        name: {other: judge(policy, other, args.frames, args.threads) for other in ("random", "ghost_ball")}
+        for name, policy in (("agent", model.policy), ("constant choice", Softly()))
+    }
+    for name, against in judged.items():
+        for other, found in against.items():
+            share, (low, high) = found["won"], found["interval"]
+            print(f"{name}: won {share:.1%} [{low:.1%}, {high:.1%}] of {args.frames} frames against {other}, mean lead {found['lead']:.1f}")
     command = ["python", "-m", "examples.self_play", *(sys.argv[1:] if argv is None else argv)]
     results = {
         "command": shlex.join(command), "shots": model.num_timesteps, "seconds": round(seconds), "judged": judged, "curve": curve,

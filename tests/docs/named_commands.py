@@ -43,6 +43,7 @@ ELSEWHERE = {
     "agents.curves": "tests/agents/evaluation/test_learning_curves.py",
     "agents.publish": "tests/agents/evaluation/test_publish.py",
     "examples/fit_your_data.py": "tests/examples/test_fit.py",
+    "examples.self_play": "tests/examples/test_self_play.py",
 }
 """Module or file -> the test that runs it."""
 

@@ -26,9 +26,10 @@ def test_a_short_run_writes_what_it_found(whole):
     found = json.loads((whole / "results.json").read_text())
     assert found["shots"] == 768 and "--shots 640" in found["command"]
     assert [point["shots"] for point in found["curve"]] == [0, 256, 512]
-    for judged in found["judged"].values():
-        low, high = judged["interval"]
-        assert judged["frames"] == 6 and 0.0 <= low <= judged["won"] <= high <= 1.0
+    for against in found["judged"].values():
+        for judged in against.values():
+            low, high = judged["interval"]
+            assert judged["frames"] == 6 and 0.0 <= low <= judged["won"] <= high <= 1.0
 
 
 def test_an_interrupted_run_goes_on_exactly(whole, tmp_path, monkeypatch):
