@@ -206,11 +206,11 @@ def train(args):
 def main(argv=None):
     """Train, judge, write results.json and the weights."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--shots", type=int, default=3_000_000, help="the agent's shots [3000000: about 25 minutes on one core]")
+    parser.add_argument("--shots", type=int, default=1_500_000, help="the agent's shots [1500000: about 15 minutes on one core]")
     parser.add_argument("--frames", type=int, default=1000, help="frames to judge against each opponent [1000]")
     parser.add_argument("--checked", type=int, default=200, help="frames for each point of the learning curve [200]")
     parser.add_argument("--tables", type=int, default=256, help="tables side by side [256]")
-    parser.add_argument("--rate", type=float, default=1e-3, help="learning rate at the beginning; it falls to nearly 0 [0.001]")
+    parser.add_argument("--rate", type=float, default=2e-3, help="learning rate at the beginning; it falls to nearly 0 [0.002]")
     parser.add_argument("--threads", type=int, help="threads of the tables [all processors]")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("runs", "self_play"), help="folder of the run [runs/self_play]")
