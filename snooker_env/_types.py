@@ -44,7 +44,7 @@ TableName: TypeAlias = Literal["match", "tight", "uk8", "pool9", "carom"]
 NoiseName: TypeAlias = Literal["none", "professional", "amateur", "club", "robot", "olympiad"]
 ObservationKind: TypeAlias = Literal["flat", "balls"]
 RenderMode: TypeAlias = Literal["human", "rgb_array", "ansi"]
-MissRule: TypeAlias = Literal["off", "clear_path"]
+MissRule: TypeAlias = Literal["off", "clear_path", "attempt"]
 
 # These depend on an environment's options, so that no annotation can say more.
 Action: TypeAlias = Any

@@ -52,8 +52,11 @@ def settle(positions, on_table, ball_on, free_ball, lead, first, touching, moved
     before = bits(on_table)
     result = ruling(before, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags)
     _put_in_order(positions, on_table, result, potted | off, radius)
-    # A snooker matters after a foul (free ball), and after a free ball that was not potted (no snooker may be behind that ball).
-    if result.outcome == OUTCOME.PLAYING and (result.fouls or (free_ball and result.nominated and not result.points)):
+    # A snooker matters after a foul (free ball), and after a free ball that was not potted (no snooker may be behind that ball); in six-red
+    # snooker after any nominated ball that was not potted; in the Shoot Out never.
+    nominating = free_ball or (flags & FLAG.SIX_RED and ball_on == 0)
+    matters = (result.fouls and not flags & FLAG.SHOOT_OUT) or (nominating and result.nominated and not result.points)
+    if result.outcome == OUTCOME.PLAYING and matters:
         hidden, effective = snookered(positions, on_table, balls_on_kernel(result.ball_on, result.on_table), jaws, radius)
         if hidden:
             flags |= FLAG.SNOOKERED

@@ -76,6 +76,11 @@ PINK_GAP = 0.0005
 TOUCH = 1e-6
 """Two balls touch when the gap between them is below this [m]: far below what can be seen, far above rounding."""
 
+REFEREE_TOUCH = 50e-6
+"""The referee calls a touching ball when the gap to the cue ball is below this [m]. The eye resolves about one arc minute, 70 um at 25 cm,
+so nobody sees light through a smaller gap; and balls that a referee would call touching come to rest 1 to 40 um apart in the simulation.
+Physics and spotting keep ``TOUCH``."""
+
 
 def _spots():
     """A place for each ball: the cue ball's usual place for the break-off, the racked triangle, the six spots."""

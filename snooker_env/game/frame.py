@@ -6,35 +6,38 @@
     Frame.from_dict(json.loads(json.dumps(frame.to_dict()))) == frame
 
 A ``Frame`` never changes: each act returns the next one. Players are 0 and 1. An act that is not allowed raises ``ValueError``.
+``rules`` names the game (``rule_sets``): snooker, six-red snooker or the Shoot Out.
 
-A foul and a miss: ``miss="off"`` never calls it (an agent could be sent back to the same position for ever). ``miss="clear_path"`` calls
-it where geometry alone decides: the striker failed to strike a ball on first although a straight path to a part of one was clear. It is
-not called when either player needed penalty points before or after the stroke, or when the points left equalled the difference. After a
-miss with a clear full-ball path, a second failure from the same position is a miss whatever the scores; then the striker is warned, and
-the third loses the frame.
+A foul and a miss (S3 R14): ``miss="off"`` never calls it. ``miss="clear_path"`` calls it where geometry alone decides: the striker failed
+to strike a ball on first although a straight path to a part of one was clear. It is not called when either player needed penalty points
+before or after the stroke, or when the points left equalled the difference: the penalties of a striker who fails again and again decide
+the frame in the end. After a miss with a clear full-ball path, a second failure from the same position is a miss whatever the scores;
+then the striker is warned, and the third loses the frame. ``miss="attempt"`` calls it on a snookered striker too, whose cue ball did not
+come near a ball on (``attempt``).
 
-Left out, because a simulator cannot judge it: whether an attempt was the best possible (so no miss is called on a snookered striker) and
-whether a failure was deliberate; when there is a stalemate (``restart`` only carries one out); time wasting and conduct; balls that fall
-in unprovoked or are moved by others; fouls before the stroke on a replaced position. The lot for a re-spotted black is passed in.
+Left out, because a simulator cannot judge it: whether a failure was deliberate; when there is a stalemate (``restart`` only carries one
+out); time wasting and conduct; balls that fall in unprovoked or are moved by others; fouls before the stroke on a replaced position. The
+lot for a re-spotted black is passed in.
 """
 
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal, TypeAlias
 
-from .._check import choice, integer, refuse, refuse_what, truth
+from .._check import choice, integer, refuse, truth
 from .._types import MissRule
 from .balls import ALL_MASK, BLACK, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of, next_on
+from .frame_checks import MOST_BREAK, REPLACED, SETTLED, check_fields, check_fit, is_plain, tuples, within
 from .referee import FULL_TABLE, MOST_POINTS, Situation, Stroke, Verdict, judge
+from .rule_sets import MOST_MISSES, RuleSet, RulesName, rule_set
 from .ruling import Foul, Outcome
 
-Choice: TypeAlias = Literal["play", "play_again", "replace"]
+Choice: TypeAlias = Literal["play", "play_again", "replace", "anywhere"]
 """What may be chosen after a foul."""
 
 PHASES = ("stroke", "choice", "lot", "over")
-MISS_RULES = ("off", "clear_path")
-MOST_BREAK = 155
-"""The highest break: a free ball and the colour after it, then 147. A break and the points still on the table are never more together."""
+MISS_RULES = ("off", "clear_path", "attempt")
+MOST_CLOCK = 2**50
+"""Upper limit of a frame's clock [ms]."""
 
 
 def points_available(on_table: int, ball_on: int) -> int:
@@ -57,6 +60,8 @@ class Saved:
         The stroke is played from the D.
     free_ball : bool
         The striker had a free ball.
+    anywhere : bool
+        The stroke is played from anywhere on the table.
     layout : tuple or None
         The caller's own record of the positions, anything that JSON can hold. It is stored and returned, never read.
     """
@@ -65,11 +70,12 @@ class Saved:
     ball_on: BallOn
     in_hand: bool
     free_ball: bool
+    anywhere: bool = False
     layout: tuple[Any, ...] | None = None
 
     def __post_init__(self) -> None:
         _set(self, "on_table", _object_balls(self.on_table))
-        for name in ("in_hand", "free_ball"):
+        for name in ("in_hand", "free_ball", "anywhere"):
             _set(self, name, truth(name, getattr(self, name)))
         _set(self, "ball_on", Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball).ball_on)
 
@@ -102,8 +108,10 @@ class Frame:
         "stroke": ``play`` is next. "choice": after a foul, ``choose``. "lot": before a re-spotted black, ``draw``. "over".
     winner : int, or None
         The player who has won; None before the end.
-    miss : {"off", "clear_path"}
-        The rule for a foul and a miss: one of ``MISS_RULES``.
+    rules : {"snooker", "six_red", "shoot_out"}
+        The rule set: one of ``rule_sets.RULES``.
+    miss : {"off", "clear_path", "attempt"}
+        The rule for a foul and a miss: one of ``MISS_RULES``; "off" in the Shoot Out, which has none.
     miss_called : bool
         The last stroke was a foul and a miss, so that the position may be replaced.
     failures : int
@@ -112,6 +120,12 @@ class Frame:
         The striker has been warned that one more failure loses the frame.
     saved : Saved, or None
         The position before the last stroke, if it was a foul.
+    clock : int
+        Simulated time played in a frame with a clock [ms]; otherwise 0.
+    misses : int
+        In six-red snooker: foul-and-a-miss calls in succession; otherwise 0.
+    anywhere : bool
+        The cue ball in hand may be placed anywhere on the table, not in the D only.
     """
 
     scores: tuple[int, int] = (0, 0)
@@ -125,24 +139,31 @@ class Frame:
     respotted_black: bool = False
     phase: Literal["stroke", "choice", "lot", "over"] = "stroke"
     winner: int | None = None
+    rules: RulesName = "snooker"
     miss: MissRule = "off"
     miss_called: bool = False
     failures: int = 0
     warned: bool = False
     saved: Saved | None = None
+    clock: int = 0
+    misses: int = 0
+    anywhere: bool = False
 
     def __post_init__(self) -> None:
         choice("phase", self.phase, PHASES)
         choice("miss", self.miss, MISS_RULES)
-        for name, high in (("striker", 1), ("breaker", 1), ("break_points", MOST_BREAK), ("failures", 2)):
-            if not _plain(getattr(self, name), high):
+        if rule_set(self.rules).anywhere and self.miss != "off":
+            raise refuse("miss", self.miss, f"must be 'off' with rules = {self.rules!r}: no miss is called in this game")
+        most = (("break_points", MOST_BREAK), ("failures", 2), ("misses", MOST_MISSES), ("clock", MOST_CLOCK))
+        for name, high in (("striker", 1), ("breaker", 1), *most):
+            if not is_plain(getattr(self, name), high):
                 _set(self, name, integer(name, getattr(self, name), 0, high))
-        for name in ("in_hand", "free_ball", "respotted_black", "miss_called", "warned"):
+        for name in ("in_hand", "free_ball", "respotted_black", "miss_called", "warned", "anywhere"):
             if type(getattr(self, name)) is not bool:
                 _set(self, name, truth(name, getattr(self, name)))
         if not isinstance(self.scores, tuple) or len(self.scores) != 2:
             raise refuse("scores", self.scores, "must be a tuple of two integers")
-        if not all(_plain(points, MOST_POINTS) for points in self.scores):
+        if not all(is_plain(points, MOST_POINTS) for points in self.scores):
             _set(self, "scores", tuple(integer(f"scores[{k}]", points, 0, MOST_POINTS) for k, points in enumerate(self.scores)))
         _set(self, "on_table", _object_balls(self.on_table))
         if self.saved is not None and not isinstance(self.saved, Saved):
@@ -155,55 +176,23 @@ class Frame:
         else:
             _set(self, "ball_on", self.situation.ball_on)  # the situation checks it against the table
 
-    def _faults(self):
-        """Pairs of fields that the rules forbid: (whether this is so, the field, what is allowed)."""
-        stroke, after_foul, missing = self.phase == "stroke", self.phase == "choice", self.miss != "off"
-        if self.phase == "over":
-            for name, value in _SETTLED.items():
-                yield getattr(self, name) != value, name, f'must be {value!r} in phase "over"'
-            return
-        lowest, left = next_on(self.on_table), MOST_BREAK - self.available
-        yield not stroke and self.ball_on != lowest, "ball_on", f'must be {lowest}, the lowest on_table, except in phase "stroke"'
-        yield self.ball_on not in (BallOn.ANY_COLOUR, lowest), "ball_on", f"must be 0 (any colour) or {lowest}, the lowest on_table"
-        yield self.break_points > left, "break_points", f"must be at most {left}: on_table and ball_on offer {self.available} more"
-        new = self.free_ball or not stroke
-        yield new and self.break_points != 0, "break_points", 'must be 0 except in phase "stroke" without free_ball'
-        level = self.on_table == 1 << BLACK and self.scores[0] == self.scores[1]
-        yield self.respotted_black and not level, "respotted_black", "must be False except with level scores and only the black on_table"
-        yield self.phase == "lot" and not self.respotted_black, "phase", 'must not be "lot" without respotted_black'
-        called = after_foul and missing and self.saved is not None
-        yield self.miss_called and not called, "miss_called", 'must be False except in phase "choice" with a miss rule and saved'
-        counting = missing and self.saved is not None and (stroke or self.miss_called)
-        allowed = 'must be 0 except with a miss rule, saved, and either miss_called or phase "stroke"'
-        yield self.failures > 0 and not counting, "failures", allowed
-        warned = stroke and self.failures == 2
-        yield self.warned != warned, "warned", f'must be {warned}: True in phase "stroke" with two failures, else False'
-        if self.saved is not None:
-            allowed = 'must be None except in phase "choice", or in phase "stroke" with a miss rule'
-            yield not (after_foul or (stroke and missing)), "saved", allowed
-            gone = self.saved.on_table ^ self.on_table
-            lost = gone & ~REDS_MASK or gone & self.on_table
-            yield after_foul and lost, "saved", "must have the balls on_table after the foul, and no others except reds"
-            for name in _REPLACED:
-                other = getattr(self.saved, name) != getattr(self, name)
-                yield stroke and other, "saved", f'must have the present {name}: in phase "stroke" it has just been restored'
-
-    def _check_fit(self):
-        for wrong, name, allowed in self._faults():
-            if wrong:
-                raise refuse_what(name, "a position" if name == "saved" else repr(getattr(self, name)), allowed)
-
     @classmethod
-    def start(cls, *, breaker: int = 0, miss: MissRule = "off", on_table: int = FULL_TABLE) -> "Frame":
-        """A new frame. ``on_table``: mask of the balls, for a start with fewer of them."""
-        ball_on = next_on(integer("on_table", on_table, 0, ALL_MASK))
-        return cls(striker=breaker, breaker=breaker, miss=miss, on_table=on_table & ~CUE_BIT, ball_on=BallOn(ball_on))
+    def start(cls, *, breaker: int = 0, miss: MissRule = "off", on_table: int | None = None, rules: RulesName = "snooker") -> "Frame":
+        """A new frame. ``on_table``: mask of the balls, for a start with others than the rule set's."""
+        balls = rule_set(rules).on_table if on_table is None else integer("on_table", on_table, 0, ALL_MASK)
+        ball_on = BallOn(next_on(balls))
+        return cls(striker=breaker, breaker=breaker, rules=rules, miss=miss, on_table=balls & ~CUE_BIT, ball_on=ball_on)
+
+    @property
+    def rule_set(self) -> RuleSet:
+        """The ``RuleSet`` of ``rules``."""
+        return rule_set(self.rules)
 
     @property
     def situation(self) -> Situation:
         """The ``Situation`` in which the referee judges the next stroke."""
         lead = self.scores[self.striker] - self.scores[1 - self.striker]
-        return Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball, lead=lead)
+        return Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball, lead=lead, rules=self.rules)
 
     @property
     def available(self) -> int:
@@ -220,21 +209,44 @@ class Frame:
             raise refuse("phase", self.phase, f"must be {phase!r} to {act}")
 
     def _over(self, winner: int, **changes: Any) -> "Frame":
-        return replace(self, phase="over", winner=winner, **_SETTLED | changes)
+        return replace(self, phase="over", winner=winner, **SETTLED | changes)
+
+    @property
+    def shot_clock(self) -> int:
+        """The longest time to play the next stroke [ms]; 0 for no limit."""
+        return self.rule_set.shot_clock[2 * self.clock >= self.rule_set.clock]
 
     def play(
-        self, stroke: Stroke, *, clear_path: bool = False, full_ball_path: bool = False, layout: tuple[Any, ...] | None = None
+        self,
+        stroke: Stroke,
+        *,
+        clear_path: bool = False,
+        full_ball_path: bool = False,
+        attempt: bool = True,
+        layout: tuple[Any, ...] | None = None,
+        time_to_play: int = 0,
+        duration: int = 0,
     ) -> tuple["Frame", Verdict]:
         """One stroke: the next frame and the referee's ``Verdict``.
 
         ``clear_path``, ``full_ball_path``: whether before the stroke a straight path was clear to any part, and to the full face, of a
-        ball on (``paths.paths``); used with ``miss="clear_path"`` only. ``layout``: see ``Saved``.
+        ball on (``paths.paths``); ``attempt``: whether the cue ball came near one (``attempt.is_attempt``). They matter with a miss rule
+        only. ``layout``: see ``Saved``.
+
+        ``time_to_play``, ``duration``: the time [ms] from the rest of the balls to this stroke, and to the next rest; they matter with a
+        clock only. The clock starts with the first stroke. A stroke that needs longer than ``shot_clock`` is not played: the caller leaves
+        the balls as they lie, and ``stroke`` is read as ``Stroke(late=True)``. The frame ends when another stroke with the same
+        ``time_to_play`` could not begin in time.
         """
         self._in_phase("stroke", "play")
-        verdict = judge(self.situation, stroke)
+        late = 0 < self.shot_clock < integer("time_to_play", time_to_play, 0, MOST_CLOCK)
+        verdict = judge(self.situation, Stroke(late=True) if late else stroke)
         me, other = self.striker, 1 - self.striker
         gained = {me: verdict.points, other: verdict.penalty}
-        score = {"scores": (self.scores[0] + gained[0], self.scores[1] + gained[1]), "on_table": verdict.on_table}
+        clock = self.clock
+        if self.rule_set.clock:
+            clock += (min(time_to_play, self.shot_clock) if clock else 0) + (0 if late else integer("duration", duration, 0, MOST_CLOCK))
+        score = {"scores": (self.scores[0] + gained[0], self.scores[1] + gained[1]), "on_table": verdict.on_table, "clock": clock}
         if verdict.over:
             return self._over(me if verdict.outcome == Outcome.STRIKER_WINS else other, **score), verdict
         after = replace(
@@ -248,50 +260,75 @@ class Frame:
             failures=0,
             warned=False,
             saved=None,
+            misses=0,
+            anywhere=bool(self.rule_set.anywhere and verdict.fouls and verdict.outcome == Outcome.PLAYING),
             **score,
         )
         if verdict.outcome == Outcome.RESPOTTED_BLACK:
             return replace(after, phase="lot", respotted_black=True), verdict
-        if not verdict.fouls:
+        if self.rule_set.clock and not self.respotted_black and clock + time_to_play >= self.rule_set.clock:
+            return after._time_is_up(), verdict
+        if not verdict.fouls or self.rule_set.anywhere:
             return after, verdict
         if self.warned and full_ball_path and verdict.fouls & (Foul.NO_CONTACT | Foul.WRONG_FIRST):
             return after._over(other), verdict
-        called = self._is_miss(verdict, after, clear_path, full_ball_path)
-        saved = Saved(on_table=self.on_table, ball_on=self.ball_on, in_hand=self.in_hand, free_ball=self.free_ball, layout=layout)
+        called = self._is_miss(verdict, after, clear_path, full_ball_path, attempt)
+        before = {name: getattr(self, name) for name in REPLACED}
+        saved, limited = Saved(**before, layout=layout), self.rule_set.most_misses > 0
         failures = self.failures + 1 if called and full_ball_path else 0
-        return replace(after, phase="choice", miss_called=called, failures=failures, saved=saved), verdict
+        misses = self.misses + 1 if called and limited else 0
+        return replace(after, phase="choice", miss_called=called, failures=failures, misses=misses, saved=saved), verdict
 
-    def _is_miss(self, verdict, after, clear_path, full_ball_path):
+    def _time_is_up(self):
+        """The frame's clock has run down: the higher score wins; level scores, the black is re-spotted, and nothing else is left."""
+        if self.scores[0] != self.scores[1]:
+            return self._over(int(self.scores[1] > self.scores[0]))
+        black = {"on_table": 1 << BLACK, "ball_on": BallOn.BLACK, "in_hand": True, "anywhere": False, "break_points": 0}
+        return replace(self, phase="lot", respotted_black=True, **black)
+
+    def _is_miss(self, verdict, after, clear_path, full_ball_path, attempt):
         """Whether a foul is a miss too, as far as geometry and scores decide it."""
         if self.miss == "off" or not verdict.fouls & (Foul.NO_CONTACT | Foul.WRONG_FIRST):
+            return False
+        if 0 < self.rule_set.most_misses == self.misses:
             return False
         if full_ball_path and self.failures:
             return True
         decided = any(abs(f.scores[0] - f.scores[1]) >= f.available for f in (self, after))
-        return bool(clear_path or full_ball_path) and not decided
+        return bool(clear_path or full_ball_path or (self.miss == "attempt" and not attempt)) and not decided
 
     @property
     def choices(self) -> tuple[Choice, ...]:
         """The opponent's choices after a foul; empty in other phases."""
         if self.phase != "choice":
             return ()
-        return ("play", "play_again", "replace") if self.miss_called else ("play", "play_again")
+        if not self.miss_called:
+            return ("play", "play_again")
+        if self.misses < self.rule_set.most_misses or not self.rule_set.most_misses:
+            return ("play", "play_again", "replace")
+        needed = self.needs_snookers(0) or self.needs_snookers(1)
+        return ("play", "play_again") if needed else ("play", "play_again", "anywhere")
 
     def choose(self, what: Choice) -> "Frame":
         """The opponent's decision after a foul, which is final.
 
         "play": the opponent plays the table as it lies (with the free ball, if there is one). "play_again": the offender plays it, and
         a free ball is void. "replace", after a miss: ``saved`` is restored and the offender plays from there; the penalty stands.
+        "anywhere", after the last miss that may be called in succession: the opponent plays with the cue ball in hand, from anywhere on the
+        table, and a free ball is void.
         """
         self._in_phase("choice", "choose")
         choice("choice", what, self.choices)
         if what == "play":
-            return replace(self, phase="stroke", miss_called=False, failures=0, saved=None)
+            return replace(self, phase="stroke", miss_called=False, failures=0, misses=0, saved=None)
+        if what == "anywhere":
+            own = {"free_ball": False, "in_hand": True, "anywhere": True}
+            return replace(self, phase="stroke", miss_called=False, failures=0, misses=0, saved=None, **own)
         again = replace(self, phase="stroke", striker=1 - self.striker, free_ball=False, miss_called=False)
         if what == "play_again":
             return replace(again, failures=0, saved=None)
         assert self.saved is not None  # a miss is never called without it
-        before = {name: getattr(self.saved, name) for name in _REPLACED}
+        before = {name: getattr(self.saved, name) for name in REPLACED}
         return replace(again, warned=self.failures >= 2, **before)
 
     def draw(self, first: int) -> "Frame":
@@ -320,7 +357,7 @@ class Frame:
         """The referee ends a stalemate: scores are void, the balls are set up again and the same player breaks."""
         if self.phase == "over":
             raise refuse("phase", self.phase, "must not be over to restart")
-        return Frame.start(breaker=self.breaker, miss=self.miss)
+        return Frame.start(breaker=self.breaker, miss=self.miss, rules=self.rules)
 
     def to_dict(self) -> dict[str, Any]:
         """The frame as plain numbers, strings, lists and None, for JSON."""
@@ -335,60 +372,23 @@ class Frame:
 
         Raises ValueError, which names the wrong part of ``field``; also where the rules forbid a combination of parts.
         """
-        _check_fields(field, plain, cls)
+        check_fields(field, plain, cls)
         saved, scores = plain["saved"], plain["scores"]
         if saved is not None:
-            _check_fields(f"{field}.saved", saved, Saved)
-            with _within(f"{field}.saved"):
-                saved = Saved(**saved | {"layout": _tuples(saved["layout"])})
-        with _within(field):
+            check_fields(f"{field}.saved", saved, Saved)
+            with within(f"{field}.saved"):
+                saved = Saved(**saved | {"layout": tuples(saved["layout"])})
+        with within(field):
             frame = cls(**plain | {"scores": tuple(scores) if isinstance(scores, list) else scores, "saved": saved})
-            frame._check_fit()
+            check_fit(frame)
         return frame
-
-
-_SETTLED = {
-    "ball_on": BallOn.NOTHING, "free_ball": False, "miss_called": False, "failures": 0, "warned": False, "saved": None,
-}  # fmt: skip
-"""The fields of a frame that is over."""
-
-_REPLACED = ("on_table", "ball_on", "in_hand", "free_ball")
-"""The fields that are restored with a position that is replaced."""
 
 
 def _set(frozen, name, value):
     object.__setattr__(frozen, name, value)
 
 
-def _plain(value, high):
-    """Whether it is an int in [0, high]: a quick test before the full check, which it nearly always spares."""
-    return type(value) is int and 0 <= value <= high
-
-
 def _object_balls(mask):
     if integer("on_table", mask, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on_table", mask, "must name object balls only")
     return int(mask)
-
-
-def _check_fields(field, plain, kind):
-    names = [part.name for part in fields(kind)]
-    if not isinstance(plain, dict):
-        raise refuse(field, plain, "must be a dict with the fields " + ", ".join(names))
-    if set(plain) != set(names):
-        found = f"a dict without {[n for n in names if n not in plain]} and with the others {[n for n in plain if n not in names]}"
-        raise refuse_what(field, found, "must have exactly the fields " + ", ".join(names))
-
-
-@contextmanager
-def _within(field):
-    """Prefix the message of a ValueError with ``field``."""
-    try:
-        yield
-    except ValueError as error:
-        raise ValueError(f"{field}.{error}") from None
-
-
-def _tuples(value):
-    """Nested lists, as JSON returns them, as nested tuples."""
-    return tuple(map(_tuples, value)) if isinstance(value, list | tuple) else value

@@ -1,8 +1,10 @@
 """How are thousands of frames stored? The ``Frame`` of ``frame.py`` as one row of integers, and its rules as kernels.
 
 ``frame.Frame`` is the readable specification; this is the same for machine code, and the tests compare the two stroke by stroke. A row
-(int64, ``COLUMNS`` wide) holds the fields of a ``Frame``. Three acts change it: ``after_stroke``, ``choose`` and ``draw``. The layouts that
-"replace" restores are in separate arrays, ``Layouts``.
+(int64, ``COLUMNS`` wide) holds the fields of a ``Frame``. Five acts change it: ``after_stroke``, ``choose``, ``draw``, ``claim`` and
+``concede``. The layouts that "replace" restores are in separate arrays, ``Layouts``. Which game is played (``rules``: a code of
+``rule_sets``) and which miss rule holds (``miss``: an index of ``frame.MISS_RULES``) is the same for all frames of an environment, and so
+not in the row.
 
 The first five columns have the same meaning for a visit without a frame, whose rows have no others.
 """
@@ -13,8 +15,9 @@ import numpy as np
 
 from .._jit import kernel
 from .._types import Bools, Floats, Ints, MissRule
-from .balls import COLOURS_MASK, N_BALLS, REDS_MASK, VALUES, BallOn, balls_on_kernel, count, next_on_kernel
+from .balls import BLACK, COLOURS_MASK, N_BALLS, REDS_MASK, VALUES, BallOn, balls_on_kernel, count, next_on_kernel
 from .frame import PHASES, Frame, Saved
+from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED, RulesName
 from .ruling import FOUL, OUTCOME
 
 (BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
@@ -27,14 +30,16 @@ VISIT_COLUMNS = 5
 ) = range(5, 31)  # fmt: skip
 """The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether there is one); strokes of both players; the agent's lead
 that rewards have already paid; frames won in a match and who broke in its first frame; simulated time played in this frame [ms]; misses
-called in succession; whether the cue ball in hand may be placed anywhere on the table.
+called in succession; whether the cue ball in hand may be placed anywhere on the table. SAVED_IN_HAND is 2 if it could be placed anywhere.
 """
 COLUMNS = 31
 
 (STROKE, CHOICE, LOT, FINISHED) = range(4)
 """Phases, in the order of ``frame.PHASES``."""
-(PLAY, PLAY_AGAIN, REPLACE) = range(3)
+(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(4)
 """Choices after a foul."""
+(NO_MISSES, CLEAR_PATHS, ATTEMPTS) = range(3)
+"""Miss rules, in the order of ``frame.MISS_RULES``."""
 
 _MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
 
@@ -85,7 +90,7 @@ def _end(row, winner):
     """End the frame and clear the fields of ``frame._SETTLED``."""
     row[PHASE], row[OVER], row[WINNER] = FINISHED, 1, winner
     row[BALL_ON] = -1
-    row[FREE_BALL] = row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = 0
+    row[FREE_BALL] = row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = row[MISSES] = row[ANYWHERE] = 0
 
 
 @kernel
@@ -95,50 +100,98 @@ def lead_of(row, player):
 
 
 @kernel
-def _is_miss(row, result, lead_before, available_before, failures, clear, full):
+def _is_miss(row, result, lead_before, available_before, failures, misses, rules, miss, clear, full, attempt):
     """Whether a foul is also a miss, with ``row`` after the stroke: ``Frame._is_miss``."""
-    if not result.fouls & _MISSED:
+    if miss == NO_MISSES or not result.fouls & _MISSED or (rules == SIX_RED and misses == MOST_MISSES):
         return False
     if full and failures:
         return True
     after = abs(lead_of(row, 0)) >= available(row[ON_TABLE], row[BALL_ON])
-    return (clear or full) and not (abs(lead_before) >= available_before or after)
+    return (clear or full or (miss == ATTEMPTS and not attempt)) and not (abs(lead_before) >= available_before or after)
 
 
 @kernel
-def after_stroke(row, result, miss, clear, full, layout):
+def shot_clock(row, rules):
+    """``Frame.shot_clock``: the longest time to play the next stroke [ms]; 0 for no limit."""
+    if rules != SHOOT_OUT:
+        return 0
+    return SHOT_CLOCK[1] if 2 * row[CLOCK] >= CLOCK_LIMIT else SHOT_CLOCK[0]
+
+
+@kernel
+def is_late(row, rules, time_to_play):
+    """Whether a stroke that takes ``time_to_play`` [ms] is not begun within the shot clock: it must not be played."""
+    return 0 < shot_clock(row, rules) < time_to_play
+
+
+@kernel
+def after_stroke(row, result, rules, miss, clear, full, attempt, layout, time_to_play, duration):
     """One stroke with the referee's ``Ruling`` result: ``Frame.play``.
 
-    ``miss``: whether misses are called; ``clear``, ``full``: the paths before the stroke; ``layout``: whether that before it is stored.
+    ``rules``, ``miss``: codes; ``clear``, ``full``: the paths before the stroke; ``attempt``: whether the cue ball came near a ball on;
+    ``layout``: whether that before the stroke is stored; ``time_to_play``, ``duration`` [ms].
     """
     me = row[STRIKER]
     other = 1 - me
-    failures, warned = row[FAILURES], row[WARNED]
+    failures, warned, misses = row[FAILURES], row[WARNED], row[MISSES]
     lead_before, available_before = lead_of(row, 0), available(row[ON_TABLE], row[BALL_ON])
-    on_table, ball_on, in_hand, free_ball = row[ON_TABLE], row[BALL_ON], row[IN_HAND], row[FREE_BALL]
+    on_table, ball_on, in_hand, free_ball = row[ON_TABLE], row[BALL_ON], row[IN_HAND] + row[ANYWHERE], row[FREE_BALL]
     row[SCORE_0 + me] += result.points
     row[SCORE_0 + other] += result.penalty
     row[ON_TABLE] = result.on_table
+    if rules == SHOOT_OUT:
+        limit, late = shot_clock(row, rules), is_late(row, rules, time_to_play)
+        row[CLOCK] += (min(time_to_play, limit) if row[CLOCK] else 0) + (0 if late else duration)
     if result.outcome == OUTCOME.STRIKER_WINS or result.outcome == OUTCOME.OPPONENT_WINS:
         _end(row, me if result.outcome == OUTCOME.STRIKER_WINS else other)
         return
     row[STRIKER] = other if result.stays == 0 else me
     row[POINTS] = row[POINTS] + result.points if result.stays == 1 else 0
     row[BALL_ON], row[IN_HAND], row[FREE_BALL] = result.ball_on, result.in_hand, result.free_ball
-    row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = 0
+    row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = row[MISSES] = 0
+    row[ANYWHERE] = rules == SHOOT_OUT and result.fouls != 0 and result.outcome == OUTCOME.PLAYING
     if result.outcome == OUTCOME.RESPOTTED_BLACK:
         row[PHASE], row[RESPOTTED_BLACK] = LOT, 1
+        return
+    if rules == SHOOT_OUT:
+        if not row[RESPOTTED_BLACK] and row[CLOCK] + time_to_play >= CLOCK_LIMIT:
+            _time_is_up(row)
         return
     if not result.fouls:
         return
     if warned and full and result.fouls & _MISSED:
         _end(row, other)
         return
-    called = miss and _is_miss(row, result, lead_before, available_before, failures, clear, full)
+    called = _is_miss(row, result, lead_before, available_before, failures, misses, rules, miss, clear, full, attempt)
     row[PHASE], row[MISS_CALLED] = CHOICE, called
     row[FAILURES] = failures + 1 if called and full else 0
+    row[MISSES] = misses + 1 if called and rules == SIX_RED else 0
     row[SAVED], row[SAVED_LAYOUT] = 1, layout
     row[SAVED_ON_TABLE], row[SAVED_BALL_ON], row[SAVED_IN_HAND], row[SAVED_FREE_BALL] = on_table, ball_on, in_hand, free_ball
+
+
+@kernel
+def _time_is_up(row):
+    """The frame's clock has run down: ``Frame._time_is_up``. If a lot follows, the caller leaves nothing but the black, on its spot."""
+    lead = lead_of(row, 0)
+    if lead != 0:
+        _end(row, 0 if lead > 0 else 1)
+        return
+    row[PHASE], row[RESPOTTED_BLACK], row[ON_TABLE], row[BALL_ON] = LOT, 1, 1 << BLACK, BLACK - 14
+    row[IN_HAND], row[ANYWHERE], row[POINTS] = 1, 0, 0
+
+
+@kernel
+def may_replace(row, rules):
+    """Whether "replace" is one of ``Frame.choices``."""
+    return row[PHASE] == CHOICE and row[MISS_CALLED] and not (rules == SIX_RED and row[MISSES] >= MOST_MISSES)
+
+
+@kernel
+def may_place_anywhere(row, rules):
+    """Whether "anywhere" is one of ``Frame.choices``."""
+    last = row[PHASE] == CHOICE and row[MISS_CALLED] and rules == SIX_RED and row[MISSES] >= MOST_MISSES
+    return last and abs(lead_of(row, 0)) <= available(row[ON_TABLE], row[BALL_ON])
 
 
 @kernel
@@ -149,13 +202,17 @@ def choose(row, what):
     if what == REPLACE:
         row[STRIKER] = 1 - row[STRIKER]
         row[WARNED] = row[FAILURES] >= 2
-        row[ON_TABLE], row[BALL_ON], row[IN_HAND] = row[SAVED_ON_TABLE], row[SAVED_BALL_ON], row[SAVED_IN_HAND]
-        row[FREE_BALL] = row[SAVED_FREE_BALL]
+        row[ON_TABLE], row[BALL_ON], row[FREE_BALL] = row[SAVED_ON_TABLE], row[SAVED_BALL_ON], row[SAVED_FREE_BALL]
+        row[IN_HAND], row[ANYWHERE] = row[SAVED_IN_HAND] > 0, row[SAVED_IN_HAND] == 2
         return
     row[FAILURES] = row[SAVED] = row[SAVED_LAYOUT] = 0
     if what == PLAY_AGAIN:
         row[STRIKER] = 1 - row[STRIKER]
         row[FREE_BALL] = 0
+        return
+    row[MISSES] = 0
+    if what == PLACE_ANYWHERE:
+        row[FREE_BALL], row[IN_HAND], row[ANYWHERE] = 0, 1, 1
 
 
 @kernel
@@ -164,8 +221,32 @@ def draw(row, first):
     row[PHASE], row[STRIKER], row[POINTS] = STROKE, first, 0
 
 
-def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int) -> Frame:
-    """The ``Frame`` of ``row`` (COLUMNS,); ``miss``: its rule; ``layouts``: ``Layouts``, of which row k is read."""
+@kernel
+def may_claim(row):
+    """Whether the striker may claim the frame: ``Frame.may_claim``."""
+    return row[PHASE] == STROKE and row[ON_TABLE] == 1 << BLACK and lead_of(row, row[STRIKER]) > 7
+
+
+@kernel
+def claim(row):
+    """The striker claims the frame, where ``may_claim``: ``Frame.claim``."""
+    _end(row, row[STRIKER])
+
+
+@kernel
+def may_concede(row, player):
+    """Whether ``player`` may concede the frame: ``Frame.concede``."""
+    return row[STRIKER] == player and (row[PHASE] == STROKE or row[PHASE] == CHOICE)
+
+
+@kernel
+def concede(row):
+    """The striker concedes the frame: ``Frame.concede``."""
+    _end(row, 1 - row[STRIKER])
+
+
+def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int, rules: RulesName = "snooker") -> Frame:
+    """The ``Frame`` of ``row`` (COLUMNS,); ``miss``, ``rules``: its rules; ``layouts``: ``Layouts``, of which row k is read."""
     at = row.tolist()
     saved = None
     if at[SAVED]:
@@ -174,13 +255,14 @@ def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int) -> Frame:
             layout = tuple(map(tuple, layouts.positions[k].tolist())), tuple(layouts.on_table[k].tolist())
         saved = Saved(
             on_table=at[SAVED_ON_TABLE], ball_on=BallOn(at[SAVED_BALL_ON]), in_hand=bool(at[SAVED_IN_HAND]),
-            free_ball=bool(at[SAVED_FREE_BALL]), layout=layout,
+            free_ball=bool(at[SAVED_FREE_BALL]), anywhere=at[SAVED_IN_HAND] == 2, layout=layout,
         )  # fmt: skip
     return Frame(
         scores=(at[SCORE_0], at[SCORE_1]), striker=at[STRIKER], breaker=at[BREAKER], break_points=at[POINTS], on_table=at[ON_TABLE],
         ball_on=BallOn(at[BALL_ON]), in_hand=bool(at[IN_HAND]), free_ball=bool(at[FREE_BALL]),
         respotted_black=bool(at[RESPOTTED_BLACK]), phase=PHASES[at[PHASE]], winner=None if at[WINNER] < 0 else at[WINNER], miss=miss,
         miss_called=bool(at[MISS_CALLED]), failures=at[FAILURES], warned=bool(at[WARNED]), saved=saved,
+        rules=rules, clock=at[CLOCK], misses=at[MISSES], anywhere=bool(at[ANYWHERE]),
     )  # fmt: skip
 
 
@@ -192,9 +274,10 @@ def write_frame(frame: Frame, strokes: int, row: Ints, layouts: Layouts, k: int)
     row[[STRIKER, BREAKER, SCORE_0, SCORE_1]] = frame.striker, frame.breaker, *frame.scores
     row[[WINNER, RESPOTTED_BLACK]] = -1 if frame.winner is None else frame.winner, frame.respotted_black
     row[[MISS_CALLED, FAILURES, WARNED, STROKES]] = frame.miss_called, frame.failures, frame.warned, strokes
+    row[[CLOCK, MISSES, ANYWHERE]] = frame.clock, frame.misses, frame.anywhere
     saved = frame.saved
     if saved is not None:
         row[[SAVED, SAVED_ON_TABLE, SAVED_BALL_ON]] = 1, saved.on_table, saved.ball_on
-        row[[SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT]] = saved.in_hand, saved.free_ball, saved.layout is not None
+        row[[SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT]] = saved.in_hand + saved.anywhere, saved.free_ball, saved.layout is not None
         if saved.layout is not None:
             layouts.positions[k], layouts.on_table[k] = np.array(saved.layout[0]), np.array(saved.layout[1])

@@ -11,9 +11,11 @@ from .._check import number, refuse
 from .._jit import entry, kernel
 from .._types import Flags, Place, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
-from .balls import N_BALLS, check_table
-from .spotting import CLEARANCE, occupied
+from .balls import N_BALLS, REFEREE_TOUCH, check_table
+from .spotting import touches
 
+CLEARANCE = 2.0 * REFEREE_TOUCH
+"""The gap between a cue ball placed next to a ball and that ball [m]: the referee sees that they do not touch."""
 ROUNDING = 1e-12
 """Tolerance for points on the lines of the D [m]."""
 
@@ -53,7 +55,7 @@ def _meet(ax, ay, a, bx, by, b, sign):
 def _better(positions, on_table, wish_x, wish_y, px, py, best_x, best_y, best, radius):
     """The better of a candidate p and the best place so far: (x, y) and distance from the wish [m]. A NaN is never better."""
     far = np.hypot(px - wish_x, py - wish_y)
-    if far < best and in_d(px, py) and not occupied(positions, on_table, px, py, radius):
+    if far < best and in_d(px, py) and not touches(positions, on_table, px, py, 2.0 * radius + REFEREE_TOUCH):
         return px, py, far
     return best_x, best_y, best
 

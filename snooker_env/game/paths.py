@@ -1,8 +1,12 @@
 """Was there a clear path to a ball on? The two tests of the rule of the foul and a miss, as kernels.
 
-*Any part*: in some direction the cue ball, rolling straight, meets a ball on before any ball not on. *Full ball*: the straight line
-from centre to centre of some ball on passes every ball not on at 2 R or more. Other balls on never obstruct. The cue ball must have a
-place: if it was in hand, the place from which it was played.
+*Any part*: in some direction the cue ball, rolling straight, meets a ball on before any ball not on; other balls on never obstruct.
+*Full ball* (S3 R14): the cue ball can roll straight onto the centre of some ball on. For reds this is "a complete diameter of any Red that
+is not obstructed by a ball or balls not on": a strip as wide as a ball, from the cue ball onto the whole of one red; other reds in it do
+not matter, everything else does. A colour is met in its centre only if no other ball at all is in the strip. This holds too where several
+colours could be on: the striker nominates one of them, and then the others are not on.
+
+The cue ball must have a place: if it was in hand, the place from which it was played.
 """
 
 import numpy as np
@@ -11,7 +15,7 @@ from .._check import integer, refuse
 from .._jit import entry, kernel
 from .._types import Flags, Vectors
 from ..geometry import BALL_RADIUS
-from .balls import ALL_MASK, CUE_BIT, N_BALLS, check_table
+from .balls import ALL_MASK, CUE_BIT, N_BALLS, REDS_MASK, check_table
 from .snookered import SLACK, segment_distance
 
 WINDOW = 1e-9
@@ -34,12 +38,13 @@ def full_ball_path(positions, on_table, on, radius):
     for target in range(1, N_BALLS):
         if on_table[target] and (on >> target) & 1:
             tx, ty = positions[target, 0], positions[target, 1]
+            harmless = on & REDS_MASK if (REDS_MASK >> target) & 1 else 1 << target
             # The path ends at contact, 2 R before the target's centre.
             d = np.hypot(tx - cx, ty - cy)
             run = max(0.0, 1.0 - 2.0 * radius / d)
             clear = True
             for i in range(1, N_BALLS):
-                if on_table[i] and not (on >> i) & 1:
+                if on_table[i] and not (harmless >> i) & 1:
                     gap = segment_distance(positions[i, 0], positions[i, 1], cx, cy, cx + run * (tx - cx), cy + run * (ty - cy))
                     clear = clear and gap >= 2.0 * radius - SLACK
             if clear:

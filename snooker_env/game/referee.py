@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 from typing import Any
 
-from .._check import integer, refuse
+from .._check import choice, integer, refuse
 from .._jit import entry
 from .balls import ALL_MASK, COLOURS_MASK, CUE_BIT, N_BALLS, NAMES, REDS_MASK, BallOn, balls_on, ids_of
-from .ruling import AUTO, Flag, Foul, Outcome, VisitEnd, ruling
+from .rule_sets import RULES, RulesName
+from .ruling import AUTO, RULE_FLAGS, Flag, Foul, Outcome, VisitEnd, ruling
 
 FULL_TABLE = ALL_MASK & ~CUE_BIT
 """The mask of all 21 object balls."""
@@ -29,17 +30,21 @@ class Situation:
         The striker may nominate a free ball: only with a red or a colour of the sequence on.
     lead : int
         The striker's score minus the opponent's; used at the end of the frame only.
+    rules : {"snooker", "six_red", "shoot_out"}
+        The rule set.
     """
 
     on_table: int = FULL_TABLE
     ball_on: BallOn = BallOn.RED
     free_ball: bool = False
     lead: int = 0
+    rules: RulesName = "snooker"
 
     def __post_init__(self) -> None:
         integer("on_table", self.on_table, 0, ALL_MASK)
         object.__setattr__(self, "ball_on", BallOn(integer("ball_on", self.ball_on, BallOn.ANY_COLOUR, BallOn.BLACK)))
         integer("lead", self.lead, -MOST_POINTS, MOST_POINTS)
+        choice("rules", self.rules, RULES)
         if not balls_on(self.ball_on, self.on_table & ~CUE_BIT):
             raise refuse("ball_on", self.ball_on.name, "must name balls of which one is on the table (on_table)")
         if self.ball_on > BallOn.RED and self.on_table & REDS_MASK:
@@ -84,7 +89,11 @@ class Stroke:
     snookered : bool
         After the stroke, with colours respotted, the next striker is snookered on the next ball on.
     behind_free_ball : bool
-        As ``snookered``, and the snookering ball is the one that was nominated as the free ball.
+        As ``snookered``, and the snookering ball is the one that was nominated, as the free ball or after a red.
+    no_cushion : bool
+        No ball reached a cushion.
+    late : bool
+        Not begun within the shot clock, and so not played: nothing was struck.
     """
 
     first: int = 0
@@ -102,6 +111,8 @@ class Stroke:
     seven: bool = False
     snookered: bool = False
     behind_free_ball: bool = False
+    no_cushion: bool = False
+    late: bool = False
 
     def __post_init__(self) -> None:
         for name in ("first", "touching", "moved"):
@@ -119,7 +130,7 @@ class Stroke:
     @property
     def flags(self) -> Flag:
         """The bool fields as a ``Flag``."""
-        return Flag(sum(flag for flag in Flag if getattr(self, str(flag.name).lower())))
+        return Flag(sum(flag for flag in Flag if flag not in RULE_FLAGS and getattr(self, str(flag.name).lower())))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,7 +224,8 @@ def check(situation: Situation, stroke: Stroke) -> None:
 def numbers_of(situation: Situation, stroke: Stroke) -> tuple[int, ...]:
     """Both as the integer arguments of the kernels, in order."""
     state = (situation.on_table, int(situation.ball_on), int(situation.free_ball), situation.lead)
-    return (*state, stroke.first, stroke.touching, stroke.moved, stroke.potted, stroke.off, stroke.nominated, int(stroke.flags))
+    flags = int(stroke.flags | RULE_FLAGS[RULES.index(situation.rules)])
+    return (*state, stroke.first, stroke.touching, stroke.moved, stroke.potted, stroke.off, stroke.nominated, flags)
 
 
 def judge(situation: Situation, stroke: Stroke) -> Verdict:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from .._jit import kernel
 from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on_kernel, count, next_on_kernel
+from .rule_sets import LATE_PENALTY
 
 AUTO = -1
 """The referee decides which ball was nominated: the one that was evidently played at (see ``_nomination``)."""
@@ -34,7 +35,11 @@ class Flag(IntFlag):
     SEVEN             An act that costs 7 points whatever is on: wrong cue ball, a ball off the table used, measuring, no
                       declaration on request ...
     SNOOKERED         After the stroke, with colours respotted, the next striker is snookered on the next ball on.
-    BEHIND_FREE_BALL  As SNOOKERED, and the effective snookering ball is the free ball just nominated.
+    BEHIND_FREE_BALL  As SNOOKERED, and the effective snookering ball is the one just nominated.
+    NO_CUSHION        No ball reached a cushion. A foul in the Shoot Out if none was potted either.
+    LATE              The stroke was not begun within the shot clock; it was not played.
+    SIX_RED           The rules of six-red snooker hold.
+    SHOOT_OUT         The rules of the Shoot Out hold.
     ================= ==================================================================================================
     """
 
@@ -47,6 +52,14 @@ class Flag(IntFlag):
     SEVEN = 64
     SNOOKERED = 128
     BEHIND_FREE_BALL = 256
+    NO_CUSHION = 512
+    LATE = 1024
+    SIX_RED = 2048
+    SHOOT_OUT = 4096
+
+
+RULE_FLAGS = (Flag(0), Flag.SIX_RED, Flag.SHOOT_OUT)
+"""The flag of each rule set, by its code."""
 
 
 class Foul(IntFlag):
@@ -65,9 +78,11 @@ class Foul(IntFlag):
     OUTSIDE_D         In hand, and played from outside the D.
     FEET              Both feet off the floor.
     OUT_OF_TURN       Played out of turn.
-    BEHIND_FREE_BALL  A snooker was laid behind the free ball.
+    BEHIND_FREE_BALL  A snooker was laid behind the free ball; in six-red snooker, behind any nominated ball.
     NO_NOMINATION     A foul on a colour that was never nominated; reds played in successive strokes are of this kind.
     SEVEN             An act that costs 7 points whatever is on.
+    NO_CUSHION        In the Shoot Out: no ball was potted and none reached a cushion.
+    LATE              In the Shoot Out: not begun within the shot clock.
     ================= ==================================================================================================
     """
 
@@ -86,6 +101,8 @@ class Foul(IntFlag):
     BEHIND_FREE_BALL = 4096
     NO_NOMINATION = 8192
     SEVEN = 16384
+    NO_CUSHION = 32768
+    LATE = 65536
 
 
 class VisitEnd(IntEnum):
@@ -214,7 +231,10 @@ def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, o
     if touching & moved:
         fouls |= FOUL.PUSH
         penalty = max(penalty, base, _highest(touching & moved, free, value_on))
-    if touching & target & ~moved == 0:
+    if flags & FLAG.LATE:
+        fouls |= FOUL.LATE
+        penalty = max(base, LATE_PENALTY)
+    elif touching & target & ~moved == 0:
         if first == 0:
             fouls |= FOUL.NO_CONTACT
             penalty = max(penalty, base)
@@ -252,8 +272,13 @@ def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, o
             fouls |= foul
             penalty = max(penalty, base)
 
-    # 6. No snooker behind the free ball, unless only pink and black are left.
-    if free and flags & FLAG.BEHIND_FREE_BALL and reds_and_colours & ~(down & on) != (1 << PINK | 1 << BLACK):
+    if flags & FLAG.SHOOT_OUT and flags & FLAG.NO_CUSHION and not potted and not flags & FLAG.LATE:
+        fouls |= FOUL.NO_CUSHION
+        penalty = max(penalty, base)
+
+    # 6. No snooker behind the free ball after a stroke that does not score, unless only pink and black are left.
+    behind = flags & FLAG.BEHIND_FREE_BALL and (fouls or not down)
+    if behind and ((choice and flags & FLAG.SIX_RED) or (free and reds_and_colours != (1 << PINK | 1 << BLACK))):
         fouls |= FOUL.BEHIND_FREE_BALL
         penalty = max(penalty, base)
 
@@ -261,7 +286,7 @@ def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, o
     if flags & FLAG.SEVEN:
         fouls |= FOUL.SEVEN
         penalty = 7
-    if ball_on == 0 and choice == 0 and fouls:
+    if ball_on == 0 and choice == 0 and fouls & ~FOUL.LATE:
         fouls |= FOUL.NO_NOMINATION
         penalty = 7
 
@@ -302,5 +327,7 @@ def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, o
             stays = 0
     playing = outcome == OUTCOME.PLAYING
     in_hand = 1 if (potted | off) & CUE_BIT or outcome == OUTCOME.RESPOTTED_BLACK else 0
-    free_next = 1 if playing and fouls and flags & FLAG.SNOOKERED else 0
+    if flags & FLAG.SHOOT_OUT and playing and fouls:
+        in_hand = 1
+    free_next = 1 if playing and fouls and flags & FLAG.SNOOKERED and not flags & FLAG.SHOOT_OUT else 0
     return Ruling(fouls, penalty, points, respotted, remaining, next_on, stays, in_hand, free_next, visit_end, outcome, choice)  # type: ignore[arg-type]

@@ -16,8 +16,8 @@ from .._check import array, integer, refuse
 from .._jit import entry, kernel
 from .._types import Flags, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
-from .balls import ALL_MASK, CUE_BIT, N_BALLS, TOUCH, check_table
-from .spotting import occupied
+from .balls import ALL_MASK, CUE_BIT, N_BALLS, REFEREE_TOUCH, check_table
+from .spotting import touches
 
 D_STEP = 0.005
 """Distance between neighbouring places that are tested in the D [m]."""
@@ -54,7 +54,7 @@ def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
     -1: a jaw obstructs an edge and is nearer than those balls. ``on`` is the mask of the balls on. Nearest: by the distance of centres.
     """
     tx, ty = positions[target, 0], positions[target, 1]
-    if np.hypot(tx - cx, ty - cy) <= 2.0 * radius + TOUCH:
+    if np.hypot(tx - cx, ty - cy) <= 2.0 * radius + REFEREE_TOUCH:
         return 0
     nearest, mask, jaw = np.inf, 0, np.inf
     for side in (-1.0, 1.0):
@@ -95,7 +95,10 @@ def snookered_from(positions, on_table, on, cx, cy, jaws, radius):
 @kernel
 def _open_at(positions, on_table, on, x, y, jaws, radius):
     """Whether the cue ball can stand at (x, y) and is not snookered there."""
-    return not occupied(positions, on_table, x, y, radius) and not snookered_from(positions, on_table, on, x, y, jaws, radius)[0]
+    return (
+        not touches(positions, on_table, x, y, 2.0 * radius + REFEREE_TOUCH)
+        and not snookered_from(positions, on_table, on, x, y, jaws, radius)[0]
+    )
 
 
 @kernel

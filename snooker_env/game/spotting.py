@@ -19,15 +19,20 @@ CLEARANCE = 2.0 * TOUCH
 
 
 @kernel
-def occupied(positions, on_table, x, y, radius):
-    """Whether a ball at (x, y) [m] would touch one that is on the table."""
-    reach = 2.0 * radius + TOUCH
+def touches(positions, on_table, x, y, reach):
+    """Whether the centre of a ball on the table is nearer to (x, y) than ``reach`` [m]."""
     for i in range(N_BALLS):
         if on_table[i]:
             dx, dy = positions[i, 0] - x, positions[i, 1] - y
             if dx * dx + dy * dy < reach * reach:
                 return True
     return False
+
+
+@kernel
+def occupied(positions, on_table, x, y, radius):
+    """Whether a ball at (x, y) [m] would touch one that is on the table."""
+    return touches(positions, on_table, x, y, 2.0 * radius + TOUCH)
 
 
 @kernel

@@ -37,11 +37,12 @@ from ..game.frame_columns import (
 )  # fmt: skip
 from ..game.paths import clear_path, full_ball_path
 from ..game.philox import pair
+from ..game.rule_sets import SNOOKER
 from ..geometry import BALL_RADIUS
 from ..physics.engine import Status
 from .observations import SIZE, observe_into
 from .rewards import frame_reward_of
-from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, SPEED, TOUCHING, place, see, write_ruling
+from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, TOUCHING, place, see, write_ruling
 from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
@@ -109,7 +110,7 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
             continue
         k = which[j]
         p, on, row = positions[k], on_table[k], game[k]
-        see(j, event_time, event_what, n_events, potted, p, on, shots[j, SPEED], seen)
+        see(j, event_time, event_what, n_events, potted, p, on, shots, seen)
         for i in range(N_BALLS):
             p[i, 0], p[i, 1] = r[j, i, 0], r[j, i, 1]
         ball_on = row[BALL_ON]
@@ -118,7 +119,7 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
             0, nominated[k], 0, jaws, BALL_RADIUS,
         )  # fmt: skip
         write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result, seen)
-        after_stroke(row, result, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], miss)
+        after_stroke(row, result, SNOOKER, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], True, miss, 0, 0)
         row[STROKES] += 1
         if row[PHASE] == LOT:  # the winner of the lot is assumed to play first
             u, _ = pair(streams[k])

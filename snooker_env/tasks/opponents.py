@@ -5,26 +5,21 @@ None. Then ``prepare(frames, which, actions, buffers)``, on several threads, car
 """
 
 from collections.abc import Callable, Sequence
-from math import atan2, hypot, inf, pi, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from .._check import refuse, truth
-from .._jit import entry, kernel
 from .._types import Action, Bools, Floats, Ints, Observation, ObservationKind
-from ..game.balls import N_BALLS, bits
-from ..game.frame_columns import CHOICE, IN_HAND, PHASE, PLAY, choose, strikeable
-from ..game.philox import pair
-from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
-from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from . import observations
 from .box_actions import Actions
 from .discrete_actions import SIZE as CHOICES
 from .discrete_actions import Choices
+from .ghost_ball import GhostBallOpponent
 from .saved_models import SavedModel, outline
-from .stroke import ShotBuffers, place, strike
+from .stroke import ShotBuffers
+from .uniform_opponent import UniformOpponent
 
 if TYPE_CHECKING:
     from .frame import Frames
@@ -34,140 +29,6 @@ Policy: TypeAlias = Callable[[Observation, np.random.Generator], Action]
 OPPONENTS = ("none", "random", "ghost_ball")
 PLAYER = 1
 """Index of the opponent in the frame."""
-
-_ROLL = 0.25  # twice a rolling ball's deceleration [m/s^2]
-_SLIDE = 1.4  # initial speed of a ball struck in its middle, over the speed with which it rolls on
-_PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8))
-_USUAL_PLACE = 2
-
-
-@entry(what="uniform play", seconds=1)
-def _uniform(which, streams, actions):
-    """Each component of the actions of the tables ``which`` uniform in [-1, 1): the rows of ``actions`` (n, k)."""
-    size = actions.shape[1]
-    for j in range(which.shape[0]):
-        k = which[j]
-        for c in range(0, size, 2):
-            u, v = pair(streams[k])
-            actions[k, c] = 2.0 * u - 1.0
-            if c + 1 < size:
-                actions[k, c + 1] = 2.0 * v - 1.0
-
-
-@entry
-def _uniform_choice(which, streams, masks, actions):
-    """A uniformly random available choice on each of the tables ``which``; masks (len(which), CHOICES)."""
-    for j in range(which.shape[0]):
-        k, many = which[j], 0
-        for c in range(CHOICES):
-            many += masks[j, c]
-        u, _ = pair(streams[k])
-        left = int(u * many)
-        for c in range(CHOICES):
-            if masks[j, c]:
-                if left == 0:
-                    actions[k, 0] = c
-                left -= 1
-
-
-class UniformOpponent:
-    """Uniform random play: every component of a box action, the decision included; or one of the available discrete actions."""
-
-    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
-        """Empty actions: ``prepare`` draws them from each table's own stream."""
-        return np.empty((frames.n, frames.rules.actions.size))
-
-    def prepare(self, frames: "Frames", which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
-        """Carry the strokes out up to the strike; returns the tables with a stroke."""
-        if isinstance(frames.rules.actions, Choices):
-            _uniform_choice(which, frames.streams, frames.action_masks(which), actions)
-        else:
-            _uniform(which, frames.streams, actions)
-        return frames.prepare(which, actions, buffers)
-
-
-@kernel
-def _full(positions, on_table, ball):
-    """Whether the cue ball can roll straight at the middle of ``ball`` without touching another ball."""
-    cx, cy = positions[0, 0], positions[0, 1]
-    dx, dy = positions[ball, 0] - cx, positions[ball, 1] - cy
-    far = hypot(dx, dy)
-    for i in range(1, N_BALLS):
-        if i == ball or not on_table[i]:
-            continue
-        ox, oy = positions[i, 0] - cx, positions[i, 1] - cy
-        along = min(max(0.0, far - 2.0 * BALL_RADIUS), max(0.0, (ox * dx + oy * dy) / far))
-        if hypot(ox - along * dx / far, oy - along * dy / far) < 2.0 * BALL_RADIUS:
-            return False
-    return True
-
-
-@kernel
-def _wanted(positions, on_table, on, found, stream):
-    """Speed [m/s] and direction [rad] of the geometric player's shot at the balls in the mask ``on``."""
-    x, y = positions[0, 0], positions[0, 1]
-    if find_pots(positions, on_table, on, BALL_RADIUS, found):
-        ball, pocket, gx, gy = int(found[0, POT_BALL]), int(found[0, POT_POCKET]), found[0, GHOST_X], found[0, GHOST_Y]
-        run = hypot(POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1])
-        needed = _SLIDE * sqrt(_ROLL * (run + 0.6)) / max(found[0, COS_CUT], 0.2)  # of the cue ball at the impact
-        return min(6.0, _SLIDE * sqrt(_ROLL * hypot(gx - x, gy - y) + needed * needed)), atan2(gy - y, gx - x)
-    near, ball = inf, -1
-    for i in range(1, N_BALLS):
-        if (on >> i) & 1 and _full(positions, on_table, i):
-            far = hypot(positions[i, 0] - x, positions[i, 1] - y)
-            if far < near:
-                near, ball = far, i
-    if ball > 0:
-        return _SLIDE * sqrt(_ROLL * near) + 0.5, atan2(positions[ball, 1] - y, positions[ball, 0] - x)
-    u, _ = pair(stream)
-    return 3.0, pi * (2.0 * u - 1.0)
-
-
-@entry(what="the geometric opponent", seconds=2)
-def _ghost_ball(which, positions, on_table, game, streams, options, noise, r, v, w, here, shots):
-    """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike."""
-    found = np.empty((1, POT_COLUMNS))
-    for j in range(which.shape[0]):
-        k = which[j]
-        p, on, row, stream = positions[k], on_table[k], game[k], streams[k]
-        fouled = row[PHASE] == CHOICE
-        if fouled:
-            choose(row, PLAY)
-        mask = strikeable(row, bits(on) & ~1)
-        if row[IN_HAND]:
-            widest, best = 0.0, _USUAL_PLACE
-            for c in range(len(_PLACES)):
-                place(p, on, *_PLACES[c])
-                if find_pots(p, on, mask, BALL_RADIUS, found) and found[0, TOLERANCE] > widest:
-                    widest, best = found[0, TOLERANCE], c
-            place(p, on, *_PLACES[best])
-        u, anywhere = pair(stream)
-        jitter, _ = pair(stream)
-        speed, aim = 3.0, pi * (2.0 * u - 1.0)
-        if not (fouled and anywhere < 0.1):
-            speed, aim = _wanted(p, on, mask, found, stream)
-        strike((speed * (0.9 + 0.2 * jitter), 0.0, 0.0, aim, 0.0), p, on, stream, options, noise, j, r, v, w, here, shots)
-
-
-class GhostBallOpponent:
-    """The geometric player: the widest direct pot (``game.pots``), struck in the middle, as softly as possible.
-
-    * Without a pot it rolls full at the nearest ball on with a clear path; without one, it strikes in a random direction.
-    * With the cue ball in hand it takes the best of ten places. After a foul it always plays the table as it lies.
-    * It allows for neither throw nor position.
-    * Its speed varies by a tenth, and after a foul of the opponent it strikes in a random direction one time in ten. Otherwise two exact
-      players could repeat one failing stroke for ever.
-    """
-
-    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> None:
-        """None: it plays as a kernel."""
-
-    def prepare(self, frames: "Frames", which: Ints, actions: Any, buffers: ShotBuffers) -> Ints:
-        """Carry its strokes out up to the strike, one on each table."""
-        b = buffers
-        options, noise, _ = frames.packed
-        _ghost_ball(which, frames.positions, frames.on_table, frames.game, frames.streams, options, noise, b.r, b.v, b.w, b.here, b.shots)
-        return which
 
 
 class AskedOpponent:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .._jit import entry, kernel
 from .._shots import count
 from .._types import Bools, Floats, Ints
-from ..game.balls import CUE, N_BALLS, TOUCH, bits
+from ..game.balls import CUE, N_BALLS, REFEREE_TOUCH, TOUCH, bits
 from ..game.frame_columns import IN_HAND, strikeable
 from ..game.in_hand import nearest_place
 from ..game.pots import POT_COLUMNS
@@ -41,7 +41,7 @@ STRIKE_COLUMNS = 11
 (FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS) = range(13)
 SEEN_COLUMNS = 13
 
-_BALL_BALL = int(EventKind.BALL_BALL)
+_BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
 _WHY = {
     Status.TOO_MANY_EVENTS: f"did not come to rest within {MAX_EVENTS} events: a ball may be held against another; try other physics",
     Status.IMPACT_UNSOLVED: "holds an impact that did not end: try another fidelity, or less extreme friction",
@@ -50,8 +50,8 @@ _WHY = {
 
 @kernel
 def touching_balls(positions, on_table):
-    """The mask of the object balls that touch the cue ball."""
-    reach = 2.0 * BALL_RADIUS + TOUCH
+    """The mask of the object balls that touch the cue ball, as the referee sees it."""
+    reach = 2.0 * BALL_RADIUS + REFEREE_TOUCH
     mask = 0
     for i in range(1, N_BALLS):
         dx, dy = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
@@ -61,21 +61,39 @@ def touching_balls(positions, on_table):
 
 
 @kernel
-def first_struck(event_time, event_what, n_events, touching, speed):
-    """From the log of a shot played at cue speed ``speed`` [m/s]: the masks of the balls struck first, and of touching balls moved.
+def _played_into(positions, ball, vx, vy, time):
+    """Whether the cue ball, struck with (vx, vy) [m/s] and in contact with the touching ``ball`` at ``time`` [s], was played into it.
 
-    The second mask holds those of the balls ``touching`` the cue ball before the shot that it moved in leaving.
+    It was if its straight line leads into the ball, however small the gap and however slow the stroke, or if they met at once: the physics
+    lets balls without a gap meet along the tangent, too.
     """
-    first, start = 0, np.inf
+    dx, dy = positions[ball, 0] - positions[CUE, 0], positions[ball, 1] - positions[CUE, 1]
+    speed = np.hypot(vx, vy)
+    return vx * dx + vy * dy > 0.0 and (abs(vx * dy - vy * dx) < 2.0 * BALL_RADIUS * speed or time * speed <= 10.0 * TOUCH)
+
+
+@kernel
+def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
+    """From the log of a shot played with (vx, vy) [m/s]: the masks of the balls struck first, and of touching balls moved.
+
+    The second mask holds those of the balls ``touching`` the cue ball before the shot that it was played into: a push stroke. A touching
+    ball that the cue ball is played away from, and that it meets later off a cushion, is struck but not moved in leaving.
+    """
+    first, moved, start = 0, 0, np.inf
     for e in range(n_events):
-        if event_time[e] > start + AT_ONCE:
+        kind, time = event_what[e, 0], event_time[e]
+        if time > start + AT_ONCE and not touching:
             break
-        if event_what[e, 0] == _BALL_BALL and event_what[e, 1] == CUE:
-            start = min(start, event_time[e])
-            first |= 1 << event_what[e, 2]
-    # A touching ball that the cue ball is played away from is not struck; one it is played into is struck before the cue ball has
-    # gone ten times the gap that still counts as touching.
-    return first, touching & first if start * speed <= 10 * TOUCH else 0
+        if event_what[e, 1] == CUE and (kind == _CUSHION or kind == _JAW):
+            touching = 0  # what it meets from here on, it does not meet in leaving
+        elif event_what[e, 1] == CUE and kind == _BALL_BALL:
+            ball = event_what[e, 2]
+            if time <= start + AT_ONCE:
+                start = min(start, time)
+                first |= 1 << ball
+            if (touching >> ball) & 1 and _played_into(positions, ball, vx, vy, time):
+                moved |= 1 << ball
+    return first, moved
 
 
 @kernel
@@ -126,10 +144,10 @@ def address(which, actions, positions, on_table, game, streams, options, noise, 
 
 
 @kernel
-def see(j, event_time, event_what, n_events, potted, positions, on_table, speed, seen):
+def see(j, event_time, event_what, n_events, potted, positions, on_table, shots, seen):
     """Extract the referee's facts of shot j, played from ``positions`` and ``on_table`` (as before it), into its row of ``seen``."""
     touching = touching_balls(positions, on_table)
-    first, moved = first_struck(event_time[j], event_what[j], n_events[j], touching, speed)
+    first, moved = first_struck(event_time[j], event_what[j], n_events[j], touching, positions, shots[j, VX], shots[j, VY])
     down = 0
     for i in range(N_BALLS):
         if potted[j, i] >= 0:

@@ -20,7 +20,7 @@ from ..physics.engine import Status
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
 from .states import State, checked
-from .stroke import DOWN, FIRST, MOVED, SPEED, TOUCHING, ShotBuffers, see, write_ruling
+from .stroke import DOWN, FIRST, MOVED, TOUCHING, ShotBuffers, see, write_ruling
 from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, write_empty_info, write_stroke_info
 
 _OK = int(Status.OK)
@@ -35,7 +35,7 @@ def _conclude(which, positions, on_table, game, r, potted, status, duration, eve
             continue
         k = which[j]
         p, on, state = positions[k], on_table[k], game[k]
-        see(j, event_time, event_what, n_events, potted, p, on, shots[j, SPEED], seen)
+        see(j, event_time, event_what, n_events, potted, p, on, shots, seen)
         for i in range(N_BALLS):
             p[i, 0], p[i, 1] = r[j, i, 0], r[j, i, 1]
         ball_on = state[BALL_ON]

@@ -253,13 +253,16 @@ class Page {
 
   async play() {
     if (!this.aiming || this.sending) return;  // one stroke for each press, even if the answer is slow
-    const { speed, side, top, aim, elevation } = this.aim.wish, body = { revision: this.state.revision, speed, side, top, aim, elevation };
-    if (this.state.in_hand) body.place = [this.balls.x[0], this.balls.y[0]];
-    if (by("nominate").value && this.state.nominations.includes(by("nominate").value)) body.nominate = by("nominate").value;
     by("play").disabled = true;
-    this.placing.drop();
     this.sending = true;
-    try { await this.send(body); } finally { this.sending = false; }
+    try {
+      const { speed, side, top, aim, elevation } = this.aim.wish;
+      await this.placing.quiet();  // the last place of a drag makes a new revision
+      const { state } = this, body = { revision: state.revision, speed, side, top, aim, elevation };
+      if (state.in_hand) body.place = state.positions.cue;
+      if (by("nominate").value && state.nominations.includes(by("nominate").value)) body.nominate = by("nominate").value;
+      await this.send(body);
+    } finally { this.sending = false; }
   }
 
   async send(body) {

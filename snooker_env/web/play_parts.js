@@ -54,7 +54,7 @@ export async function ask(name, body, query = "") {
 /** Sends one request at a time; of those made meanwhile, only the latest is sent next. `then(answer, about)`, `wrong(error, about)`. */
 export class Latest {
   constructor(name, then, wrong = () => {}) {
-    Object.assign(this, { name, then, wrong, busy: false, next: null });
+    Object.assign(this, { name, then, wrong, busy: false, next: null, waiting: [] });
   }
 
   /** Send a request with this body; `about` is passed on with the answer. */
@@ -68,10 +68,14 @@ export class Latest {
     }
     this.busy = false;
     if (this.next) { const next = this.next; this.next = null; this.ask(...next); }
+    else for (const done of this.waiting.splice(0)) done();
   }
 
-  /** Drop the waiting request. */
+  /** Drop the request that waits. */
   drop() { this.next = null; }
+
+  /** Resolves when every request has been answered. */
+  quiet() { return this.busy ? new Promise(done => this.waiting.push(done)) : Promise.resolve(); }
 }
 
 /** Numbers of 32 bits in base64, in pairs. */

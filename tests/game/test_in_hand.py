@@ -6,9 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game import in_hand
-from snooker_env.game.balls import BROWN, GREEN, SPOTS, YELLOW
-from snooker_env.game.in_hand import place_cue
-from snooker_env.game.spotting import CLEARANCE
+from snooker_env.game.balls import BROWN, GREEN, REFEREE_TOUCH, SPOTS, YELLOW
+from snooker_env.game.in_hand import CLEARANCE, place_cue
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from tests.kernels import from_python
 
@@ -55,6 +54,8 @@ def test_a_wish_outside_goes_to_the_nearest_point_of_the_d(wish, place):
 
 def test_beside_one_ball():
     assert place_cue(*table((0.0, -1.2)), 0.01, -1.2) == pytest.approx((REACH, -1.2), abs=1e-12)
+    touching = 2 * BALL_RADIUS + 0.9 * REFEREE_TOUCH  # a referee would call a touching ball there
+    assert place_cue(*table((0.0, -1.2)), touching, -1.2) == pytest.approx((REACH, -1.2), abs=1e-12)
     x, y = place_cue(*table((0.0, -1.2)), 0.0, -1.2)
     assert np.hypot(x, y + 1.2) == pytest.approx(REACH, abs=1e-12)
 

@@ -292,6 +292,15 @@ def test_no_snooker_behind_the_free_ball_but_with_pink_and_black():
     assert_fair(rule(nominated=0, first=1, **behind), 0, "RED", False)
 
 
+@pytest.mark.parametrize(("potted", "points"), [(BLUE, 1), (1, 1), ([BLUE, 1], 2)])
+def test_a_snooker_behind_the_free_ball_is_fair_after_a_stroke_that_scores(potted, points):
+    """S3 R12(b)(ii): "after a non-scoring stroke"."""
+    behind = {"free_ball": True, "snookered": True, "behind_free_ball": True, "first": BLUE, "nominated": BLUE}
+    assert_fair(rule(potted=potted, **behind), points, "ANY_COLOUR", True)
+    verdict = rule(potted=[BLUE, CUE], **behind)  # a foul scores nothing
+    assert verdict.fouls & Foul.BEHIND_FREE_BALL and verdict.penalty == 4
+
+
 def test_a_free_ball_only_after_a_foul_that_leaves_a_snooker():
     assert rule(snookered=True).free_ball
     assert not rule(snookered=False).free_ball

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from snooker_env.game.balls import ALL_MASK, BLACK, BLUE, COLOURS_MASK, REDS_MASK, YELLOW, BallOn, balls_on, ids_of, mask_of, next_on
 from snooker_env.game.referee import FULL_TABLE, Situation, Stroke, judge
-from snooker_env.game.ruling import Flag, Outcome, VisitEnd
+from snooker_env.game.rule_sets import RULES
+from snooker_env.game.ruling import RULE_FLAGS, Flag, Outcome, VisitEnd
 
 
 @st.composite
@@ -18,10 +19,11 @@ def strokes(draw):
     ball_on = draw(st.sampled_from(possible))
     some = st.sets(st.sampled_from([0, *ids_of(on_table)]), max_size=4).map(mask_of)
     first, touching, potted = draw(some) & ~1, draw(some) & ~1, draw(some)
-    flags = {flag.name.lower(): draw(st.integers(0, 9)) == 0 for flag in Flag}
+    flags = {flag.name.lower(): draw(st.integers(0, 9)) == 0 for flag in Flag if flag not in RULE_FLAGS}
     moved = touching & draw(some)
     free_ball = ball_on != BallOn.ANY_COLOUR and draw(st.booleans())
-    situation = Situation(on_table=on_table, ball_on=ball_on, free_ball=free_ball, lead=draw(st.integers(-10, 10)))
+    rules, lead = draw(st.sampled_from(RULES)), draw(st.integers(-10, 10))
+    situation = Situation(on_table=on_table, ball_on=ball_on, free_ball=free_ball, lead=lead, rules=rules)
     return situation, Stroke(first=first, touching=touching, moved=moved, potted=potted, off=draw(some) & ~potted, **flags)
 
 

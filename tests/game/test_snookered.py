@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game import paths as paths_
-from snooker_env.game.balls import BLACK, PINK, SPOTS, YELLOW, mask_of
+from snooker_env.game.balls import BLACK, COLOURS_MASK, PINK, SPOTS, YELLOW, mask_of
 from snooker_env.game.paths import paths
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
@@ -52,6 +52,8 @@ FAR = (0.0, 0.8)
         ([FAR, (0.5, 0.7)], [(0.0, 0.0)], False),  # one of two is enough
         ([FAR, (0.5, 0.7)], [(0.06, 0.0), (0.33, 0.3)], True),
         ([(0.0, -0.8 + 2 * R)], [(0.0, 0.0)], False),  # touching a ball on
+        ([(0.0, -0.8 + 2 * R + 49e-6)], [(0.0526, -0.8001)], False),  # as the referee sees it
+        ([(0.0, -0.8 + 2 * R + 51e-6)], [(0.0526, -0.8001)], True),
         ([FAR], [(0.0, -0.8 - 2 * R)], False),  # touching a ball not on, which is behind
         ([FAR], [(0.0, -0.8 + 2 * R)], True),
     ],
@@ -215,6 +217,35 @@ def test_snookers_agree_with_rolling(scene):
 
 
 # Paths by name
+
+
+@pytest.mark.parametrize(
+    ("colours", "reds", "expected"),
+    [
+        # Two colours in one line of sight, both of which could be on: the nearer one half hidden by a red, the farther one by the nearer.
+        ([FAR, (0.03, 0.3)], [(0.06, -0.3)], (True, False)),
+        ([FAR, (0.03, 0.3)], [(0.2, -0.3)], (True, True)),  # the nearer one has nothing before it
+        ([FAR, (0.06, 0.3)], [(0.09, -0.3)], (True, True)),  # nor has the farther one
+        ([FAR, (0.0, 0.3)], [], (True, True)),
+    ],
+)
+def test_a_colour_is_met_full_only_with_nothing_at_all_before_it(colours, reds, expected):
+    """S3 R14: of colours that could be on, the nominated one alone is on; only a red may lie before another red."""
+    positions, on_table, _ = table(CUE, reds, colours)
+    assert paths(positions, on_table, COLOURS_MASK & mask_of(np.flatnonzero(on_table))) == expected
+
+
+@settings(max_examples=60, deadline=None)
+@given(scenes())
+def test_full_paths_to_colours_agree_with_rolling(scene):
+    """The balls of ``scenes``, each a colour that could be on or a red that is not: a cue ball rolled at each centre must meet it first."""
+    on, others = scene
+    positions, on_table, _ = table((0.0, 0.0), others, on)
+    balls = np.array([*on, *others])
+    margins = [abs(abs(b[0] * t[1] - b[1] * t[0]) / np.hypot(*t) - 2 * R) for t in on for b in balls if tuple(b) != t]
+    assume(min(margins) > 1e-4)
+    fulls = [rolls_into((0.0, 0.0), np.arctan2(t[1], t[0]), 1.0, balls) == k for k, t in enumerate(on)]
+    assert paths(positions, on_table, COLOURS_MASK & mask_of(np.flatnonzero(on_table)))[1] == any(fulls)
 
 
 @pytest.mark.parametrize("side", [-1, 1])

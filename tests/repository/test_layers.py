@@ -9,7 +9,7 @@ import pytest
 
 import snooker_env
 from snooker_env import Physics, Table, geometry
-from snooker_env.game import balls, in_hand, layouts, snookered
+from snooker_env.game import balls, in_hand, layouts, spotting
 from snooker_env.physics import table
 from snooker_env.tasks import observations
 from snooker_env.tasks.box_actions import Actions
@@ -209,8 +209,9 @@ def test_wherever_a_layout_may_put_a_ball_the_table_of_the_physics_has_room(name
 
 
 def test_touching_and_overlapping_are_measured_alike():
-    assert balls.TOUCH == table.OVERLAP_ALLOWED == snookered.TOUCH == 1e-6
-    assert layouts.GAP > balls.TOUCH and balls.PINK_GAP > balls.TOUCH and in_hand.CLEARANCE > balls.TOUCH
+    assert balls.TOUCH == table.OVERLAP_ALLOWED == spotting.TOUCH == 1e-6
+    assert spotting.CLEARANCE > balls.TOUCH and in_hand.CLEARANCE > balls.REFEREE_TOUCH > balls.TOUCH
+    assert layouts.GAP > balls.REFEREE_TOUCH and balls.PINK_GAP > balls.REFEREE_TOUCH
 
 
 def test_actions_reach_to_the_miscue_limit_of_the_physics():

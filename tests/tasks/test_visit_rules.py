@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import BLACK, BLUE, CUE, N_BALLS, PINK, SPOTS, YELLOW, BallOn
+from snooker_env.game.balls import BLACK, BLUE, CUE, N_BALLS, PINK, REFEREE_TOUCH, SPOTS, YELLOW, BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS as R
+from snooker_env.geometry import HALF_WIDTH
 from snooker_env.tasks.rewards import REWARDS
 from tests.tables import table_state
 
@@ -181,7 +182,7 @@ def touching(gap=0.0, ball=1, others=None, ball_on=BallOn.RED):
 
 
 @pytest.mark.parametrize("aim", [AWAY, GRAZE, 0.75])
-@pytest.mark.parametrize("gap", [0.0, 5e-7, -5e-7])
+@pytest.mark.parametrize("gap", [0.0, 1e-12, 5e-7, -5e-7, 4e-5, 49.9e-6])
 def test_playing_away_from_a_touching_ball_on_is_fair_and_leaves_it(aim, gap):
     env = touching(gap)
     before = env.positions[1].copy()
@@ -192,21 +193,20 @@ def test_playing_away_from_a_touching_ball_on_is_fair_and_leaves_it(aim, gap):
 
 
 def test_a_gap_that_can_be_seen_is_no_touch():
-    env = touching(2e-6)
+    env = touching(REFEREE_TOUCH + 1e-7)
     assert env.step([-0.9, 0, 0, AWAY])[4]["fouls"] == Foul.NO_CONTACT
-    env = touching(2e-6)
+    env = touching(REFEREE_TOUCH + 1e-7)
     assert env.step([-0.9, 0, 0, INTO])[4]["fouls"] == 0
 
 
-@pytest.mark.parametrize("aim", [INTO, 0.2, -0.3])
-@pytest.mark.parametrize("gap", [
-    0.0, -5e-7,
-    5e-7,
-])  # fmt: skip
-def test_playing_into_a_touching_ball_is_a_push(aim, gap):
+@pytest.mark.parametrize("speed", [-0.999, -0.6, 1.0])
+@pytest.mark.parametrize("aim", [INTO, 0.2, -0.3, 0.48])
+@pytest.mark.parametrize("gap", [0.0, 1e-12, -5e-7, 5e-7, 1e-5, 4e-5, 49.9e-6])
+def test_playing_into_a_touching_ball_is_a_push(aim, gap, speed):
+    """However small the gap that the referee does not see, however thin the contact and however slow the stroke."""
     env = touching(gap)
     before = env.positions[1].copy()
-    _, reward, terminated, _, info = env.step([-0.6, 0.0, 0.0, aim])
+    _, reward, terminated, _, info = env.step([speed, 0.0, 0.0, aim])
     assert info["foul"] and info["fouls"] & Foul.PUSH and (reward, terminated) == (-4.0, True)
     assert not np.array_equal(env.positions[1], before)
 
@@ -222,6 +222,26 @@ def test_a_touching_ball_that_is_not_on_does_not_count():
     env = touching(0.0, BLACK, places)
     info = env.step([-0.6, 0.0, 0.0, INTO])[4]
     assert info["fouls"] & Foul.PUSH and info["penalty"] == 7
+
+
+def test_of_several_touching_balls_each_that_is_played_into_is_pushed():
+    """Between the red and the black, into both; their gaps differ, so that the cue ball meets one after the other."""
+    for gap_red, gap_black in [(0.0, 0.0), (1e-6, 4e-5), (4e-5, 1e-6)]:
+        env = touching(gap_red, 1, {BLACK: (0.4 * (2 * R + gap_black), 0.3 + 0.84**0.5 * (2 * R + gap_black)), BLUE: (-0.4, 1.2)})
+        info = env.step([-0.6, 0.0, 0.0, 0.18])[4]
+        assert info["fouls"] & Foul.PUSH and info["penalty"] == 7
+    env = touching(4e-5, 1, {BLACK: (-0.6 * (2 * R + 4e-5), 0.3 + 0.8 * (2 * R + 4e-5))})
+    info = env.step([-0.6, 0.0, 0.0, INTO])[4]  # away from the black, into the red
+    assert info["fouls"] & Foul.PUSH and info["penalty"] == 4
+
+
+def test_a_touching_ball_met_again_off_a_cushion_is_no_push():
+    """Played away from the red straight onto the near cushion, from which the cue ball returns onto it."""
+    for gap in (0.0, 4e-5):
+        env = SnookerEnv(reward="points_and_fouls")
+        table_state(env, {CUE: (-HALF_WIDTH + R + 0.2, 0.3), 1: (-HALF_WIDTH + R + 0.2 + 2 * R + gap, 0.3), BLUE: (0.4, 1.2)}, BallOn.RED)
+        info = env.step([-0.5, 0.0, 0.0, AWAY])[4]
+        assert info["fouls"] == 0 and info["first_ball"] == 1
 
 
 def test_from_a_touching_red_another_ball_may_be_struck():

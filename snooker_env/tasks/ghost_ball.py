@@ -1,0 +1,108 @@
+"""How does the built-in opponent "ghost_ball" play? The widest direct pot, softly; without one, a plain stroke. A kernel over tables."""
+
+from collections.abc import Sequence
+from math import atan2, hypot, sqrt
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._jit import entry, kernel
+from .._types import Ints
+from ..game.balls import bits
+from ..game.frame_columns import CHOICE, IN_HAND, PHASE, PLAY, SAVED, choose, strikeable
+from ..game.philox import pair
+from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
+from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
+from ..physics.cue import squirt
+from .box_actions import A_END_MASS
+from .plain_stroke import BREAK_X, ROLL, SLIDE, break_off, plain, racked, soft
+from .stroke import ShotBuffers, place, strike, touching_balls
+
+if TYPE_CHECKING:
+    from .frame import Frames
+
+_PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8))
+
+
+@kernel
+def put(positions, on_table, mask, found, stream):
+    """Place a cue ball in hand where the widest pot of the balls in ``mask`` is; without a pot, where most of a ball on is seen.
+
+    For the break-off it is placed to the left or right of the brown, as the stream decides.
+    """
+    if racked(positions, on_table):
+        u, _ = pair(stream)
+        place(positions, on_table, BREAK_X if u < 0.5 else -BREAK_X, BAULK_Y)
+        return
+    widest, best = 0.0, -1
+    for c in range(len(_PLACES)):
+        place(positions, on_table, *_PLACES[c])
+        if find_pots(positions, on_table, mask, BALL_RADIUS, found) and found[0, TOLERANCE] > widest:
+            widest, best = found[0, TOLERANCE], c
+    if best < 0:
+        best = 0
+        for c in range(len(_PLACES)):
+            place(positions, on_table, *_PLACES[c])
+            _, _, _, window = soft(positions, on_table, mask)
+            if window > widest:
+                widest, best = window, c
+    place(positions, on_table, *_PLACES[best])
+
+
+@kernel
+def stroke_at(positions, on_table, on, in_hand, failed, found, stream):
+    """The shot of the geometric player at the balls in the mask ``on``: (speed, side, top, direction of the cue ball).
+
+    ``in_hand``: the cue ball has just been placed; ``failed``: a stroke from this position has failed.
+    """
+    if in_hand and racked(positions, on_table):
+        return break_off(positions)
+    touching = touching_balls(positions, on_table)
+    x, y = positions[0, 0], positions[0, 1]
+    if not failed and find_pots(positions, on_table, on & ~touching, BALL_RADIUS, found):
+        ball, pocket, gx, gy = int(found[0, POT_BALL]), int(found[0, POT_POCKET]), found[0, GHOST_X], found[0, GHOST_Y]
+        run = hypot(POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1])
+        needed = SLIDE * sqrt(ROLL * (run + 0.6)) / max(found[0, COS_CUT], 0.2)  # of the cue ball at the impact
+        return min(6.0, SLIDE * sqrt(ROLL * hypot(gx - x, gy - y) + needed * needed)), 0.0, 0.0, atan2(gy - y, gx - x)
+    return plain(positions, on_table, on, touching, failed, stream)
+
+
+@entry(what="the geometric opponent", seconds=3)
+def _ghost_ball(which, positions, on_table, game, streams, options, noise, r, v, w, here, shots):
+    """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike."""
+    found = np.empty((1, POT_COLUMNS))
+    for j in range(which.shape[0]):
+        k = which[j]
+        p, on, row, stream = positions[k], on_table[k], game[k], streams[k]
+        if row[PHASE] == CHOICE:
+            choose(row, PLAY)
+        mask = strikeable(row, bits(on) & ~1)
+        if row[IN_HAND]:
+            put(p, on, mask, found, stream)
+        jitter, _ = pair(stream)
+        failed = row[SAVED] != 0  # he plays from a position that has been restored
+        speed, side, top, aim = stroke_at(p, on, mask, row[IN_HAND], failed, found, stream)
+        speed *= 1.0 + (0.04 if row[IN_HAND] and racked(p, on) else 0.2) * (jitter - 0.5)
+        strike((speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0), p, on, stream, options, noise, j, r, v, w, here, shots)
+
+
+class GhostBallOpponent:
+    """The geometric player: the widest direct pot (``game.pots``), struck in the middle, as softly as possible.
+
+    * Without a pot it plays a plain stroke (``plain_stroke``): the break-off, a soft stroke at a ball on that it sees, an escape.
+    * With the cue ball in hand it takes the best of ten places. After a foul it always plays the table as it lies.
+    * It allows for neither throw nor position.
+    * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within the window that strikes the
+      ball. From a position that was restored after its miss it tries no pot, and varies more: two exact players cannot repeat one failing
+      stroke for ever.
+    """
+
+    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> None:
+        """None: it plays as a kernel."""
+
+    def prepare(self, frames: "Frames", which: Ints, actions: Any, buffers: ShotBuffers) -> Ints:
+        """Carry its strokes out up to the strike, one on each table."""
+        b = buffers
+        options, noise, _ = frames.packed
+        _ghost_ball(which, frames.positions, frames.on_table, frames.game, frames.streams, options, noise, b.r, b.v, b.w, b.here, b.shots)
+        return which

@@ -1,0 +1,61 @@
+"""How does the built-in opponent "random" play? Uniformly: any action, or one of the available choices. Kernels over tables."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._jit import entry
+from .._types import Floats, Ints
+from ..game.philox import pair
+from .discrete_actions import SIZE as CHOICES
+from .discrete_actions import Choices
+from .stroke import ShotBuffers
+
+if TYPE_CHECKING:
+    from .frame import Frames
+
+
+@entry(what="uniform play", seconds=1)
+def _uniform(which, streams, actions):
+    """Each component of the actions of the tables ``which`` uniform in [-1, 1): the rows of ``actions`` (n, k)."""
+    size = actions.shape[1]
+    for j in range(which.shape[0]):
+        k = which[j]
+        for c in range(0, size, 2):
+            u, v = pair(streams[k])
+            actions[k, c] = 2.0 * u - 1.0
+            if c + 1 < size:
+                actions[k, c + 1] = 2.0 * v - 1.0
+
+
+@entry
+def _uniform_choice(which, streams, masks, actions):
+    """A uniformly random available choice on each of the tables ``which``; masks (len(which), CHOICES)."""
+    for j in range(which.shape[0]):
+        k, many = which[j], 0
+        for c in range(CHOICES):
+            many += masks[j, c]
+        u, _ = pair(streams[k])
+        left = int(u * many)
+        for c in range(CHOICES):
+            if masks[j, c]:
+                if left == 0:
+                    actions[k, 0] = c
+                left -= 1
+
+
+class UniformOpponent:
+    """Uniform random play: every component of a box action, the decision included; or one of the available discrete actions."""
+
+    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
+        """Empty actions: ``prepare`` draws them from each table's own stream."""
+        return np.empty((frames.n, frames.rules.actions.size))
+
+    def prepare(self, frames: "Frames", which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
+        """Carry the strokes out up to the strike; returns the tables with a stroke."""
+        if isinstance(frames.rules.actions, Choices):
+            _uniform_choice(which, frames.streams, frames.action_masks(which), actions)
+        else:
+            _uniform(which, frames.streams, actions)
+        return frames.prepare(which, actions, buffers)

@@ -1,0 +1,240 @@
+"""Do the kernels of a row act as the ``Frame`` that one reads, in every game and under every miss rule? Strokes made up at random."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from snooker_env.game import frame_columns as columns
+from snooker_env.game.balls import COLOURS_MASK, N_BALLS, BallOn, balls_on, ids_of, mask_of
+from snooker_env.game.frame import MISS_RULES, Frame
+from snooker_env.game.referee import Stroke, numbers_of
+from snooker_env.game.rule_sets import RULES
+from snooker_env.game.ruling import ruling
+from snooker_env.kernels import entry
+
+PLACES = tuple((0.01 * i, -0.5) for i in range(N_BALLS)), (True,) * N_BALLS
+CHOICES = {
+    "play": columns.PLAY,
+    "play_again": columns.PLAY_AGAIN,
+    "replace": columns.REPLACE,
+    "anywhere": columns.PLACE_ANYWHERE,
+}
+
+
+@entry
+def play(row, numbers, rules, miss, clear, full, attempt, layout, time_to_play, duration):
+    table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags = numbers
+    result = ruling(table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags)
+    columns.after_stroke(row, result, rules, miss, clear, full, attempt, layout, time_to_play, duration)
+
+
+@entry
+def choose(row, what):
+    columns.choose(row, what)
+
+
+@entry
+def draw(row, first):
+    columns.draw(row, first)
+
+
+@entry
+def give_up(row, claims):
+    if claims:
+        columns.claim(row)
+    else:
+        columns.concede(row)
+
+
+@entry
+def allowed(row, rules, time_to_play):
+    """Of ``Frame``: "replace" and "anywhere" in ``choices``, ``may_claim``, who may concede, whether the next stroke would be late."""
+    replace, anywhere = columns.may_replace(row, rules), columns.may_place_anywhere(row, rules)
+    concedes = columns.may_concede(row, 0), columns.may_concede(row, 1)
+    return bool(replace), bool(anywhere), bool(columns.may_claim(row)), concedes, columns.is_late(row, rules, time_to_play)
+
+
+def stroke_at(frame, rng):
+    """A stroke that can be played: often a pot, often nothing at all."""
+    on = ids_of(balls_on(frame.ball_on, frame.on_table))
+    everything = ids_of(frame.on_table)
+    ball = int(rng.choice(on if rng.random() < 0.7 else everything))
+    potted = mask_of([ball]) if rng.random() < 0.5 else int(rng.random() < 0.1)
+    seen = {"snookered": bool(rng.random() < 0.3), "no_cushion": bool(rng.random() < 0.1)}
+    if seen["snookered"] and rng.random() < 0.3:
+        seen["behind_free_ball"] = True
+    if rng.random() < 0.4:
+        return Stroke(**seen)
+    return Stroke(first=1 << ball, potted=potted, **seen)
+
+
+def can_concede(frame):
+    return tuple(frame.phase in ("stroke", "choice") and frame.striker == player for player in (0, 1))
+
+
+@pytest.mark.parametrize("rules", RULES)
+@pytest.mark.parametrize("miss", MISS_RULES)
+def test_row_and_frame_stay_alike(rules, miss):
+    if rules == "shoot_out" and miss != "off":
+        with pytest.raises(ValueError, match="no miss is called"):
+            Frame.start(rules=rules, miss=miss)
+        return
+    rng, met, codes = np.random.default_rng(5), Counter(), (RULES.index(rules), MISS_RULES.index(miss))
+    layouts = columns.Layouts(np.array([PLACES[0]]), np.array([PLACES[1]]))
+    for game in range(120):
+        few = COLOURS_MASK | 0b110 if game % 2 else None
+        frame = Frame.start(breaker=game % 2, miss=miss, rules=rules, on_table=few)
+        row = np.zeros(columns.COLUMNS, np.int64)
+        columns.write_frame(frame, 0, row, layouts, 0)
+        to_play, stubborn = int(rng.choice([4_000, 9_000, 12_000, 16_000])), rng.random() < 0.5
+        for _ in range(400):
+            assert columns.frame_of(row, miss, layouts, 0, rules) == frame
+            assert Frame.from_dict(frame.to_dict()) == frame
+            late = 0 < frame.shot_clock < to_play
+            choices = [what in frame.choices for what in ("replace", "anywhere")]
+            assert allowed(row, codes[0], to_play) == (*choices, frame.may_claim, can_concede(frame), late)
+            if frame.phase == "over":
+                break
+            if frame.phase == "choice":
+                what = str(rng.choice(frame.choices)) if not stubborn else frame.choices[-1]
+                met[what] += 1
+                frame = frame.choose(what)
+                choose(row, CHOICES[what])
+            elif frame.phase == "lot":
+                first = int(rng.integers(2))
+                frame = frame.draw(first)
+                draw(row, first)
+            elif (frame.may_claim and rng.random() < 0.2) or rng.random() < 0.002:
+                claims = frame.may_claim
+                met["claimed" if claims else "conceded"] += 1
+                frame = frame.claim() if claims else frame.concede(frame.striker)
+                give_up(row, claims)
+            else:
+                stroke = Stroke(late=True) if late else stroke_at(frame, rng)
+                clear, full, attempt = (bool(x) for x in rng.random(3) < [0.5, 0.1, 0.4])
+                layout, duration = PLACES if miss != "off" else None, int(rng.integers(1_000, 12_000))
+                numbers = numbers_of(frame.situation, stroke)
+                play(row, numbers, *codes, clear, full, attempt, layout is not None, to_play, duration)
+                frame, verdict = frame.play(
+                    stroke, clear_path=clear, full_ball_path=full, attempt=attempt, layout=layout, time_to_play=to_play, duration=duration
+                )
+                met["late"] += bool(verdict.fouls & verdict.fouls.LATE)
+                met["cushion"] += bool(verdict.fouls & verdict.fouls.NO_CUSHION)
+                met["in time"] += frame.phase == "over" and frame.clock + to_play > 590_000
+                met["level"] += frame.phase == "lot"
+                met["missed"] += frame.miss_called
+                met["five"] += frame.misses == 5
+                met["lost"] += frame.phase == "over" and frame.on_table > 1 << 21
+        met["ended"] += frame.phase == "over"
+    assert met["ended"] > 60 and met["conceded"] and met["claimed"]
+    assert bool(met["late"] and met["cushion"] and met["in time"]) == (rules == "shoot_out")
+    assert (met["missed"] > 0) == (miss != "off") == (met["replace"] > 0) and bool(met["play"]) == (rules != "shoot_out")
+    assert (met["anywhere"] > 0) == (met["five"] > 0) == (rules == "six_red" and miss != "off")
+
+
+def test_six_reds_are_the_first_places_of_the_triangle():
+    assert ids_of(Frame.start(rules="six_red").on_table) == (*range(1, 7), *range(16, 22))
+    assert Frame.start(rules="six_red").available == 6 * 8 + 27
+
+
+MISSED = Stroke()
+
+
+def test_six_red_the_fifth_miss_lets_the_opponent_place_the_cue_ball_anywhere():
+    frame = Frame.start(rules="six_red", miss="clear_path")
+    for k in range(1, 5):
+        frame, _ = frame.play(MISSED, clear_path=True)
+        assert frame.miss_called and frame.misses == k and frame.choices == ("play", "play_again", "replace")
+        frame = frame.choose("replace")
+        assert frame.striker == 0 and frame.misses == k
+    frame, _ = frame.play(Stroke(snookered=True), clear_path=True)
+    assert frame.misses == 5 and frame.choices == ("play", "play_again", "anywhere") and frame.free_ball
+    placed = frame.choose("anywhere")
+    assert (placed.striker, placed.in_hand, placed.anywhere, placed.free_ball, placed.misses) == (1, True, True, False, 0)
+    after, _ = placed.play(Stroke(first=2))
+    assert not after.in_hand and not after.anywhere
+    missed, _ = placed.play(MISSED, clear_path=True)  # replaced, he places it anywhere once more
+    assert missed.choose("replace").anywhere
+    again = frame.choose("play_again")  # and there is no sixth call
+    assert not again.play(MISSED, clear_path=True)[0].miss_called
+
+
+def test_six_red_not_anywhere_when_snookers_are_required():
+    frame = Frame.start(rules="six_red", miss="clear_path", on_table=COLOURS_MASK | 2)
+    for _ in range(4):
+        frame = frame.play(MISSED, clear_path=True, full_ball_path=False)[0].choose("replace")
+    fifth, _ = frame.play(MISSED, clear_path=True)
+    assert fifth.scores == (0, 20) and fifth.choices[-1] == "anywhere"
+    few = Frame.from_dict(fifth.to_dict() | {"scores": [0, 36]})
+    assert few.available == 35 and few.choices == ("play", "play_again")
+
+
+def test_any_number_of_misses_with_part_of_a_ball_to_be_seen_until_the_scores_decide():
+    """S3 R14 has no limit but for a full ball: penalties add up until they reach what is left, and then no miss is called."""
+    frame, calls = Frame.start(miss="clear_path"), 0
+    while True:
+        frame, _ = frame.play(MISSED, clear_path=True)
+        if not frame.miss_called:
+            break
+        calls, frame = calls + 1, frame.choose("replace")
+    assert calls == 36 and frame.scores == (0, 148) and frame.available == 147  # 4 points each
+
+
+def test_a_snookered_striker_must_come_near():
+    for miss, called in (("clear_path", False), ("attempt", True)):
+        frame = Frame.start(miss=miss)
+        assert frame.play(MISSED, attempt=False)[0].miss_called == called
+        assert not frame.play(MISSED, attempt=True)[0].miss_called
+        ahead = Frame(miss=miss, scores=(0, 147))
+        assert not ahead.play(MISSED, attempt=False)[0].miss_called
+
+
+def shoot_out(**more):
+    return Frame(rules="shoot_out", **more)
+
+
+def test_shoot_out_a_foul_gives_the_ball_in_hand_anywhere():
+    frame, verdict = shoot_out().play(Stroke(snookered=True))
+    assert (frame.phase, frame.striker, frame.in_hand, frame.anywhere, frame.free_ball) == ("stroke", 1, True, True, False)
+    assert frame.scores == (0, 4) and verdict.in_hand
+    frame, _ = frame.play(Stroke(first=2))
+    assert not frame.in_hand and not frame.anywhere
+
+
+def test_shoot_out_a_ball_must_be_potted_or_reach_a_cushion():
+    assert shoot_out().play(Stroke(first=2, no_cushion=True))[0].scores == (0, 4)
+    assert shoot_out().play(Stroke(first=2, potted=2, no_cushion=True))[0].scores == (1, 0)
+    assert shoot_out(ball_on=BallOn.PINK, on_table=3 << 20).play(Stroke(first=1 << 20, no_cushion=True))[0].scores == (0, 6)
+    assert Frame().play(Stroke(first=2, no_cushion=True))[0].scores == (0, 0)
+
+
+def test_shoot_out_the_clocks():
+    frame, _ = shoot_out().play(Stroke(first=2), time_to_play=9_000, duration=6_000)
+    assert frame.clock == 6_000  # it starts with the first stroke
+    late, verdict = frame.play(Stroke(first=2, potted=2), time_to_play=15_001, duration=6_000)
+    assert verdict.penalty == 5 and late.clock == 21_000 and late.anywhere and late.on_table == frame.on_table
+    assert shoot_out(ball_on=BallOn.PINK, on_table=3 << 20, clock=1).play(Stroke(), time_to_play=20_000)[1].penalty == 6
+    half = shoot_out(clock=300_000)
+    assert half.shot_clock == 10_000 and half.play(Stroke(first=2), time_to_play=10_000)[1].penalty == 0
+    assert half.play(Stroke(first=2), time_to_play=10_001)[1].penalty == 5
+    assert Frame().shot_clock == 0 and Frame().play(Stroke(first=2), time_to_play=10**6)[1].penalty == 0
+
+
+@pytest.mark.parametrize(("scores", "winner"), [((10, 3), 0), ((3, 10), 1), ((4, 5), 1)])
+def test_shoot_out_when_the_time_is_up_the_higher_score_wins(scores, winner):
+    frame = shoot_out(scores=scores, clock=580_000)
+    assert frame.play(Stroke(first=2), time_to_play=8_000, duration=3_999)[0].phase == "stroke"
+    over, _ = frame.play(Stroke(first=2), time_to_play=8_000, duration=4_000)
+    assert (over.phase, over.winner, over.clock) == ("over", winner, 592_000)
+    last, _ = shoot_out(scores=(4, 5), clock=585_000).play(Stroke(first=2, potted=14), time_to_play=8_000, duration=2_000)
+    assert last.winner == 0  # a stroke begun in time counts
+
+
+def test_shoot_out_level_scores_leave_the_black():
+    lot, _ = shoot_out(scores=(5, 5), clock=595_000).play(Stroke(first=2), time_to_play=3_000, duration=5_000)
+    assert (lot.phase, lot.on_table, lot.in_hand, lot.anywhere) == ("lot", 1 << 21, True, False)
+    frame = lot.draw(1)
+    frame, _ = frame.play(Stroke(first=1 << 21), time_to_play=3_000, duration=5_000)  # no frame clock any more
+    assert frame.phase == "stroke" and frame.striker == 0
+    assert frame.play(Stroke(), time_to_play=3_000)[0].winner == 1
