@@ -9,7 +9,6 @@ those of ``train.py`` (``agents.learning.networks``). The reward is the growth o
 """
 
 import argparse
-import copy
 import io
 import json
 import math
@@ -34,7 +33,7 @@ from agents.learning.networks import TablePolicy, TableReader
 from commands.files import write_atomic
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.sb3 import SnookerVecEnv
-from snooker_env.tasks import CHOICES, OBSERVATION_SIZE, SIDES, SPEEDS, TOPS, choice_of, observation_space
+from snooker_env.tasks import CHOICES, OBSERVATION_SIZE, SIDES, SPEEDS, TOPS, OpponentPool, choice_of, observation_space
 
 GAME: dict[str, Any] = {"task": "frame", "action": "discrete", "noise": "professional", "reward": "points"}
 LEARNING: dict[str, Any] = {"n_steps": 64, "n_epochs": 2, "gamma": 0.95, "gae_lambda": 0.5, "vf_coef": 0.01, "ent_coef": 0.003}
@@ -79,8 +78,7 @@ class SelfPlayed:
     frames = True
 
     def __init__(self, weights=MODEL):
-        self.policy = FramePolicy(observation_space("flat"), Discrete(CHOICES), lambda _: 0.0)
-        load(self.policy, torch.load(weights, weights_only=True))
+        self.policy = policy_of(torch.load(weights, weights_only=True))
 
     def act(self, tables, observations, going):
         """The most probable choice on each table."""
@@ -98,22 +96,29 @@ def load(policy, given):
     policy.load_state_dict(given, strict=False)
 
 
-class Pool:
-    """The opponent: a past self, another one in each rollout. Half of the time it is the newest, else any of them."""
+def policy_of(given):
+    """A policy with these weights, for the entries of the observation that frames share with visits: the network reads no others."""
+    policy = FramePolicy(observation_space("flat"), Discrete(CHOICES), lambda _: 0.0)
+    load(policy, given)
+    return policy
 
-    def __init__(self):
-        self.weights = []
-        self.player: Any = None
 
-    def draw(self, seed):
-        """Let the past self that this seed draws play from now on."""
-        rng = np.random.default_rng(seed)
-        newest = len(self.weights) - 1
-        load(self.player, self.weights[newest if rng.random() < 0.5 else rng.integers(newest + 1)])
+class PastSelf:
+    """A past self as an opponent: it draws its choices from its own policy."""
+
+    def __init__(self, given):
+        self.weights, self.policy = given, policy_of(given)
 
     def many(self, observations, generators, masks):
         """Its choices on all tables that wait for it."""
-        return self.player.predict(observations, action_masks=masks)[0]
+        return self.policy.predict(observations[:, :OBSERVATION_SIZE], action_masks=masks)[0]
+
+
+def add(pool, given):
+    """Add the self with these weights to the pool. The newest plays half of the frames that begin now; the others share the rest."""
+    for k in range(len(pool.members)):
+        pool.set_weight(k, 1.0)
+    pool.add(PastSelf(given), max(1, len(pool.members)))
 
 
 def judge(policy, opponent, frames, threads):
@@ -146,7 +151,7 @@ class Softly:
 
 
 class Run(BaseCallback):
-    """Between two rollouts: the pool grows, an opponent is drawn, and everything is saved."""
+    """Between two rollouts, from time to time: the pool grows, some frames are judged, and everything is saved."""
 
     def __init__(self, args, pool, curve, seconds):
         super().__init__()
@@ -155,18 +160,19 @@ class Run(BaseCallback):
     def _on_rollout_start(self):
         policy, shots, args = self.model.policy, self.num_timesteps, self.args
         if not self.curve or shots - self.curve[-1]["shots"] >= args.shots / SELVES:
-            self.pool.weights.append(weights(policy))
+            if self.curve:
+                add(self.pool, weights(policy))
             won = {name: judge(policy, name, args.checked, args.threads)["won"] for name in ("random", "ghost_ball")}
             self.curve.append({"shots": shots, "seconds": round(time.perf_counter() - self.began), **won})
             print(json.dumps(self.curve[-1]), flush=True)
             self.save()
-        self.pool.draw((args.seed, shots))
 
     def save(self):
         """Write the checkpoint: between two rollouts it loses nothing."""
         policy, args = self.model.policy, self.args
         state = {
-            "shots": self.num_timesteps, "policy": weights(policy), "optimizer": policy.optimizer.state_dict(), "pool": self.pool.weights,
+            "shots": self.num_timesteps, "policy": weights(policy), "optimizer": policy.optimizer.state_dict(),
+            "pool": [past.weights for past in self.pool.members],
             "tables": self.training_env.env_method("get_state"), "random": (np.random.get_state(), torch.get_rng_state()),  # noqa: NPY002
             "curve": self.curve, "seconds": time.perf_counter() - self.began, "asked": (args.shots, args.tables, args.seed),
         }  # fmt: skip
@@ -182,19 +188,20 @@ def train(args):
     state = pickle.loads(file.read_bytes()) if file.is_file() else None
     if state and state["asked"] != (args.shots, args.tables, args.seed):
         raise SystemExit(f"{file} was made with --shots, --tables and --seed {state['asked']}: give these, or another --out")
-    pool = Pool()
+    pool = OpponentPool()
     tables = SnookerVecEnv(args.tables, opponent=pool, threads=args.threads, **GAME)
     rollout = args.tables * LEARNING["n_steps"]
     rate = LinearSchedule(args.rate, 1e-5, 1.0)
     model = MaskablePPO(
         FramePolicy, tables, seed=None if state else args.seed, device="cpu", batch_size=min(2048, rollout), learning_rate=rate, **LEARNING
     )
-    pool.player = copy.deepcopy(model.policy)
     run = Run(args, pool, state["curve"] if state else [], state["seconds"] if state else 0.0)
+    for past in state["pool"] if state else [weights(model.policy)]:
+        add(pool, past)
     if state:
         load(model.policy, state["policy"])
         model.policy.optimizer.load_state_dict(state["optimizer"])
-        model.num_timesteps, pool.weights = state["shots"], state["pool"]
+        model.num_timesteps = state["shots"]
         tables.set_options([{"state": table} for table in state["tables"]])
         numpy_state, torch_state = state["random"]
         np.random.set_state(numpy_state)  # noqa: NPY002 - Stable-Baselines3 draws from the global one
