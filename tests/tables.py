@@ -40,7 +40,7 @@ def frame_state(env, places, frame, **state):
     mask = sum(1 << ball for ball in places if ball)
     fields = {"on_table": mask, "in_hand": False, "miss": env.options.miss} | frame
     plain = Frame(**fields).to_dict()
-    saved = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": plain}
+    saved = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": plain, "unpaid": 0, "due": False}
     env.reset(options={"state": env.get_state() | saved | state})
     return env
 

@@ -27,7 +27,7 @@ from ..play.routes import STROKE, stroke_asked
 from ..play.seats import Seats
 from ..play.server import RefusedError, parsed
 from ..play.service import Service
-from ..play.session import Session
+from ..play.session import STATE, Session
 from ..play.wishes import DECISIONS, action_of
 
 OPTIONS = {"aim": "absolute", "elevation": True, "placement": True}
@@ -170,6 +170,7 @@ class ProgramPlayer:
         session, noise = self._session, tables.options.noise
         if tables.options.task == "frame":
             state = tables.tables.get_state(k)
+            state = {name: state[name] for name in STATE}
             state["frame"] = state["frame"] | {"miss": "clear_path"}  # as a session plays; nothing is called for what was before
             session.load({"format": "snooker-game", "version": 1, "practice": False, "noise": [noise, noise], "state": state})
         else:

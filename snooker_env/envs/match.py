@@ -13,18 +13,19 @@ from pettingzoo import AECEnv
 from .._check import choice, refuse
 from .._types import Action, Observation, RenderMode
 from ..game.frame import Frame
-from ..game.frame_columns import POINTS, STROKES
+from ..game.frame_columns import STRIKER, STROKES
 from ..simulation import Shot
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
+from ..tasks.matches import Matches
 from ..tasks.options import Options, options_of
 from ..tasks.rewards import frame_reward
-from ..tasks.tables import I_FOULS, I_PENALTY, I_POINTS, Crew
+from ..tasks.tables import Crew
 from .one_table import ShowsBalls
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import HasHistory, Record
-from .reset_options import Start, start_of
+from .reset_options import Start, breakers_of, start_of
 
 PLAYERS = ("player_0", "player_1")
 
@@ -131,16 +132,19 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
             box = given.get("action", "box") == "box"
             given = {"task": "frame", "placement": box, "decision": box, **given}
         self.options = options_of(options, given)
-        if self.options.task != "frame" or self.options.opponent != "none" or self.options.trust:
+        if self.options.task == "visit" or self.options.opponent != "none" or self.options.trust:
             what = f"task={self.options.task!r}, opponent={self.options.opponent!r}, trust={self.options.trust!r}"
-            raise ValueError(f'options = {what}: must be task="frame", opponent="none" and trust=False: a match has two players')
+            allowed = 'must be task="frame" or "match", opponent="none" and trust=False: a match has two players'
+            raise ValueError(f"options = {what}: {allowed}")
         if render_mode is not None:
             choice("render_mode", render_mode, MODES)
         self.render_mode = render_mode
-        self.tables = Frames(self.options.rules, 1)
+        self.tables = (Matches if self.options.task == "match" else Frames)(self.options.rules, 1)
+        self.tables.two_players = True
         self.possible_agents = list(PLAYERS)
         self.agents = []
-        self.observation_spaces = {name: observations.space(self.options.observation, frame=True) for name in PLAYERS}
+        replaced = self.options.rules.misses
+        self.observation_spaces = {name: observations.space(self.options.observation, frame=True, replaced=replaced) for name in PLAYERS}
         self.action_spaces = {name: copy.deepcopy(self.options.rules.actions.space) for name in PLAYERS}  # each with its own generator
         self.np_random, _ = seeding.np_random()
         self._seeded = False
@@ -203,7 +207,7 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
         Returns
         -------
         numpy.ndarray or dict
-            float32 (130,), or "balls" (22, 5) and "state" (20,); new arrays.
+            As in the observation space; new arrays.
         """
         rows = self.tables.observe(np.zeros(1, np.int64), PLAYERS.index(agent))
         return observations.shaped(self.options.observation, rows[0])
@@ -239,8 +243,8 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
         seed : int, optional
             Seed of all random numbers from now on; default None: the stream goes on.
         options : dict, optional
-            {"state": a state from ``get_state``} or {"position": a ``snooker_env.Position`` or its ``to_dict()``} starts from there. Other
-            keys are ignored, because PettingZoo's own tests pass some.
+            {"state": a state from ``get_state``} or {"position": a ``snooker_env.Position`` or its ``to_dict()``} starts from there.
+            {"breaker": 0 or 1} says who breaks. Other keys are ignored, because PettingZoo's own tests pass some.
 
         Returns
         -------
@@ -252,8 +256,9 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
             If the options, the state or the position are invalid.
         """
         if options is not None and not isinstance(options, dict):
-            raise refuse("options", options, 'must be None or a dict, of which "state" or "position" is read')
+            raise refuse("options", options, 'must be None or a dict, of which "state", "position" or "breaker" is read')
         start = start_of(options or {}, self.tables, lambda state: self.tables.checked(state, self.np_random, either=True))
+        breakers = breakers_of(options or {}, 1, self.options, two_players=True)
         if seed is not None:
             self.np_random, _ = seeding.np_random(seed)
         if start is not None:
@@ -262,7 +267,7 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
             self.tables.seed(0, self.np_random)
             self._seeded = True
         if start is None:
-            self.tables.deal(np.zeros(1, np.int64), drawn=True)
+            self.tables.deal(np.zeros(1, np.int64), drawn=True, **breakers)
         self._begin()
         if self.render_mode == "human":
             self._show()
@@ -276,13 +281,14 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
         self._cumulative_rewards = dict.fromkeys(PLAYERS, 0.0)
         self._account()
 
-    def _account(self):
+    def _account(self, striker=None):
+        """Whose turn it is, and the infos; ``striker``: who has just had one."""
         frame = self.frame
         over = frame.phase == "over"
         self.terminations = dict.fromkeys(PLAYERS, over)
         self.truncations = dict.fromkeys(PLAYERS, bool(self.tables.stopped()[0]) and not over)
         self.agent_selection = PLAYERS[frame.striker]
-        self.infos = {name: self._info(frame, k) for k, name in enumerate(PLAYERS)}
+        self.infos = {name: self._info(striker, k) for k, name in enumerate(PLAYERS)}
 
     def step(self, action: Action) -> None:
         """Play the action of the selected player.
@@ -312,16 +318,15 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
             self._was_dead_step(action)
             return
         a = self.options.rules.actions.check(action)
-        before = self.tables.lead()[0]
-        out = self.tables.output()
+        striker, out = int(self.tables.game[0, STRIKER]), self.tables.output()
         crew = Crew(self._record.buffers, (), self._watch)
         self._record.begin_step()
         played = self.tables.turn(lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers), out, crew)[0]
         self._last = out if played else None
         self._cumulative_rewards[name] = 0.0
-        gained, winner = int(self.tables.lead()[0] - before), self.frame.winner
+        gained, winner = self.tables.pay(0), self.frame.winner
         self.rewards = {player: frame_reward(self.options.reward, gained, winner, k) for k, player in enumerate(PLAYERS)}
-        self._account()
+        self._account(striker)
         self._accumulate_rewards()
         if self.render_mode == "human":
             self._show(played=bool(played))
@@ -329,16 +334,10 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
     def _watch(self, k, buffers, j, own):
         self._record.saw(self.tables, k, buffers, j, own)
 
-    def _info(self, frame, player):
-        last, row = self._last, self.tables.game[0]
-        info = {
-            "points": 0.0 if last is None else float(last.reals[0, I_POINTS]),
-            "penalty": 0 if last is None else int(last.counts[0, I_PENALTY]),
-            "fouls": 0 if last is None else int(last.counts[0, I_FOULS]),
-            "score": float(frame.scores[player]), "opponent_score": float(frame.scores[1 - player]),
-            "strokes": int(row[STROKES]), "break": float(row[POINTS]),
-            "choice": frame.phase == "choice", "free_ball": frame.free_ball, "winner": -1 if frame.winner is None else frame.winner,
-        }  # fmt: skip
+    def _info(self, striker, player):
+        """The keys of ``SnookerEnv``'s info: what the last stroke was, whoever played it, and the frame as the player sees it."""
+        info = self.tables.info_of(player, self._last)
+        info["opponent_strokes"] = int(self._last is not None and striker is not None and striker != player)
         if isinstance(self.options.rules.actions, Choices):
             info["action_mask"] = self.action_mask(PLAYERS[player])
         return info

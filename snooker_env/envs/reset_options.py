@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from .._check import choice, refuse, refuse_what
+from .._check import choice, integer, refuse, refuse_what
 from .._types import Bools, Floats, Ints
 from ..game.balls import mask_of_present
 from ..game.frame import MOST_BREAK, points_available
 from ..game.frame_columns import BALL_ON, POINTS
+from ..tasks.options import Options
 from ..tasks.tables import Tables
 
-ONE, MANY = ("state", "position"), ("reset_mask", "state", "states", "position", "positions")
+ONE, MANY = ("state", "position", "breaker"), ("reset_mask", "state", "states", "position", "positions", "breaker")
 """Allowed keys of the reset options for one table and for many."""
 
 
@@ -70,6 +71,20 @@ def given_of(options: Any, known: tuple[str, ...]) -> dict[str, Any]:
         choice("options", key, known)
     _one_start(options)
     return options
+
+
+def breakers_of(options: dict[str, Any], n: int, game: Options, *, two_players: bool = False) -> dict[str, Ints]:
+    """Who breaks on each of n tables instead of the draw, as the keyword ``breakers`` of ``Frames.reset``; empty without "breaker"."""
+    if "breaker" not in options:
+        return {}
+    given, field = options["breaker"], 'options["breaker"]'
+    if game.task == "visit" or (game.opponent == "none" and not two_players):
+        raise refuse(field, given, "must be left out: there is no opponent, and nothing is drawn")
+    if isinstance(given, list | tuple | np.ndarray) and np.ndim(given) > 0:
+        if len(given) != n:
+            raise refuse_what(field, f"{len(given)} numbers", f"must be 0, 1, or {n} of them")
+        return {"breakers": np.array([integer(f"{field}[{k}]", one, 0, 1) for k, one in enumerate(given)], np.int64)}
+    return {"breakers": np.full(n, integer(field, given, 0, 1), np.int64)}
 
 
 def _one_start(options):

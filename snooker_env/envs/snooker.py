@@ -17,7 +17,7 @@ from ..tasks.tables import Crew, Tables
 from .one_table import OneTable
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import HasHistory, Record
-from .reset_options import ONE, given_of, start_of
+from .reset_options import ONE, breakers_of, given_of, start_of
 
 
 class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
@@ -30,13 +30,13 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     balls (Mathavan, Jackson and Parkin 2014) and at cushions (their model of 2010).
 
     With ``task="frame"`` the agent plays a whole frame against ``opponent``, with scores, fouls and free balls. One step is one stroke of
-    the agent and all strokes of the opponent after it. The seed determines who breaks off.
+    the agent and all strokes of the opponent after it. The seed determines who breaks off. ``task="match"`` is the best of ``frames``
+    frames, in which they break in turn; what is said of a frame holds for it, too.
 
     | opponent | plays |
     |---|---|
     | "none" | nobody: the agent plays on from its own misses and fouls; penalties go to the other score |
-    | "random" | uniformly random actions |
-    | "ghost_ball" | the geometric player: the widest direct pot, as softly as possible |
+    | "random", "ghost_ball" | uniformly random actions; the geometric player: the widest direct pot, as softly as possible |
     | a callable | ``opponent(observation, rng) -> action``, in this environment's spaces, from its own side of the table |
     | a path to a ``.zip`` | a model of Stable-Baselines3 or sb3-contrib, trained on either task with these options |
 
@@ -56,18 +56,24 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | elevation of the cue | 0 deg | 30 deg | ``elevation=True`` |
     | place: across the D | 0.292 m to the left (-x) | 0.292 m to the right (+x) | ``placement=True`` |
     | place: back in the D | on the baulk line | on the edge of the D | ``placement=True`` |
+    | nomination | yellow | black | ``nominate=True`` |
     | decision after a foul | the offender plays again | the balls are replaced, he plays again | ``decision=True`` |
+    | declaration | concedes | claims the frame | ``concede``, ``claim``, ``lot`` |
 
-    A tip offset outside the disc of radius 0.5 R (the miscue limit) is moved back to its edge. The aim is the direction in which the cue
+    A tip offset outside the disc of radius 0.5 R (the miscue limit) is moved to its edge. The aim is the direction in which the cue
     ball leaves without noise: squirt is compensated. The best potting line is that of the widest direct pot or, without one, the line to
     the nearest ball on. The place counts only when the cue ball is in hand; without it, the cue ball stands at its usual place for the
     break-off, or near it. The decision counts only in a frame when the opponent has just fouled. Between -1/3 and 1/3 the agent plays, with
     this same action; above 1/3 it does so, too, unless a miss was called (``miss="clear_path"``).
 
     ``action="discrete"``: ``Discrete(540)``. A choice is one of 4 pots, 9 speeds, 3 sides and 5 tops, and the aim is solved for it
-    (``snooker_env.tasks.choice_of``). ``action_masks()`` returns the available choices.
+    (``snooker_env.tasks.choice_of``). ``action_masks()`` returns the available choices. ``nominate=True`` makes them 7 x 540, 540 n + the
+    choice: n = 0 nominates nothing, 1 to 6 yellow to black. ``concede``, ``claim`` and ``lot`` each add one choice at the end.
 
-    After a red, the colour first struck is the one nominated; so is the free ball.
+    The nomination counts after a red (the range cut in six) and with a free ball (in seven: first the ball on itself); the aim and the
+    pots are then those of the ball nominated. Without ``nominate``, the colour first struck is the one nominated; so is the free ball. The
+    declaration concedes below -2/3 and claims above 2/3 (only the black left, more than 7 ahead); the winner of the lot for a re-spotted
+    black lets the other player begin below 0.
 
     ## Observation space
     ``observation="flat"`` (default): ``Box(-1, 1, (121,), float32)``, the 22 rows of 5 numbers of the table of balls,
@@ -76,26 +82,29 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
 
     | column of balls | value | entry of state | value |
     |---|---|---|---|
-    | x | x / 0.889 m, 0 when off the table | reds | reds left / 15 |
-    | y | y / 1.7845 m, 0 when off the table | any_colour, red, yellow .. black | one-hot: the ball on |
-    | on_table | 0 or 1 | in_hand | 1 if the cue ball is in hand |
-    | value | points of the ball / 7 | break | points of the visit / 155 |
-    | ball_on | 1 if it may be struck first | | |
+    | x, y | x / 0.889 m, y / 1.7845 m, 0 when off the table | reds | reds left / 15 |
+    | on_table | 0 or 1 | any_colour, red, yellow .. black | one-hot: the ball on |
+    | value | points of the ball / 7 | in_hand | 1 if the cue ball is in hand |
+    | ball_on | 1 if it may be struck first | break | points of the visit / 155 |
 
     Rows: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow, green, brown, blue, pink, black. Table frame: the origin is the table's centre,
     +x points to the yellow side and +y to the black end.
 
-    ``task="frame"`` appends nine numbers to the state, so that the shapes are ``(130,)`` and ``(20,)``.
+    ``task="frame"`` appends 19 numbers to the state, so that the shapes are ``(140,)`` and ``(30,)``. With a miss rule, the layout that
+    "replace" restores follows: 66 more numbers, or "replaced" (22, 3), the x, y and on_table of each ball; 0 unless a miss was called.
 
     | entry | value |
     |---|---|
-    | score, opponent_score, lead | / 155, clipped to [-1, 1] |
-    | available | points on the table / 147 |
-    | to_play | 1 if it is the observer's turn |
-    | free_ball | 1 if the striker has a free ball; "ball_on" is then 1 for every colour too |
-    | choice | 1 if the other player has just fouled: a decision is open |
-    | miss_called | 1 if that foul was called a miss |
-    | respotted_black | 1 if the black was re-spotted |
+    | score, opponent_score | s / (s + 147) |
+    | lead | d / (abs(d) + 147) |
+    | available | points on the table / 155 |
+    | to_play, free_ball | 1 if it is the observer's turn; 1 if the striker has a free ball: "ball_on" is then 1 for every colour too |
+    | choice, miss_called | 1 if the other player has just fouled: a decision is open; 1 if that foul was called a miss |
+    | respotted_black, broke | 1 if the black was re-spotted; 1 if the observer broke off in this frame |
+    | failures, warned | failures in succession from one position / 2; 1 if the next one loses the frame |
+    | in_lot | 1 if the winner of the lot has to say who begins |
+    | frames_won, opponent_frames, frames_needed | f / (f + 1), of a match: frames won by each, and those that win it |
+    | clock, misses, anywhere | 0 in snooker |
 
     ## Rewards
     | task | reward | value of a step |
@@ -104,33 +113,32 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | "visit" | "points_and_fouls" | the same minus the penalty of a foul (4 to 7), in [-7, 15] |
     | "visit" | "pots" | 1 for a scoring stroke, else 0 |
     | "visit" | "legal" | 1 for a stroke without a foul, else 0 |
-    | "frame" | "points" (default) | the agent's points minus the opponent's, penalties of both included |
-    | "frame" | "win" | +1 or -1 when the frame ends, else 0 |
+    | "frame", "match" | "points" (default) | the agent's points minus the opponent's since the last reward, penalties included |
+    | "frame", "match" | "win" | +1 or -1 when the frame or match ends, else 0 |
+    | "match" | "frames" | frames won minus frames lost since the last reward: the first one includes the opponent's opening visit |
 
     ## Starting state
     | layout | table |
     |---|---|
-    | "opened" (default of a visit) | after simulated play: all 22 balls on the table, reds spread, red on |
-    | "held_out" | such tables that "opened" never deals |
+    | "opened" (default of a visit), "held_out" | after simulated play: all 22 balls, reds spread; such that "opened" never deals |
     | "break_off" (default of a frame) | the rack, cue ball in hand |
-    | "line_up" | the line-up exercise |
-    | "colours" | the six colours on their spots |
-    | "random:N" | N reds at random places |
-    | "snookered" | no straight path to any red |
+    | "line_up", "colours" | the line-up exercise; the six colours on their spots |
+    | "random:N", "snookered" | N reds at random places; no straight path to any red |
     | "pots:easy", "pots:medium", "pots:hard" | one red alone, by difficulty |
 
     ## Episode end A visit is terminated by the first stroke that pots nothing, by a foul, or by a clearance; with ``one_stroke=True``, by
     any stroke. It is never truncated by itself (``gymnasium.make(..., max_episode_steps=N)`` does that).
 
-    A frame is terminated by its end under the rules; nobody concedes. It is truncated, without a winner, after the last of ``max_strokes``
-    strokes of both players together, even in the middle of a break. No ball leaves the table, because the physics is planar.
+    A frame is terminated by its end under the rules. It is truncated, without a winner, after the last of ``max_strokes`` strokes of both
+    players together, even in the middle of a break; so is its match. A frame that ends in the opponent's opening visit is not dealt again:
+    reset's info shows its end, and the next step plays nothing and reports it.
 
     ## Arguments
     All but a callable opponent are JSON types, so that ``EnvSpec.to_json`` round-trips. ``Options`` describes each option.
 
     | name | default | values |
     |---|---|---|
-    | task | "visit" | "visit", "frame" |
+    | task | "visit" | "visit", "frame", "match" |
     | layout | "default" | see Starting state |
     | action | "box" | "box", "discrete" |
     | aim | "absolute" | "absolute", "target" |
@@ -141,15 +149,15 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | physics | "paper" | "match", or a dict of overrides of ``snooker_env.Physics`` (not R) |
     | table | "match" | "tight", or a ``Table`` whose noses are where snooker's are |
     | fidelity | "standard" | "fast", "reference", "euler:N" |
-    | opponent | "none" | frame only; see Description |
-    | trust | False | frame only; whether the code in an opponent's ``.zip`` may run |
+    | opponent, trust | "none", False | frame only; see Description; whether the code in an opponent's ``.zip`` may run |
     | miss | "off" | frame only; "clear_path": the rule for a foul and a miss (``snooker_env.game.frame``) |
-    | decision | False | frame only; a longer box action |
     | max_strokes | 1000 | frame only; None for no limit |
+    | decision, nominate, concede, claim, lot | False | frame only; see Action space |
+    | game | "snooker" | frame only; the rules of the game |
+    | frames | 7 | match only; odd: the best of so many |
     | one_stroke | False | visit only; True: the visit ends after its first stroke |
     | options | None | an ``Options`` in place of all of the above |
-    | render_mode | None | "human", "rgb_array", "ansi": see Pictures and films |
-    | render_size | (1920, 1080) | width and height of pictures [pixels] |
+    | render_mode, render_size | None, (1920, 1080) | "human", "rgb_array", "ansi"; width and height [pixels]: see Pictures and films |
 
     ## Info
     The same keys after every reset and step.
@@ -159,17 +167,15 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | points | float | points of the stroke |
     | break | float | points of the visit so far |
     | seconds | float | duration of the shot |
-    | foul | bool | whether it was a foul |
-    | penalty | int | penalty points of a foul |
-    | pots | int | number of balls potted |
-    | fouls | int | bits of ``snooker_env.game.ruling.Foul`` |
+    | foul, fouls | bool, int | whether it was a foul; bits of ``snooker_env.game.ruling.Foul`` |
+    | penalty, pots | int | penalty points of a foul; number of balls potted |
     | first_ball | int | id of the ball struck first, -1 for none |
     | ball_on | int | what was on, a ``BallOn`` |
     | events | int | number of events in the shot |
 
     In a frame these are about the agent's own stroke, and there are more keys: ``score``, ``opponent_score`` (float), ``strokes`` (of both
     players so far), ``opponent_strokes`` (in this step), ``winner`` (-1 for none, 0 the agent, 1 the opponent), ``choice``, ``free_ball``,
-    ``needs_snookers`` (bool).
+    ``needs_snookers`` (bool). They are of the frame in progress; a match adds ``frames_won``, ``opponent_frames`` and ``frame`` (from 0).
 
     ## States
     ``env.unwrapped.get_state()`` returns everything between two shots as JSON types, and ``reset(options={"state": state})``
@@ -188,14 +194,11 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     ``render_size=(960, 540)`` takes a quarter, ``sn.RecordReplay`` none. "human" raises RuntimeError where there is no display.
 
     ## Version history
-    v0: first version. Results of package versions 0.1 and 0.2 are not comparable: the pockets, the cushions of "match"
-    and the levels of noise changed (CHANGELOG.md).
+    v0: first version. Results of package versions 0.1 and 0.2 are not comparable (CHANGELOG.md).
 
     ## References
-    * S. Mathavan, M. R. Jackson, R. M. Parkin: Numerical simulations of the frictional collisions of solid balls on a rough surface, Sports
-      Engineering 17 (2014).
-    * S. Mathavan, M. R. Jackson, R. M. Parkin: A theoretical analysis of billiard ball dynamics under cushion impacts, Proc. IMechE C 224
-      (2010).
+    * S. Mathavan, M. R. Jackson, R. M. Parkin: Numerical simulations of the frictional collisions of solid balls on a rough surface (2014).
+    * S. Mathavan, M. R. Jackson, R. M. Parkin: A theoretical analysis of billiard ball dynamics under cushion impacts (2010).
     * WPBSA: Official Rules of the Games of Snooker and English Billiards, May 2022.
 
     Parameters
@@ -236,11 +239,13 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         self.tables: Tables = TABLES[self.options.task](self.options.rules, 1)
         """The one table: ``tasks.tables.Tables``."""
         self.action_space: Any = self.options.rules.actions.space
-        self.observation_space: Any = observations.space(self.options.observation, frame=self.options.task == "frame")
+        self.observation_space: Any = observations.space(
+            self.options.observation, frame=self.options.task != "visit", replaced=self.options.rules.misses
+        )  # fmt: skip
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
-        names = (("Agent",), ("Agent", "Opponent"))[self.options.task == "frame"]
+        names = (("Agent",), ("Agent", "Opponent"))[self.options.task != "visit"]
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
         self._record, self._seeded = Record(full=render_mode is not None), False
 
@@ -254,8 +259,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         seed : int, optional
             Seed of all random numbers from now on; default None: the stream goes on.
         options : dict, optional
-            {"state": a state from ``get_state``} or {"position": a ``snooker_env.Position`` or its ``to_dict()``} starts from there, see
-            States.
+            "state" or "position": starts from there, see States. "breaker": 0 or 1, the agent or the opponent breaks.
 
         Returns
         -------
@@ -277,7 +281,8 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         ((121,), 0.0)
         """
         check = lambda state: self.tables.checked(state, self.np_random, to_play=True)  # noqa: E731
-        start = start_of(given_of(options, ONE), self.tables, check)
+        options = given_of(options, ONE)
+        start, breakers = start_of(options, self.tables, check), breakers_of(options, 1, self.options)
         super().reset(seed=seed)
         if start is not None:
             self._take(start, seed=seed)
@@ -286,7 +291,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
             self._seeded = True
         self._record.begin_episode()
         out = self.tables.output()
-        self.tables.reset(np.array([start is None]), out, self._crew())
+        self.tables.reset(np.array([start is None]), out, self._crew(), **breakers)
         if self.render_mode == "human":
             self._show()
         return observations.shaped(self.options.observation, out.observations[0]), self.tables.info(out, 0)
@@ -330,7 +335,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         """
         a = self.options.rules.actions.check(action)
         tables = self.tables
-        if tables.ended()[0]:
+        if tables.finished()[0]:
             raise gymnasium.error.ResetNeeded(f"the {self.options.task} is over: call reset() before step()")
         out = tables.output()
         self._record.begin_step()

@@ -23,7 +23,7 @@ from ..tasks.threads import Threads, processors
 from .given_arrays import OUTPUTS, arrays_given
 from .pictures import SIZE, Picture, Pictures
 from .record import Recent
-from .reset_options import MANY, Start, given_of, mask_of, seeds_of, starts_of
+from .reset_options import MANY, Start, breakers_of, given_of, mask_of, seeds_of, starts_of
 from .snooker import SnookerEnv
 from .table_calls import TableCalls
 
@@ -48,6 +48,7 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     | "states" | a list with one state for each, as ``get_state`` returns it |
     | "position" | a ``snooker_env.Position`` for all of them |
     | "positions" | a list with one position for each |
+    | "breaker" | in a frame or match: who breaks instead of the draw, 0 the agent or 1 the opponent; an int, or one for each |
 
     A state holds its random stream, so all tables that start from one state meet the same execution errors. With a seed as well, table k
     draws from seed + k. Positions hold no random stream: each table draws its own errors.
@@ -144,7 +145,7 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
             Seeds of the random numbers from now on: table k draws from seed + k, or from element k of the list. Default None: the streams
             go on.
         options : dict, optional
-            Keys "reset_mask", "state", "states", "position", "positions", see the class.
+            Keys "reset_mask", "state", "states", "position", "positions", "breaker", see the class.
         out : dict, optional
             {"observations": arrays to write them into}, see the class.
 
@@ -166,6 +167,7 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
         check = lambda state: self.tables.checked(state, self.np_random[0], to_play=True)  # noqa: E731
         starts = starts_of(options, self.num_envs, self.tables, check)
+        breakers = breakers_of(options, self.num_envs, self.options)
         if not (wanted | self._begun).all():
             raise gymnasium.error.ResetNeeded(f"table {int(np.argmin(wanted | self._begun))} has no visit yet: reset all tables first")
         given = self._given(out, ("observations",))
@@ -183,7 +185,7 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         written = self.tables.output(given=given)
         self._prepare_crew()
         try:
-            self.tables.reset(fresh, written, self._crew)
+            self.tables.reset(fresh, written, self._crew, **breakers)
         except BaseException:
             self._begun[:] = False  # the opponent may have broken off on some tables only
             raise

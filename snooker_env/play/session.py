@@ -21,7 +21,6 @@ from ..game.ruling import AUTO
 from ..planning.position import Position
 from ..planning.positions import Positions
 from ..simulation import SimulationError
-from ..tasks import frame_kernels
 from ..tasks.frame import Frames
 from ..tasks.noise import LEVELS
 from ..tasks.options import Options, Rules
@@ -101,7 +100,8 @@ class Session:
     @property
     def state(self) -> dict[str, Any]:
         """The table as JSON types, with the fields ``STATE``."""
-        return self.tables.get_state(0)
+        state = self.tables.get_state(0)
+        return {name: state[name] for name in STATE}
 
     @property
     def strokes(self) -> list[int]:
@@ -211,10 +211,9 @@ class Session:
         if frame.phase != "choice":
             raise refuse("choice", what, "must be left out: the other player has not just fouled")
         choice("choice", what, frame.choices)
-        actions, plays = np.zeros((1, 8)), np.empty(1, np.bool_)
+        actions = np.zeros((1, 8))
         actions[0, -1] = DECISIONS[what]
-        t = self.tables
-        frame_kernels.decide(np.zeros(1, np.int64), actions, True, t.positions, t.on_table, t.game, t.saved, plays)
+        self.tables.decide(np.zeros(1, np.int64), actions)
         return self._did(Act("choice", self.state, frame.striker, said=what))
 
     def concede(self) -> Act:
@@ -307,7 +306,8 @@ class Session:
 
     def _checked(self, state: dict[str, Any]) -> FrameState:
         try:
-            return self.tables.checked(state | {"rng": self._generator.bit_generator.state}, self._generator, either=True)
+            alone = {"unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}  # no rewards are paid here
+            return self.tables.checked(state | alone, self._generator, either=True)
         except ValueError as error:
             text = str(error)
             for prefix in ("state.frame.", "state."):

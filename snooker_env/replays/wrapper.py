@@ -70,7 +70,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         self._folder, self._prefix, self._suffix = Path(folder), name_prefix, choice("suffix", suffix, SUFFIXES)
         if not isinstance(name_prefix, str) or Path(name_prefix + suffix).name != name_prefix + suffix:
             raise refuse("name_prefix", name_prefix, "must be the beginning of a file's name, without folders")
-        frame = inner.options.task == "frame"  # type: ignore[attr-defined]
+        frame = inner.options.task != "visit"  # type: ignore[attr-defined]
         self._wanted, self._players = episode_trigger, checked_players(players)
         if len(self._players) not in (0, 1 + frame):
             raise refuse("players", players, f"must be {1 + frame} names" if frame else "must be one name")

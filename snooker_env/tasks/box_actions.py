@@ -14,6 +14,7 @@ from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
+from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_TARGET
 
 AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
@@ -22,9 +23,6 @@ TARGET_SPAN = radians(3.0)
 """With ``aim="target"``: angle off the potting line for +-1 of an action [rad]. The largest throw and a club player's errors are smaller.
 """
 MAX_ELEVATION = radians(30.0)
-
-# Columns of the packed options.
-(A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_DISCRETE) = range(6)
 
 
 @kernel
@@ -108,10 +106,16 @@ class Actions:
     4    elevation    only with ``elevation=True``: 0 to 30 deg, linear
     next place in     only with ``placement=True``: across the D, then from the baulk line (-1)
     two  the D        to the edge of the D (+1). Ignored unless the cue ball is in hand
-    last decision     only with ``decision=True``: what to do after a foul of the opponent, else
+    next nomination   only with ``nominate=True``. After a red the range is cut in six equal
+                      parts, yellow to black; with a free ball in seven: the ball on itself,
+                      then yellow to black. At other times ignored
+    next decision     only with ``decision=True``: what to do after a foul of the opponent, else
                       ignored. Below -1/3: the offender plays again from here. Above 1/3: the
                       balls are replaced and he plays again, if a miss was called. In between,
                       or without a miss: play, with this same action
+    last declaration  only with ``concede``, ``claim`` or ``lot``. Below -2/3: concede. Above 2/3:
+                      claim the frame, where the rules allow it. At the lot, below 0: the other
+                      player begins. Else: play, with this same action
     ==== ============ =======================================================================
     """
 
@@ -119,18 +123,32 @@ class Actions:
     elevation: bool
     placement: bool
     decision: bool
+    nominate: bool
+    concede: bool
+    claim: bool
+    lot: bool
     physics: Physics
     space: spaces.Box
     size: int
     """Number of components of an action."""
 
-    def __init__(self, aim: str, elevation: bool, placement: bool, physics: Physics, decision: bool = False):
+    def __init__(
+        self, aim: str, elevation: bool, placement: bool, physics: Physics, decision: bool = False, *, nominate: bool = False,
+        concede: bool = False, claim: bool = False, lot: bool = False,
+    ):  # fmt: skip
         self.aim = choice("aim", aim, AIMS)
         self.elevation, self.placement = truth("elevation", elevation), truth("placement", placement)
         self.decision = truth("decision", decision)
+        self.nominate, self.concede = truth("nominate", nominate), truth("concede", concede)
+        self.claim, self.lot = truth("claim", claim), truth("lot", lot)
         self.physics = physics
-        self.space = spaces.Box(-1.0, 1.0, (4 + self.elevation + 2 * self.placement + self.decision,), np.float32)
-        self.size = 4 + self.elevation + 2 * self.placement + self.decision
+        self.size = 4 + self.elevation + 2 * self.placement + self.nominate + self.decision + self.declares
+        self.space = spaces.Box(-1.0, 1.0, (self.size,), np.float32)
+
+    @property
+    def declares(self) -> bool:
+        """Whether the last component is a declaration."""
+        return self.concede or self.claim or self.lot
 
     def check(self, action: Action) -> list[float]:
         """The action as a list of floats; ValueError unless it is finite, has the right shape and lies within [-1, 1]."""
@@ -166,9 +184,12 @@ class Actions:
         return a
 
     def pack(self) -> Floats:
-        """The options for the kernels: float64, in the columns ``A_*`` of this module."""
+        """The options for the kernels: float64, in the columns ``A_*`` of ``declarations``."""
         limits = self.physics.end_mass_ratio, self.physics.max_offset
-        return np.array([self.aim == "target", self.elevation, self.placement, *limits, False], np.float64)
+        last = self.size - self.declares  # the components before the declaration
+        where = [last - 1 - self.decision if self.nominate else -1, last - 1 if self.decision else -1, last if self.declares else -1]
+        spoken = [self.concede, self.claim, self.lot]
+        return np.array([self.aim == "target", self.elevation, self.placement, *limits, False, *where, *spoken], np.float64)
 
     def shot(self, a: Any, positions: Vectors, on_table: Flags, on: int) -> tuple[float, float, float, float, float]:
         """(speed, side, top, aim, elevation) of an action list; the aim is the cue's direction [rad]."""

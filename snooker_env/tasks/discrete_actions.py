@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
-from .._check import refuse, refuse_what
+from .._check import refuse, refuse_what, truth
 from .._jit import entry, kernel
 from .._types import Action, Floats
 from ..game.balls import bits
@@ -19,6 +19,20 @@ from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
 from .box_actions import line_of
+from .declarations import (
+    A_CLAIM,
+    A_CONCEDE,
+    A_LOT,
+    A_NOMINATE,
+    CLAIMS,
+    COLOURS,
+    CONCEDES,
+    OTHER_BEGINS,
+    may_declare,
+    may_nominate,
+    nominated_ball,
+    playable,
+)
 from .pot_aim import solved_aim
 
 POTS = 4
@@ -32,7 +46,7 @@ TOPS = (-0.4, -0.2, 0.0, 0.2, 0.4)
 STROKES = len(SPEEDS) * len(SIDES) * len(TOPS)
 """Number of strokes at one pot: speeds x sides x tops."""
 SIZE = POTS * STROKES
-"""Number of choices in all; a choice is an integer in [0, 540). Public as ``snooker_env.tasks.CHOICES``."""
+"""Number of strokes to choose from; without options of frames, all choices. Public as ``snooker_env.tasks.CHOICES``."""
 
 
 def choice_of(pot: int, speed: int, side: int, top: int) -> int:
@@ -69,6 +83,7 @@ def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_ste
 
     Work space: found (POTS, POT_COLUMNS), motion (2, COLUMNS), state (2,), work.
     """
+    index = index % SIZE  # what else the choice says is read by ``declarations``; one that may not be said now is played as a stroke
     pot, stroke = index // STROKES, index % STROKES
     speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
     side, top = SIDES[stroke // len(TOPS) % len(SIDES)], TOPS[stroke % len(TOPS)]
@@ -86,34 +101,61 @@ def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_ste
 
 
 @entry
-def masks(which, positions, on_table, game, out):
-    """Available choices on the tables ``which``: one row of ``out`` each, bool (SIZE,). ``game`` (n, columns): of visits or frames."""
+def masks(which, positions, on_table, game, options, out):
+    """Available choices on the tables ``which``: one row of ``out`` each, bool (choices,). ``game`` (n, columns): of visits or frames."""
     found = np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
-        k = which[j]
-        on = strikeable(game[k], bits(on_table[k]))
-        many = find_pots(positions[k], on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
-        for c in range(SIZE):
-            out[j, c] = c < STROKES * max(1, many)
+        k, parts = which[j], 1 + COLOURS if options[A_NOMINATE] >= 0 else 1
+        row, mask = game[k], bits(on_table[k])
+        for n in range(parts):
+            on = strikeable(row, mask) if parts == 1 else playable(row, mask, nominated_ball(n, row))
+            there = parts == 1 or may_nominate(n, row)
+            many = find_pots(positions[k], on_table[k], on, BALL_RADIUS, found) if there and on_table[k, 0] else 0
+            for c in range(SIZE):
+                out[j, n * SIZE + c] = there and c < STROKES * max(1, many)
+        at = parts * SIZE
+        for what, column in ((CONCEDES, A_CONCEDE), (CLAIMS, A_CLAIM), (OTHER_BEGINS, A_LOT)):
+            if options[column]:
+                out[j, at] = may_declare(what, row)
+                at += 1
 
 
 class Choices:
-    """The discrete action space and its meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``choice_of``."""
+    """The discrete action space and its meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``choice_of``.
+
+    With ``nominate``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those of the ball that is then on.
+    The last choices, as far as the options are on: concede, claim, let the other player begin after the lot. A declaration that is not
+    allowed, and a nomination of nothing after a red, is played as the stroke of the same remainder: ``action_masks`` says what is allowed.
+    """
 
     size: int = 1
     placement: bool = False
     decision: bool = False
+    nominate: bool
+    concede: bool
+    claim: bool
+    lot: bool
+    choices: int
+    """Number of choices in all."""
     space: spaces.Discrete
 
-    def __init__(self, physics: Physics):
+    def __init__(self, physics: Physics, *, nominate: bool = False, concede: bool = False, claim: bool = False, lot: bool = False):
         self.physics = physics
-        self.space = spaces.Discrete(SIZE)
+        self.nominate, self.concede = truth("nominate", nominate), truth("concede", concede)
+        self.claim, self.lot = truth("claim", claim), truth("lot", lot)
+        self.choices = SIZE * (1 + COLOURS * self.nominate) + self.concede + self.claim + self.lot
+        self.space = spaces.Discrete(self.choices)
+
+    @property
+    def declares(self) -> bool:
+        """Whether the last choices are declarations."""
+        return self.concede or self.claim or self.lot
 
     def check(self, action: Action) -> list[float]:
-        """The choice in a list; ValueError unless it is an integer in [0, SIZE)."""
+        """The choice in a list; ValueError unless it is an integer in [0, choices)."""
         a = np.asarray(action)
-        if a.dtype.kind not in "iu" or a.size != 1 or not 0 <= a.item() < SIZE:
-            raise refuse("action", action, f"must be an integer in [0, {SIZE})")
+        if a.dtype.kind not in "iu" or a.size != 1 or not 0 <= a.item() < self.choices:
+            raise refuse("action", action, f"must be an integer in [0, {self.choices})")
         return [float(a.item())]
 
     def check_many(self, actions: Any, n: int) -> Floats:
@@ -122,13 +164,14 @@ class Choices:
         if a.dtype.kind not in "iu" or a.shape not in ((n,), (n, 1)):
             raise refuse_what("actions", f"array of {a.dtype} and shape {a.shape}", f"must be {n} integers")
         a = a.reshape(n)
-        wrong = (a < 0) | (a >= SIZE)
+        wrong = (a < 0) | (a >= self.choices)
         if wrong.any():
             k = int(np.argmax(wrong))
-            raise refuse(f"actions[{k}]", int(a[k]), f"must be in [0, {SIZE})")
+            raise refuse(f"actions[{k}]", int(a[k]), f"must be in [0, {self.choices})")
         return a.astype(np.float64).reshape(n, 1)
 
     def pack(self) -> Floats:
-        """The options for the kernels, in the columns ``A_*`` of ``box_actions``."""
-        physics = self.physics
-        return np.array([False, False, False, physics.end_mass_ratio, physics.max_offset, True], np.float64)
+        """The options for the kernels, in the columns ``A_*`` of ``declarations``."""
+        physics, spoken = self.physics, [self.concede, self.claim, self.lot]
+        limits = [physics.end_mass_ratio, physics.max_offset]
+        return np.array([False, False, False, *limits, True, 0 if self.nominate else -1, -1, -1, *spoken], np.float64)

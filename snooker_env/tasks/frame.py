@@ -7,6 +7,9 @@ is player 0, the opponent player 1.
 With ``opponent="none"`` the table returns to the agent at once whenever it would go to the opponent. Penalties still go to the opponent's
 score, and after a foul the agent plays on from where the balls lie, without a free ball. A match is played turn by turn by both players.
 
+Nothing is ever dealt again. A frame that ends in the opponent's first visit, in a reset, is shown by that reset, and the next step plays
+nothing: it reports the end and pays its reward (``Frames.due``).
+
 A cue ball in hand is placed at once on the free place of the D nearest to its usual place for the break-off, so that it can be seen. The
 player may place it elsewhere before the stroke. The physics is planar: no ball leaves the table and the cue ball cannot jump over a ball,
 so those fouls never occur.
@@ -24,8 +27,10 @@ from ..game.frame import Frame
 from ..game.frame_columns import (
     BALL_ON,
     COLUMNS,
+    FIRST_BREAK,
     FREE_BALL,
     IN_HAND,
+    PAID,
     PHASE,
     POINTS,
     SCORE_0,
@@ -40,12 +45,12 @@ from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
 from . import frame_kernels
 from .frame_kernels import AGENT
-from .observations import FRAME_SIZE
+from .observations import FRAME_SIZE, REPLACED_SIZE
 from .options import NEVER, Rules
-from .rewards import FRAME_REWARDS
+from .rewards import MATCH_REWARDS
 from .states import FrameState, checked_frame
 from .stroke import ShotBuffers
-from .tables import COUNTS, REALS, Crew, StepOutput, Tables
+from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 
 
 class Frames(Tables):
@@ -58,18 +63,26 @@ class Frames(Tables):
     COLUMNS = COLUMNS
 
     nominated: Ints
-    """(n,) The colour that the striker has nominated after a red or as his free ball. AUTO, as always in the environments: the colour first
-    struck. The code that sets it must check it, and must reset it after the stroke.
+    """(n,) The colour that the striker has nominated after a red or as his free ball, 0 for a free ball declined. AUTO, as always between
+    two strokes: the colour first struck. Code that sets it must check it; the referee resets it after the stroke.
     """
+    due: Bools
+    """(n,) Which episodes have ended in a reset, so that the next step reports their end."""
+
+    two_players: bool = False
+    """Whether both players are agents, who play ``turn`` by turn; otherwise the agent plays alone or against ``rules.opponent``."""
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         super().__init__(rules, n, limit=limit)
         self._saved_positions, self._saved_on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
-        self._lead, self._replies, self._played = (np.zeros(n, np.int64) for _ in range(3))
-        self.nominated = np.full(n, AUTO, np.int64)
+        self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
+        self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
+        self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
+        self._limits = np.array([rules.max_strokes, rules.frames // 2 + 1, 0])
+        self._kind = MATCH_REWARDS.index(rules.reward)
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
-            write_frame(Frame.start(miss="clear_path" if rules.miss else "off"), 0, self.game[0], self.saved, 0)
+            write_frame(Frame.start(miss=rules.miss), 0, self.game[0], self.saved, 0)
             self.game[:] = self.game[0]
         self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
 
@@ -79,11 +92,11 @@ class Frames(Tables):
         return Layouts(self._saved_positions, self._saved_on_table)
 
     def _columns(self) -> tuple[str, ...]:
-        return (*super()._columns(), "_saved_positions", "_saved_on_table", "_lead", "_replies", "_played", "nominated")
+        return (*super()._columns(), "_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due")
 
     def frame(self, k: int) -> Frame:
         """The ``game.frame.Frame`` on table k."""
-        return frame_of(self.game[k], "clear_path" if self.rules.miss else "off", self.saved, k)
+        return frame_of(self.game[k], self.rules.miss, self.saved, k)
 
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k: the balls on and, with a free ball, every colour."""
@@ -101,6 +114,10 @@ class Frames(Tables):
         """Which tables have no stroke left to play: bool (n,)."""
         return super().ended() | self.stopped()
 
+    def finished(self) -> Bools:
+        """Which episodes have ended, and a step has said so: bool (n,)."""
+        return self.ended() & ~self.due
+
     def interrupted(self) -> None:
         """A step or reset was cut short: tables at which it is the opponent's turn need a reset."""
         self.begun[self.game[:, STRIKER] != AGENT] = False
@@ -109,12 +126,19 @@ class Frames(Tables):
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
         """Take the decisions on the tables ``which`` and carry the strokes out up to the strike; returns the tables with a stroke."""
-        if self.game[which, PHASE].any():
-            plays = np.empty(len(which), np.bool_)
-            frame_kernels.decide(which, actions, self.rules.actions.decision, self.positions, self.on_table, self.game, self.saved, plays)
-            which = which[plays]
+        said = self.rules.actions
+        if said.nominate or said.declares or self.game[which, PHASE].any():
+            which = which[self.decide(which, actions)]
         self.address(which, actions, buffers)
         return which
+
+    def decide(self, which: Ints, actions: Floats) -> Bools:
+        """What the strikers of the tables ``which`` say before their strokes; returns which of them play one."""
+        plays = np.empty(len(which), np.bool_)
+        frame_kernels.decide(
+            which, actions, self.packed[0], self.positions, self.on_table, self.game, self.saved, self.nominated, plays
+        )  # fmt: skip
+        return plays
 
     def complete(self, which: Ints, out: StepOutput, buffers: ShotBuffers, crew: Crew, *, own: bool, alone: bool = False) -> None:
         """Play and judge the shots of the tables ``which`` that have been struck.
@@ -123,7 +147,7 @@ class Frames(Tables):
         """
         if not len(which):
             return
-        if self.rules.miss:
+        if self.rules.misses:
             frame_kernels.remember(which, self.positions, self.on_table, self.game, self.saved, self.nominated, buffers.seen)
         unfinished = self.run(which, buffers)
         self._conclude(which, buffers, out, own, alone)
@@ -134,19 +158,25 @@ class Frames(Tables):
     def _conclude(self, which, b, out, own, alone):
         frame_kernels.conclude(
             which, self.positions, self.on_table, self.game, self.streams, self.nominated, b.r, b.potted, b.status, b.duration,
-            b.event_time, b.event_what, b.n_events, b.shots, b.seen, self._jaws, self.rules.miss, own, alone,
-            self._played if own else self._replies, out.reals, out.counts,
+            b.event_time, b.event_what, b.n_events, b.shots, b.seen, self._jaws, self.packed[0], self.rules.misses, own,
+            alone, self._played if own else self._replies, out.reals, out.counts,
         )  # fmt: skip
 
     def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:
-        """One turn of the striker on each table, in a match. ``out`` gets the infos of the strokes; returns where there was one, (n,) bool.
+        """One turn of the striker on each table, of two players. ``out`` gets the infos; returns where there was a stroke, (n,) bool.
 
         ``prepare(which, buffers)``: takes decisions and carries strokes out up to the strike, as the method ``prepare``; the tables with a
         stroke.
         """
         self._played[:] = 0
+        playing = np.flatnonzero(~self.ended())
         crew(np.arange(self.n), lambda which, b: self.complete(prepare(which, b), out, b, crew, own=True))
+        self.go_on(playing)
         return self._played > 0
+
+    def go_on(self, which: Ints) -> None:
+        """After each turn on the tables ``which``: the next frame of a match, where one has ended. Here there is none."""
+        return
 
     # steps and resets of the frame task --------------------------------------------------------------------------------------
 
@@ -162,10 +192,11 @@ class Frames(Tables):
         anew, alone = bool(waiting.any()), self.rules.opponent is None
         playing = np.flatnonzero(~waiting) if anew else np.arange(self.n)
         self._replies[:] = self._played[:] = 0
-        self._lead = self.lead()
 
         def play(which, buffers):
-            self.complete(self.prepare(which, actions, buffers), out, buffers, crew, own=True, alone=alone)
+            acting = which[~self.due[which]] if self.due.any() else which
+            self.complete(self.prepare(acting, actions, buffers), out, buffers, crew, own=True, alone=alone)
+            self.go_on(acting)
             if alone:
                 self._finish(which, out)
 
@@ -180,9 +211,8 @@ class Frames(Tables):
 
     def _finish(self, which, out):
         frame_kernels.finish(
-            which, self.positions, self.on_table, self.game, self._lead, self._replies, self._played,
-            FRAME_REWARDS.index(self.rules.reward), self.limit, self.rules.max_strokes, out.observations, out.rewards, out.terminated,
-            out.truncated, out.reals, out.counts,
+            which, self.positions, self.on_table, self.game, self.saved, self.due, self._replies, self._played, self._kind, self.limit,
+            self._limits, out.observations, out.rewards, out.terminated, out.truncated, out.reals, out.counts,
         )  # fmt: skip
 
     def _reply(self, which, out, crew):
@@ -194,44 +224,66 @@ class Frames(Tables):
 
             def play(part, buffers, actions=actions):
                 self.complete(opponent.prepare(self, part, actions, buffers), out, buffers, crew, own=False)
+                self.go_on(part)
 
             crew(which, play)
 
-    def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
-        """New frames on the tables ``wanted`` (n,) bool; the results of the reset for all tables into ``out``."""
+    def reset(self, wanted: Bools, out: StepOutput, crew: Crew, *, breakers: Ints | None = None) -> None:
+        """New frames on the tables ``wanted`` (n,) bool; the results for all tables into ``out``. ``breakers``: see ``deal``."""
         self.begun[wanted] = False  # until the opponent has played, if he breaks
-        self._start(np.flatnonzero(wanted), out, crew)
+        self._start(np.flatnonzero(wanted), out, crew, breakers)
         crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out, fresh=False))
 
-    def _start(self, which, out, crew):
-        """New frames, dealt again if they end within the opponent's first visit: each episode holds a stroke of the agent."""
-        alone, left = self.rules.opponent is None, which
-        while len(left):
-            self._replies[left] = 0
-            crew(left, lambda part, _: self.deal(part, drawn=not alone))
-            if not alone:
-                try:
-                    self._reply(left, out, crew)
-                except BaseException:
-                    self.begun[left] = False
-                    raise
-            left = left[self.ended()[left]]
+    def _start(self, which, out, crew, breakers=None):
+        """New frames, with the opponent's first visit if he breaks."""
+        alone = self.rules.opponent is None
+        self._replies[which] = 0
+        crew(which, lambda part, _: self.deal(part, drawn=not alone, breakers=breakers))
+        if not alone:
+            try:
+                self._reply(which, out, crew)
+            except BaseException:
+                self.begun[which] = False
+                raise
+        self.due[which] = self.ended()[which]
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
-    def deal(self, which: Ints, *, drawn: bool) -> None:
-        """New frames on the tables ``which``; ``drawn``: who breaks is drawn, otherwise it is the agent."""
+    def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
+        """New frames on the tables ``which``; ``drawn``: who breaks is drawn, otherwise it is the agent.
+
+        ``breakers`` (n,): who breaks instead of the draw on each table, -1 for nobody.
+        """
         plan = self.rules.plan
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
-        frame_kernels.begin(which, drawn, plan.in_hand, self.on_table, self.game, self.streams)
-        self.begun[which] = True
+        breakers = np.full(self.n, -1) if breakers is None else breakers
+        frame_kernels.begin(which, drawn, breakers, plan.in_hand, self.on_table, self.game, self.streams)
+        self.begun[which], self.due[which] = True, False
 
     def _show(self, which, out, *, fresh):
-        frame_kernels.show(which, fresh, self.positions, self.on_table, self.game, self._replies, out.rows)
+        frame_kernels.show(
+            which, fresh, self.positions, self.on_table, self.game, self.saved, self._limits, self._replies, out.rows
+        )  # fmt: skip
+
+    def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
+        """The info of the first table as ``player`` sees it; ``last``: the output of the last stroke, or None if there is none."""
+        out = self.output()  # the entries that depend on the player
+        frame_kernels.inform(player, self.game, out.reals, out.counts)
+        if last is not None:
+            for column in (I_POINTS, I_SECONDS):
+                out.reals[0, column] = last.reals[0, column]
+            out.counts[0, : len(COUNTS)] = last.counts[0, : len(COUNTS)]
+        return self.info(out, 0)
+
+    def pay(self, k: int) -> int:
+        """What the agent has earned on table k since it was last paid."""
+        unpaid = self._unpaid(k)
+        self.game[k, PAID] += unpaid
+        return unpaid
 
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
-        """The observations of ``player`` on the tables ``which``: float32 (len(which), FRAME_SIZE), a new array."""
-        rows = np.empty((len(which), FRAME_SIZE), np.float32)
-        frame_kernels.observe(which, player, self.positions, self.on_table, self.game, rows)
+        """The observations of ``player`` on the tables ``which``: float32 (len(which), SIZE), a new array."""
+        rows = np.empty((len(which), self.SIZE), np.float32)
+        frame_kernels.observe(which, player, self.positions, self.on_table, self.game, self.saved, self._limits, rows)
         return rows
 
     # states ----------------------------------------------------------------------------------------------------------------
@@ -240,17 +292,28 @@ class Frames(Tables):
         """Table k as JSON types: the fields of a ``states.FrameState`` except "rng"."""
         return {
             "positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist(), "frame": self.frame(k).to_dict(),
-            "strokes": int(self.game[k, STROKES]), "stream": self.streams[k].tolist(),
+            "strokes": int(self.game[k, STROKES]), "unpaid": self._unpaid(k), "due": bool(self.due[k]), "stream": self.streams[k].tolist(),
         }  # fmt: skip
+
+    def _unpaid(self, k):
+        """What the agent has earned and no reward has paid yet."""
+        return int(self._worth(k) - self.game[k, PAID])
+
+    def _worth(self, k):
+        """What the agent has earned in the episode so far, as its reward counts."""
+        return self.game[k, SCORE_0 + AGENT] - self.game[k, SCORE_1 - AGENT]
 
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False) -> FrameState:
         """The ``states.FrameState`` that a dict describes.
 
         ValueError if it is invalid, if no stroke is left with ``to_play``, or if the striker is not the agent, unless ``either``.
         """
-        miss = "clear_path" if self.rules.miss else "off"
-        sound = checked_frame(state, miss, self.rules.table, self.rules.physics.R, generator)
+        sound = checked_frame(state, self.rules, generator)
         over, stopped = sound.frame.phase == "over", sound.strokes >= self.rules.max_strokes
+        if sound.due and not (over or stopped):
+            raise refuse("state.due", True, "must be False: the frame goes on")
+        if sound.due:
+            return sound
         if to_play and over:
             raise refuse("state.frame.phase", "over", 'must not be "over": there is no shot to play from this state')
         if to_play and stopped:
@@ -264,8 +327,10 @@ class Frames(Tables):
         """Restore a valid ``states.FrameState`` on table k."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
+        self.game[k, FIRST_BREAK] = state.frame.breaker
+        self.game[k, PAID] = self._worth(k) - state.unpaid
         self.streams[k] = np.array(state.stream, np.uint64)
-        self._replies[k], self.begun[k] = 0, True
+        self._replies[k], self.begun[k], self.due[k] = 0, True, state.due
 
     def standing(self, k: int) -> dict[str, Any]:
         """The fields of ``Played`` that the frame on table k determines."""
@@ -283,11 +348,11 @@ class Frames(Tables):
         ball_on, in_hand, points = game[[BALL_ON, IN_HAND, POINTS]].tolist()
         frame = Frame(
             break_points=points, on_table=mask_of_present(on_table) & ~CUE_BIT, ball_on=BallOn(ball_on), in_hand=bool(in_hand),
-            miss="clear_path" if self.rules.miss else "off",
+            miss=self.rules.miss,
         )  # fmt: skip
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)
-        self._replies[k], self.begun[k] = 0, True
+        self._replies[k], self.begun[k], self.due[k] = 0, True, False
 
     def text(self, k: int) -> str:
         """One line of text for pictures."""

@@ -7,14 +7,23 @@ from .._jit import entry, kernel
 from ..game.apply_ruling import settle
 from ..game.balls import CUE, N_BALLS, SPOTS, bits
 from ..game.frame_columns import (
+    ANYWHERE,
     BALL_ON,
+    BREAKER,
     CHOICE,
+    CLOCK,
+    FAILURES,
+    FIRST_BREAK,
+    FRAMES_0,
+    FRAMES_1,
     FREE_BALL,
     IN_HAND,
     LOT,
     MISS_CALLED,
+    MISSES,
     ON_TABLE,
     OVER,
+    PAID,
     PHASE,
     PLAY,
     PLAY_AGAIN,
@@ -26,11 +35,14 @@ from ..game.frame_columns import (
     STEPS,
     STRIKER,
     STROKES,
+    WARNED,
     WINNER,
     after_stroke,
     available,
     begin_frame,
     choose,
+    claim,
+    concede,
     draw,
     lead_of,
     strikeable,
@@ -38,10 +50,23 @@ from ..game.frame_columns import (
 from ..game.paths import clear_path, full_ball_path
 from ..game.philox import pair
 from ..game.rule_sets import SNOOKER
-from ..geometry import BALL_RADIUS
+from ..game.ruling import AUTO
+from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import Status
-from .observations import SIZE, observe_into
-from .rewards import frame_reward_of
+from .declarations import (
+    A_DECISION,
+    A_LOT,
+    A_NOMINATE,
+    CLAIMS,
+    CONCEDES,
+    OTHER_BEGINS,
+    SAYS_NOTHING,
+    declaration_of,
+    nomination_of,
+    playable,
+)
+from .observations import FRAME_SIZE, SIZE, observe_into
+from .rewards import FRAMES_PAID, earned, frame_reward_of
 from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, TOUCHING, place, see, write_ruling
 from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_stroke_info
 
@@ -49,39 +74,59 @@ AGENT = 0
 _OK = int(Status.OK)
 (I_SCORE, I_OPPONENT_SCORE) = range(len(REALS), len(REALS) + 2)
 (I_STROKES, I_REPLIES, I_WINNER, I_CHOICE, I_FREE_BALL, I_NEEDS_SNOOKERS) = range(len(COUNTS), len(COUNTS) + 6)
+(I_FRAMES_WON, I_OPPONENT_FRAMES, I_FRAME) = range(len(COUNTS) + 6, len(COUNTS) + 9)
+"""Entries of a match only."""
+
+(L_STROKES, L_FRAMES, L_CLOCK) = range(3)
+"""Columns of a game's limits: strokes after which a frame is stopped, frames that win the match, time of a frame [ms] (0: no clock)."""
 
 
-@entry(what="the decisions after a foul", seconds=1)
-def decide(which, actions, decision, positions, on_table, game, saved, plays):
-    """The strikers' decisions on the tables ``which`` where the opponent has fouled.
+@kernel
+def _choose(k, wish, row, positions, on_table, saved):
+    """The decision ``wish`` after a foul; whether a stroke follows."""
+    what = PLAY_AGAIN if wish < -1.0 / 3.0 else REPLACE if wish > 1.0 / 3.0 and row[MISS_CALLED] else PLAY
+    choose(row, what)
+    if what == REPLACE:
+        for i in range(N_BALLS):
+            positions[k, i, 0], positions[k, i, 1] = saved.positions[k, i, 0], saved.positions[k, i, 1]
+            on_table[k, i] = saved.on_table[k, i]
+    return what == PLAY
 
-    ``decision``: the last component of the action decides. Below -1/3 the offender plays again; above 1/3 from the position before, if a
+
+@entry(what="the decisions of frames", seconds=2)
+def decide(which, actions, options, positions, on_table, game, saved, nominated, plays):
+    """What the strikers of the tables ``which`` say before a stroke: declarations, decisions after a foul, nominations.
+
+    ``options``: packed, of the action space. A decision below -1/3: the offender plays again; above 1/3: from the position before, if a
     miss was called. ``plays[j]``: whether a stroke follows.
     """
     for j in range(which.shape[0]):
         k = which[j]
-        row, plays[j] = game[k], True
-        if row[PHASE] != CHOICE:
-            continue
-        wish = actions[k, actions.shape[1] - 1] if decision else 0.0
-        what = PLAY_AGAIN if wish < -1.0 / 3.0 else REPLACE if wish > 1.0 / 3.0 and row[MISS_CALLED] else PLAY
-        choose(row, what)
-        plays[j] = what == PLAY
-        if what == REPLACE:
-            for i in range(N_BALLS):
-                positions[k, i, 0], positions[k, i, 1] = saved.positions[k, i, 0], saved.positions[k, i, 1]
-                on_table[k, i] = saved.on_table[k, i]
+        row, a = game[k], actions[k]
+        said = declaration_of(a, options, row)
+        plays[j] = said == SAYS_NOTHING
+        if said == CONCEDES:
+            concede(row)
+        elif said == CLAIMS:
+            claim(row)
+        elif row[PHASE] == LOT:
+            draw(row, 1 - row[STRIKER] if said == OTHER_BEGINS else row[STRIKER])
+        elif row[PHASE] == CHOICE:
+            wish = a[int(options[A_DECISION])] if options[A_DECISION] >= 0 else 0.0
+            plays[j] = _choose(k, wish, row, positions, on_table, saved)
+        if plays[j] and options[A_NOMINATE] >= 0:
+            nominated[k] = nomination_of(a, options, row)
 
 
 @entry(what="the paths of the miss rule", seconds=2)
 def remember(which, positions, on_table, game, saved, nominated, seen):
     """Record what the miss rule needs of the tables ``which`` before their strokes: the position, and which paths are clear.
 
-    ``nominated`` (n,): the colour that each striker has nominated, the only one that he may then strike first, or AUTO.
+    ``nominated`` (n,): the colour that each striker has nominated, the only one that he may then strike first, 0 for none, or AUTO.
     """
     for j in range(which.shape[0]):
         k = which[j]
-        on = 1 << nominated[k] if nominated[k] > 0 else strikeable(game[k], bits(on_table[k]) & ~1)
+        on = playable(game[k], bits(on_table[k]) & ~1, nominated[k])
         seen[j, CLEAR_PATH] = clear_path(positions[k], on_table[k], on, BALL_RADIUS)
         seen[j, FULL_PATH] = full_ball_path(positions[k], on_table[k], on, BALL_RADIUS)
         for i in range(N_BALLS):
@@ -100,10 +145,10 @@ def _hand_back(row):
 
 @entry(what="the referee of frames", seconds=6)
 def conclude(which, positions, on_table, game, streams, nominated, r, potted, status, duration, event_time, event_what, n_events, shots,
-              seen, jaws, miss, own, alone, played, reals, counts):  # fmt: skip
+              seen, jaws, options, miss, own, alone, played, reals, counts):  # fmt: skip
     """Judge the shots that came to rest and update tables and frames. ``own``: infos report the strokes; ``played`` counts them.
 
-    ``nominated`` (n,): the colour that each striker has nominated, or AUTO: the one first struck.
+    ``nominated`` (n,): the colour that each striker has nominated, 0 for none, or AUTO: the one first struck. It is AUTO afterwards.
     """
     for j in range(which.shape[0]):
         if status[j] != _OK:
@@ -118,12 +163,15 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
             p, on, ball_on, row[FREE_BALL], lead_of(row, row[STRIKER]), seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN],
             0, nominated[k], 0, jaws, BALL_RADIUS,
         )  # fmt: skip
+        nominated[k] = AUTO
         write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result, seen)
         after_stroke(row, result, SNOOKER, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], True, miss, 0, 0)
         row[STROKES] += 1
-        if row[PHASE] == LOT:  # the winner of the lot is assumed to play first
+        if row[PHASE] == LOT:
             u, _ = pair(streams[k])
-            draw(row, int(2.0 * u))
+            row[STRIKER] = int(2.0 * u)  # the winner of the lot
+            if alone or not options[A_LOT]:
+                draw(row, row[STRIKER])  # who begins
         if row[IN_HAND] and not row[OVER]:
             place(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
         played[k] += 1
@@ -134,70 +182,136 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
 
 
 @kernel
-def observe_frame_into(out, positions, on_table, row, player):
-    """Write the observation of ``player``, float32 (FRAME_SIZE,): that of a visit, then ``observations.FRAME_ENTRIES``."""
+def _share(number, scale):
+    """A number of any size as one in (-1, 1), monotone."""
+    return number / (abs(number) + scale)
+
+
+@kernel
+def observe_frame_into(out, k, positions, on_table, row, saved, limits, player):
+    """Write the observation of ``player``: that of a visit, then ``observations.FRAME_ENTRIES``, then the saved layout if there is room.
+
+    ``positions``, ``on_table``: of table k; ``saved``: ``Layouts`` of all tables.
+    """
     on = strikeable(row, bits(on_table) & ~1)
     observe_into(out, positions, on_table, row[BALL_ON], on, row[IN_HAND], row[POINTS])
     mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
     to_play = not row[OVER] and row[STRIKER] == player
     more = (
-        mine / 155.0, other / 155.0, (mine - other) / 155.0, available(row[ON_TABLE], row[BALL_ON]) / 147.0, 1.0 if to_play else 0.0,
-        1.0 if row[FREE_BALL] else 0.0, 1.0 if row[PHASE] == CHOICE else 0.0, 1.0 if row[MISS_CALLED] else 0.0,
-        1.0 if row[RESPOTTED_BLACK] else 0.0,
+        _share(mine, 147.0), _share(other, 147.0), _share(mine - other, 147.0), available(row[ON_TABLE], row[BALL_ON]) / 155.0,
+        1.0 if to_play else 0.0, 1.0 if row[FREE_BALL] else 0.0, 1.0 if row[PHASE] == CHOICE else 0.0, 1.0 if row[MISS_CALLED] else 0.0,
+        1.0 if row[RESPOTTED_BLACK] else 0.0, 1.0 if row[BREAKER] == player else 0.0, row[FAILURES] / 2.0, 1.0 if row[WARNED] else 0.0,
+        1.0 if row[PHASE] == LOT else 0.0, _share(row[FRAMES_0 + player], 1.0), _share(row[FRAMES_1 - player], 1.0),
+        _share(limits[L_FRAMES], 1.0), min(1.0, row[CLOCK] / limits[L_CLOCK]) if limits[L_CLOCK] else 0.0, _share(row[MISSES], 5.0),
+        1.0 if row[ANYWHERE] else 0.0,
     )  # fmt: skip
     for c in range(len(more)):
-        out[SIZE + c] = min(1.0, max(-1.0, more[c]))
+        out[SIZE + c] = more[c]
+    if out.shape[0] == FRAME_SIZE:
+        return
+    for i in range(N_BALLS):
+        at, there = FRAME_SIZE + 3 * i, row[MISS_CALLED] and saved.on_table[k, i]
+        out[at] = saved.positions[k, i, 0] / HALF_WIDTH if there else 0.0
+        out[at + 1] = saved.positions[k, i, 1] / HALF_LENGTH if there else 0.0
+        out[at + 2] = 1.0 if there else 0.0
 
 
 @entry(what="the observations of frames", seconds=1)
-def observe(which, player, positions, on_table, game, out):
+def observe(which, player, positions, on_table, game, saved, limits, out):
     """The observations of ``player`` on the tables ``which``: one row of ``out`` each."""
     for j in range(which.shape[0]):
         k = which[j]
-        observe_frame_into(out[j], positions[k], on_table[k], game[k], player)
+        observe_frame_into(out[j], k, positions[k], on_table[k], game[k], saved, limits, player)
 
 
 @kernel
-def _write_frame_info(k, row, replies, reals, counts):
-    """Write the entries of the info that concern the frame."""
-    mine, other = row[SCORE_0 + AGENT], row[SCORE_1 - AGENT]
+def _write_frame_info(k, row, player, replies, reals, counts):
+    """Write the entries of the info that concern the frame, as ``player`` sees it."""
+    mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
     reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = row[POINTS], mine, other
-    counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies[k], row[WINNER]
+    counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies, row[WINNER]
     counts[k, I_CHOICE], counts[k, I_FREE_BALL] = row[PHASE] == CHOICE, row[FREE_BALL]
     counts[k, I_NEEDS_SNOOKERS] = other - mine > available(row[ON_TABLE], row[BALL_ON])
+    if counts.shape[1] > I_FRAME:
+        counts[k, I_FRAMES_WON], counts[k, I_OPPONENT_FRAMES] = row[FRAMES_0 + player], row[FRAMES_1 - player]
+        counts[k, I_FRAME] = row[FRAMES_0] + row[FRAMES_1] - row[OVER]  # from 0: the last one of a match that is over, too
+
+
+@kernel
+def _worth(row, kind):
+    """What the agent has earned so far, as the reward ``kind`` counts it."""
+    return earned(kind, lead_of(row, AGENT), row[FRAMES_0 + AGENT] - row[FRAMES_1 - AGENT])
 
 
 @entry(what="the steps of frames", seconds=1)
-def finish(which, positions, on_table, game, lead, replies, played, kind, limit, max_strokes, observations, rewards, terminated, truncated,
-            reals, counts):  # fmt: skip
-    """Write the results of a step for the tables ``which``; ``lead`` (n,): before it, ``played`` (n,): whether the agent had a stroke."""
+def finish(which, positions, on_table, game, saved, due, replies, played, kind, limit, limits, observations, rewards, terminated,
+            truncated, reals, counts):  # fmt: skip
+    """Write the results of a step for the tables ``which``; ``played`` (n,): whether the agent had a stroke.
+
+    ``due`` (n,): whether the end of the frame has still to be reported: it is not, afterwards.
+    """
     for j in range(which.shape[0]):
         k = which[j]
         row = game[k]
         row[STEPS] += 1
-        rewards[k] = frame_reward_of(kind, lead_of(row, AGENT) - lead[k], row[WINNER] if row[OVER] else -1, AGENT)
+        worth = _worth(row, kind)
+        rewards[k] = frame_reward_of(kind, worth - row[PAID], row[WINNER] if row[OVER] else -1, AGENT)
+        row[PAID], due[k] = worth, False
         terminated[k] = row[OVER]
-        truncated[k] = (not row[OVER] and row[STROKES] >= max_strokes) or row[STEPS] >= limit
+        truncated[k] = (not row[OVER] and row[STROKES] >= limits[L_STROKES]) or row[STEPS] >= limit
         if not played[k]:
             write_empty_info(k, row[BALL_ON], reals, counts)
-        _write_frame_info(k, row, replies, reals, counts)
-        observe_frame_into(observations[k], positions[k], on_table[k], row, AGENT)
+        _write_frame_info(k, row, AGENT, replies[k], reals, counts)
+        observe_frame_into(observations[k], k, positions[k], on_table[k], row, saved, limits, AGENT)
+
+
+@entry
+def inform(player, game, reals, counts):
+    """The info of the first table as ``player`` sees it, without a stroke."""
+    write_empty_info(0, game[0, BALL_ON], reals, counts)
+    _write_frame_info(0, game[0], player, 0, reals, counts)
 
 
 @entry(what="the start of a frame", seconds=1)
-def begin(which, drawn, in_hand, on_table, game, streams):
-    """New frames on the tables ``which``, already dealt. ``drawn``: who breaks is drawn, otherwise it is the agent."""
+def begin(which, drawn, breakers, in_hand, on_table, game, streams):
+    """New frames on the tables ``which``, already dealt.
+
+    ``drawn``: who breaks is drawn, otherwise it is the agent. ``breakers`` (n,): who breaks instead, -1 for nobody; something is drawn all
+    the same, so that the errors of the strokes do not depend on it.
+    """
     for j in range(which.shape[0]):
         k = which[j]
         breaker = AGENT
         if drawn:
             u, _ = pair(streams[k])
-            breaker = int(2.0 * u)
+            breaker = breakers[k] if breakers[k] >= 0 else int(2.0 * u)
         begin_frame(game[k], bits(on_table[k]), breaker, in_hand)
+        game[k, FIRST_BREAK] = breaker
+
+
+@entry(what="the frames of a match", seconds=1)
+def count_frames(which, game, limits, goes_on):
+    """Count the frames that have ended on the tables ``which`` for their winners; ``goes_on[j]``: whether the next one follows."""
+    for j in range(which.shape[0]):
+        row = game[which[j]]
+        row[FRAMES_0 + row[WINNER]] += 1
+        goes_on[j] = row[FRAMES_0 + row[WINNER]] < limits[L_FRAMES]
+
+
+@entry(what="the next frame of a match", seconds=1)
+def begin_next(which, alone, kind, in_hand, on_table, game):
+    """The next frames of the matches on the tables ``which``, already dealt: the players break in turn. What was not paid remains so."""
+    for j in range(which.shape[0]):
+        k = which[j]
+        row = game[k]
+        won, lost, first, steps = row[FRAMES_0], row[FRAMES_1], row[FIRST_BREAK], row[STEPS]
+        paid = row[PAID] if kind == FRAMES_PAID else row[PAID] - lead_of(row, AGENT)
+        begin_frame(row, bits(on_table[k]), AGENT if alone else (first + won + lost) % 2, in_hand)
+        row[FRAMES_0], row[FRAMES_1], row[FIRST_BREAK], row[STEPS], row[PAID] = won, lost, first, steps, paid
 
 
 @entry(what="the resets of frames", seconds=1)
-def show(which, fresh, positions, on_table, game, replies, out):
+def show(which, fresh, positions, on_table, game, saved, limits, replies, out):
     """Write the results of a reset for the tables ``which``; with ``fresh``, the last arrays of ``out`` first keep the previous rows."""
     observations, reals, counts, _, _, _ = out
     for j in range(which.shape[0]):
@@ -205,5 +319,5 @@ def show(which, fresh, positions, on_table, game, replies, out):
         if fresh:
             keep_last(k, out)
         write_empty_info(k, game[k, BALL_ON], reals, counts)
-        _write_frame_info(k, game[k], replies, reals, counts)
-        observe_frame_into(observations[k], positions[k], on_table[k], game[k], AGENT)
+        _write_frame_info(k, game[k], AGENT, replies[k], reals, counts)
+        observe_frame_into(observations[k], k, positions[k], on_table[k], game[k], saved, limits, AGENT)

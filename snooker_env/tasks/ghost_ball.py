@@ -1,20 +1,20 @@
 """How does the built-in opponent "ghost_ball" play? The widest direct pot, softly; without one, a plain stroke. A kernel over tables."""
 
 from collections.abc import Sequence
-from math import atan2, hypot, sqrt
+from math import atan2, cos, hypot, sin, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .._jit import entry, kernel
 from .._types import Ints
-from ..game.balls import bits
-from ..game.frame_columns import CHOICE, IN_HAND, PHASE, PLAY, SAVED, choose, strikeable
+from ..game.balls import N_BALLS, YELLOW, bits
+from ..game.frame_columns import CHOICE, IN_HAND, LOT, PHASE, PLAY, SAVED, STRIKER, choose, draw, strikeable
 from ..game.philox import pair
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
-from .box_actions import A_END_MASS
+from .declarations import A_END_MASS, A_NOMINATE, nominated_ball
 from .plain_stroke import BREAK_X, ROLL, SLIDE, break_off, plain, racked, soft
 from .stroke import ShotBuffers, place, strike, touching_balls
 
@@ -67,8 +67,20 @@ def stroke_at(positions, on_table, on, in_hand, failed, found, stream):
     return plain(positions, on_table, on, touching, failed, stream)
 
 
+@kernel
+def named(positions, on_table, row, aim):
+    """The ball that the geometric player nominates: the colour that its line meets first; without one, the cheapest, or no free ball."""
+    dx, dy, near, ball = cos(aim), sin(aim), np.inf, 0
+    for i in range(1, N_BALLS):
+        x, y = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
+        along = x * dx + y * dy
+        if on_table[i] and 0.0 < along < near and abs(x * dy - y * dx) < 2.0 * BALL_RADIUS:
+            near, ball = along, i
+    return nominated_ball(max(0, ball - YELLOW + 1), row)
+
+
 @entry(what="the geometric opponent", seconds=3)
-def _ghost_ball(which, positions, on_table, game, streams, options, noise, r, v, w, here, shots):
+def _ghost_ball(which, positions, on_table, game, nominated, streams, options, noise, r, v, w, here, shots):
     """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike."""
     found = np.empty((1, POT_COLUMNS))
     for j in range(which.shape[0]):
@@ -76,12 +88,16 @@ def _ghost_ball(which, positions, on_table, game, streams, options, noise, r, v,
         p, on, row, stream = positions[k], on_table[k], game[k], streams[k]
         if row[PHASE] == CHOICE:
             choose(row, PLAY)
+        elif row[PHASE] == LOT:
+            draw(row, row[STRIKER])
         mask = strikeable(row, bits(on) & ~1)
         if row[IN_HAND]:
             put(p, on, mask, found, stream)
         jitter, _ = pair(stream)
         failed = row[SAVED] != 0  # he plays from a position that has been restored
         speed, side, top, aim = stroke_at(p, on, mask, row[IN_HAND], failed, found, stream)
+        if options[A_NOMINATE] >= 0:
+            nominated[k] = named(p, on, row, aim)
         speed *= 1.0 + (0.04 if row[IN_HAND] and racked(p, on) else 0.2) * (jitter - 0.5)
         strike((speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0), p, on, stream, options, noise, j, r, v, w, here, shots)
 
@@ -90,6 +106,7 @@ class GhostBallOpponent:
     """The geometric player: the widest direct pot (``game.pots``), struck in the middle, as softly as possible.
 
     * Without a pot it plays a plain stroke (``plain_stroke``): the break-off, a soft stroke at a ball on that it sees, an escape.
+    * It nominates the colour that its line meets first. It never concedes or claims, and begins if it wins the lot.
     * With the cue ball in hand it takes the best of ten places. After a foul it always plays the table as it lies.
     * It allows for neither throw nor position.
     * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within the window that strikes the
@@ -102,7 +119,9 @@ class GhostBallOpponent:
 
     def prepare(self, frames: "Frames", which: Ints, actions: Any, buffers: ShotBuffers) -> Ints:
         """Carry its strokes out up to the strike, one on each table."""
-        b = buffers
+        b, f = buffers, frames
         options, noise, _ = frames.packed
-        _ghost_ball(which, frames.positions, frames.on_table, frames.game, frames.streams, options, noise, b.r, b.v, b.w, b.here, b.shots)
+        _ghost_ball(
+            which, f.positions, f.on_table, f.game, f.nominated, f.streams, options, noise, b.r, b.v, b.w, b.here, b.shots
+        )  # fmt: skip
         return which

@@ -23,12 +23,19 @@ points of this break / 155.
 """
 
 FRAME_ENTRIES = (
-    "score", "opponent_score", "lead", "available", "to_play", "free_ball", "choice", "miss_called", "respotted_black",
+    "score", "opponent_score", "lead", "available", "to_play", "free_ball", "choice", "miss_called", "respotted_black", "broke", "failures",
+    "warned", "in_lot", "frames_won", "opponent_frames", "frames_needed", "clock", "misses", "anywhere",
 )  # fmt: skip
-"""Entries that a frame adds, from one player's point of view: his score, the opponent's score and the difference, each / 155; points on the
-table / 147; all clipped to [-1, 1]. Then flags: it is his turn, the striker has a free ball, the opponent has just fouled (a decision is
-open), the foul was called a miss, the black was re-spotted. With a free ball, "ball_on" is 1 for every colour too.
+"""Entries that a frame adds, from one player's point of view, in [-1, 1] and never clipped. His score s and the opponent's, each
+s / (s + 147); the difference d / (abs(d) + 147); points on the table / 155. Flags: it is his turn, the striker has a free ball, the other
+player has just fouled (a decision is open), the foul was called a miss, the black was re-spotted, he broke off in this frame. Failures in
+succession from one position / 2, and whether the next one loses the frame. Whether the lot is won and its winner decides who begins. Of a
+match, each f / (f + 1): the frames that he has won, those of the opponent, those that win the match (1 in a single frame). The share of the
+frame's time that has been played (0 without a clock); misses m in succession, m / (m + 5); whether the cue ball in hand may be placed
+anywhere. With a free ball, "ball_on" is 1 for every colour too.
 """
+REPLACED_COLUMNS = ("x", "y", "on_table")
+"""Columns of the layout that "replace" restores, one row a ball as in the table of balls; 0 unless a miss has just been called."""
 
 _COLUMNS = len(BALL_COLUMNS)
 BALLS_SIZE = N_BALLS * _COLUMNS
@@ -36,10 +43,12 @@ BALLS_SIZE = N_BALLS * _COLUMNS
 SIZE = BALLS_SIZE + len(STATE_ENTRIES)
 """Numbers in the flat observation of a visit (121). Public as ``snooker_env.tasks.OBSERVATION_SIZE``."""
 FRAME_SIZE = SIZE + len(FRAME_ENTRIES)
-"""Numbers in the flat observation of a frame (130)."""
+"""Numbers in the flat observation of a frame without a miss rule (140)."""
+REPLACED_SIZE = N_BALLS * len(REPLACED_COLUMNS)
+"""Numbers that a miss rule adds to it (66): the layout that "replace" restores."""
 
 
-def space(kind: ObservationKind, *, frame: bool = False) -> spaces.Box | spaces.Dict:
+def space(kind: ObservationKind, *, frame: bool = False, replaced: bool = False) -> spaces.Box | spaces.Dict:
     """Return the observation space.
 
     Parameters
@@ -47,7 +56,10 @@ def space(kind: ObservationKind, *, frame: bool = False) -> spaces.Box | spaces.
     kind : {"flat", "balls"}
         "flat": a Box with shape (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,).
     frame : bool, optional
-        Whether the nine entries of a frame follow the eleven of a visit: shapes (130,) and (20,). Default False.
+        Whether the 19 entries of a frame or match follow the eleven of a visit: shapes (140,) and (30,). Default False.
+    replaced : bool, optional
+        Whether the layout that "replace" restores follows, as in a frame with a miss rule: 66 more numbers, (206,) in all, or the box
+        "replaced" (22, 3). Default False.
 
     Returns
     -------
@@ -67,11 +79,13 @@ def space(kind: ObservationKind, *, frame: bool = False) -> spaces.Box | spaces.
     """
     choice("observation", kind, OBSERVATIONS)
     entries = len(STATE_ENTRIES) + (len(FRAME_ENTRIES) if frame else 0)
+    more = REPLACED_SIZE if replaced else 0
     balls = spaces.Box(-1.0, 1.0, (N_BALLS, len(BALL_COLUMNS)), np.float32)
     state = spaces.Box(-1.0, 1.0, (entries,), np.float32)
     if kind == "balls":
-        return spaces.Dict({"balls": balls, "state": state})
-    return spaces.Box(-1.0, 1.0, (N_BALLS * len(BALL_COLUMNS) + entries,), np.float32)
+        parts = {"balls": balls, "state": state}
+        return spaces.Dict(parts | {"replaced": spaces.Box(-1.0, 1.0, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)} if more else parts)
+    return spaces.Box(-1.0, 1.0, (BALLS_SIZE + entries + more,), np.float32)
 
 
 @kernel
@@ -101,12 +115,13 @@ def shaped(kind: ObservationKind, rows: Singles) -> Observation:
     kind : {"flat", "balls"}
         The kind.
     rows : numpy.ndarray
-        float32 (..., k), with k = 121 in a visit and 130 in a frame.
+        float32 (..., k), with k = 121 in a visit, 140 in a frame, 206 in a frame with a miss rule.
 
     Returns
     -------
     numpy.ndarray or dict
-        With "flat": ``rows`` itself. With "balls": a dict of new arrays, "balls" (..., 22, 5) and "state" (..., k - 110).
+        With "flat": ``rows`` itself. With "balls": a dict of new arrays, "balls" (..., 22, 5), "state" (..., 11 or 30) and, with a
+        miss rule, "replaced" (..., 22, 3).
 
     Examples
     --------
@@ -119,4 +134,7 @@ def shaped(kind: ObservationKind, rows: Singles) -> Observation:
         return rows
     lead = rows.shape[:-1]
     balls = rows[..., :BALLS_SIZE].reshape(*lead, N_BALLS, _COLUMNS)
-    return {"balls": np.array(balls), "state": np.array(rows[..., BALLS_SIZE:])}
+    parts = {"balls": np.array(balls), "state": np.array(rows[..., BALLS_SIZE:FRAME_SIZE])}
+    if rows.shape[-1] > FRAME_SIZE:
+        parts["replaced"] = np.array(rows[..., FRAME_SIZE:].reshape(*lead, N_BALLS, len(REPLACED_COLUMNS)))
+    return parts

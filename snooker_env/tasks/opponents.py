@@ -81,9 +81,11 @@ class SavedPolicy:
     kind: ObservationKind
     actions: Actions | Choices
     trust: bool
+    replaced: bool
+    """Whether the environment shows the layout that "replace" restores."""
 
-    def __init__(self, path: str | Path, kind: ObservationKind, actions: Actions | Choices, trust: bool):
-        self.path, self.kind, self.actions, self.trust = Path(path), kind, actions, trust
+    def __init__(self, path: str | Path, kind: ObservationKind, actions: Actions | Choices, trust: bool, replaced: bool = False):
+        self.path, self.kind, self.actions, self.trust, self.replaced = Path(path), kind, actions, trust, replaced
         self._network = self._load()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -100,24 +102,28 @@ class SavedPolicy:
             self._network = self._load()
         if self._network.observation_space == observations.space(self.kind):
             observation = visit_part(observation)
+        elif self.replaced and self._network.observation_space == observations.space(self.kind, frame=True):
+            observation = without_replaced(observation)
         if isinstance(self.actions, Choices):
-            masked = {"action_masks": masks} if self._masked and masks is not None else {}
+            masked = {"action_masks": masks[:, : self._network.action_space.n]} if self._masked and masks is not None else {}
             return self._network.predict(observation, deterministic=True, **masked)[0]
         actions = np.clip(self._network.predict(observation, deterministic=True)[0], -1.0, 1.0)
-        if actions.shape[1] < self.actions.size:
-            return np.append(actions, np.zeros((len(actions), 1), actions.dtype), axis=1)
-        return actions
+        missing = self.actions.size - actions.shape[1]
+        return np.append(actions, np.zeros((len(actions), missing), actions.dtype), axis=1) if missing else actions
 
     def _load(self):
         seen = [observations.space(self.kind), observations.space(self.kind, frame=True)]
-        discrete = isinstance(self.actions, Choices)
-        sizes = sorted({self.actions.size, self.actions.size - self.actions.decision})
-        fitting = [("Discrete", str(CHOICES))] if discrete else [("Box", [size]) for size in sizes]
+        seen += [observations.space(self.kind, frame=True, replaced=True)] if self.replaced else []
+        discrete, actions = isinstance(self.actions, Choices), self.actions
+        most = actions.choices if isinstance(actions, Choices) else actions.size
+        strokes = CHOICES if discrete else actions.size - actions.decision - actions.declares
+        sizes = [most] if actions.nominate else sorted({strokes, most})  # a nomination cannot be left out
+        fitting: list[tuple[str, Any]] = [("Discrete", str(size)) if discrete else ("Box", [size]) for size in sizes]
         saved = SavedModel.of(self.path, "opponent")
         if saved.action[0] != fitting[0][0]:
             raise saved.refused(f"must be a model whose actions are a {fitting[0][0]}")
         other_view = saved.refused(f'must be a model that sees observation="{self.kind}" of the visit or frame task and nothing else')
-        other_actions = saved.refused(f"must be a model with {CHOICES if discrete else ' or '.join(map(str, sizes))} actions")
+        other_actions = saved.refused(f"must be a model with {' or '.join(map(str, sizes))} actions")
         if saved.observation not in [outline(space) for space in seen]:
             raise other_view
         if tuple(saved.action) not in [tuple(one) for one in fitting]:
@@ -136,14 +142,25 @@ Opponent: TypeAlias = UniformOpponent | GhostBallOpponent | AskedOpponent
 
 def visit_part(observation: Observation) -> Observation:
     """The part of a frame's observations that the visit task has too."""
-    extra = len(observations.FRAME_ENTRIES)
     if isinstance(observation, dict):
-        return observation | {"state": observation["state"][..., :-extra]}
-    return observation[..., :-extra]
+        return {"balls": observation["balls"], "state": observation["state"][..., : len(observations.STATE_ENTRIES)]}
+    return observation[..., : observations.SIZE]
 
 
-def opponent_of(opponent: str | Path | Policy, kind: ObservationKind, actions: Actions | Choices, trust: bool = False) -> Opponent | None:
-    """The player that ``opponent`` names; None for "none". ``kind``: of the observation; ``trust``: code in a model's file may run."""
+def without_replaced(observation: Observation) -> Observation:
+    """A frame's observations without the layout that "replace" restores."""
+    if isinstance(observation, dict):
+        return {"balls": observation["balls"], "state": observation["state"]}
+    return observation[..., : observations.FRAME_SIZE]
+
+
+def opponent_of(
+    opponent: str | Path | Policy, kind: ObservationKind, actions: Actions | Choices, trust: bool = False, *, replaced: bool = False
+) -> Opponent | None:
+    """The player that ``opponent`` names; None for "none".
+
+    ``kind``: of the observation; ``trust``: code in a model's file may run; ``replaced``: the observation holds that layout.
+    """
     allowed = "must be one of " + ", ".join(map(repr, OPPONENTS)) + ", a path to a model (.zip), or a callable(observation, rng) -> action"
     truth("trust", trust)
     if not isinstance(opponent, str | Path):
@@ -154,4 +171,4 @@ def opponent_of(opponent: str | Path | Policy, kind: ObservationKind, actions: A
         return {"none": lambda: None, "random": UniformOpponent, "ghost_ball": GhostBallOpponent}[str(opponent)]()
     if Path(opponent).suffix != ".zip":
         raise refuse("opponent", opponent, allowed)
-    return AskedOpponent(SavedPolicy(opponent, kind, actions, trust))
+    return AskedOpponent(SavedPolicy(opponent, kind, actions, trust, replaced))

@@ -24,17 +24,20 @@ from .discrete_actions import Choices
 from .noise import Noise, NoiseLike
 from .observations import OBSERVATIONS
 from .opponents import Opponent, Policy, opponent_of
-from .rewards import FRAME_REWARDS, REWARDS
+from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
 from .table_fit import fitted, table_of
 
-TASKS = ("visit", "frame")
+TASKS = ("visit", "frame", "match")
+GAMES = ("snooker",)
 ACTIONS = ("box", "discrete")
-LAYOUTS = {"visit": "opened", "frame": "break_off"}
+LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 """What layout="default" means in each task."""
 MAX_STROKES = 1000
 """Default number of strokes of both players after which the referee stops a frame. Uniformly random players that aim near a pot needed 284
 on average, and never more than 560 in 2,000 frames (``benchmarks.frames``). Players that only foul, or only pass the turn, never finish.
 """
+FRAMES = 7
+"""Default length of a match: best of 7."""
 NEVER = 2**62
 """Stands for no limit of strokes or steps."""
 
@@ -54,14 +57,21 @@ class Rules:
     """How tables are dealt."""
     reward: str
     observation: ObservationKind
-    miss: bool = False
-    """In a frame: whether a foul and a miss is called."""
+    miss: MissRule = "off"
+    """In a frame: the rule for a foul and a miss."""
     max_strokes: int = NEVER
     """In a frame: number of strokes of both players after which it is stopped."""
     opponent: Opponent | None = None
     """In a frame: the player of the other side, from ``opponents.opponent_of``."""
     one_stroke: bool = False
     """In a visit: whether it ends after its first stroke."""
+    frames: int = 0
+    """In a match: of how many frames at most. 0 for a single frame, which is no match."""
+
+    @property
+    def misses(self) -> bool:
+        """Whether a foul and a miss is called."""
+        return self.miss != "off"
 
     def packed(self) -> tuple[Floats, Floats, Floats]:
         """For the kernels: options of the action, deviations of the noise, physical parameters."""
@@ -74,21 +84,23 @@ class Options:
 
     Parameters
     ----------
-    task : {"visit", "frame"}, optional
-        "visit" (default): build a break until the first miss or foul. "frame": play a whole frame.
+    task : {"visit", "frame", "match"}, optional
+        "visit" (default): build a break until the first miss or foul. "frame": play a whole frame. "match": the best of several frames;
+        what is said below of a frame holds for a match, too.
     layout : str, optional
         How tables are dealt: "opened", "held_out", "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy",
         "pots:medium" or "pots:hard". "default": "opened" in a visit, "break_off" in a frame.
     action : {"box", "discrete"}, optional
-        "box" (default): numbers in [-1, 1]. "discrete": one integer in [0, 540) that means a pot, a speed, a side and a top.
+        "box" (default): numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a top, in [0, 540) unless options
+        of frames add more.
     aim : {"absolute", "target"}, optional
         Reference direction of the aim in a box action: +x (default), or the best potting line.
     observation : {"flat", "balls"}, optional
         "flat" (default): one array. "balls": a dict of two arrays.
     noise : str, dict or Noise, optional
         Execution errors: the name of a level, or standard deviations, see ``snooker_env.tasks.Noise``. Default "none".
-    reward : {"points", "points_and_fouls", "pots", "legal", "win"}, optional
-        Default "points". The first four are available in a visit, "points" and "win" in a frame.
+    reward : {"points", "points_and_fouls", "pots", "legal", "win", "frames"}, optional
+        Default "points". The first four are available in a visit, "points" and "win" in a frame, "frames" also in a match.
     elevation : bool, optional
         Whether a box action holds the elevation of the cue; default False.
     placement : bool, optional
@@ -106,7 +118,18 @@ class Options:
     decision : bool, optional
         In a frame: whether a box action holds the decision after a foul of the opponent; default False.
     max_strokes : int or None, optional
-        In a frame: number of strokes of both players after which the referee stops it; default 1000, None for never.
+        In a frame: number of strokes of both players after which the referee stops it; default 1000, None for never. A match stops with it.
+    nominate : bool, optional
+        In a frame: whether an action names the colour after a red, and a free ball. Default False: the colour struck first is taken as the
+        one nominated.
+    concede, claim : bool, optional
+        In a frame: whether the striker's action may concede the frame, or claim it where the rules allow it. Default False.
+    lot : bool, optional
+        In a frame: whether the winner of the lot for a re-spotted black may let the other player begin. Default False: he begins.
+    game : {"snooker"}, optional
+        In a frame: the rules of the game. Default "snooker".
+    frames : int, optional
+        In a match: the most frames that it can have, an odd number; default 7.
     one_stroke : bool, optional
         In a visit: whether it ends after its first stroke; default False.
     trust : bool, optional
@@ -130,13 +153,13 @@ class Options:
     ('club', 'none')
     """
 
-    task: Literal["visit", "frame"] = "visit"
+    task: Literal["visit", "frame", "match"] = "visit"
     layout: str = "default"
     action: Literal["box", "discrete"] = "box"
     aim: Literal["absolute", "target"] = "absolute"
     observation: ObservationKind = "flat"
     noise: NoiseLike = "none"
-    reward: Literal["points", "points_and_fouls", "pots", "legal", "win"] = "points"
+    reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = "points"
     elevation: bool = False
     placement: bool = False
     physics: PhysicsLike = "paper"
@@ -148,10 +171,16 @@ class Options:
     max_strokes: int | None = MAX_STROKES
     one_stroke: bool = False
     trust: bool = False
+    nominate: bool = False
+    concede: bool = False
+    claim: bool = False
+    lot: bool = False
+    game: Literal["snooker"] = "snooker"
+    frames: int = FRAMES
     rules: Rules = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        frame = choice("task", self.task, TASKS) == "frame"
+        frame = choice("task", self.task, TASKS) != "visit"
         physics, table = self._physics(), table_of(self.table)
         fidelity, noise = parse_fidelity(self.fidelity), Noise.of(self.noise)
         for name, read in (("physics", physics), ("noise", noise)):
@@ -162,19 +191,33 @@ class Options:
         plan = fitted(LAYOUTS[self.task] if default else self.layout, table)
         choice("observation", self.observation, OBSERVATIONS)
         truth("trust", self.trust)
-        choice("reward", self.reward, FRAME_REWARDS if frame else REWARDS)
+        choice("reward", self.reward, {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}[self.task])
         one_stroke = truth("one_stroke", self.one_stroke)
-        miss, limit, opponent = False, NEVER, None
+        limit, opponent = NEVER, None
+        frames = self._frames()
         if frame:
-            miss = choice("miss", self.miss, MISS_RULES) == "clear_path"
+            choice("miss", self.miss, MISS_RULES[:2])
+            choice("game", self.game, GAMES)
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
-            opponent = opponent_of(self.opponent, self.observation, actions, self.trust)
+            opponent = opponent_of(self.opponent, self.observation, actions, self.trust, replaced=self.miss != "off")
             if one_stroke:
-                raise refuse("one_stroke", True, 'must be False with task="frame"; it belongs to task="visit"')
+                raise refuse("one_stroke", True, f'must be False with task="{self.task}"; it belongs to task="visit"')
         else:
             self._check_visit()
-        read = Rules(actions, noise, physics, table, fidelity, plan, self.reward, self.observation, miss, limit, opponent, one_stroke)
+        read = Rules(
+            actions, noise, physics, table, fidelity, plan, self.reward, self.observation, self.miss, limit, opponent, one_stroke, frames
+        )  # fmt: skip
         object.__setattr__(self, "rules", read)
+
+    def _frames(self) -> int:
+        """The length of a match; 0 for another task."""
+        if self.task != "match":
+            if type(self.frames) is not int or self.frames != FRAMES:
+                raise refuse("frames", self.frames, f'must be {FRAMES} with task="{self.task}"; it belongs to task="match"')
+            return 0
+        if integer("frames", self.frames, 1, 999) % 2 == 0:
+            raise refuse("frames", self.frames, "must be odd, so that one player wins")
+        return int(self.frames)
 
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)
@@ -184,13 +227,14 @@ class Options:
         return physics
 
     def _actions(self, physics: Physics) -> Actions | Choices:
+        said = {"nominate": self.nominate, "concede": self.concede, "claim": self.claim, "lot": self.lot}
         if choice("action", self.action, ACTIONS) == "box":
-            return Actions(self.aim, self.elevation, self.placement, physics, self.decision)
+            return Actions(self.aim, self.elevation, self.placement, physics, self.decision, **said)
         for name in ("elevation", "placement", "decision"):
             if getattr(self, name) is not False:
                 raise refuse(name, getattr(self, name), 'must be False with action="discrete"')
         choice("aim", self.aim, AIMS)  # checked but unused: the aim is solved
-        return Choices(physics)
+        return Choices(physics, **said)
 
     def _check_visit(self) -> None:
         """Raise ValueError if an option of frames is changed in a visit."""
@@ -227,7 +271,7 @@ class Options:
         return replace(self, **changes)
 
 
-FRAME_ONLY = ("opponent", "trust", "miss", "decision", "max_strokes")
+FRAME_ONLY = ("opponent", "trust", "miss", "decision", "max_strokes", "nominate", "concede", "claim", "lot", "game")
 """Options that have a meaning in the frame task only."""
 NAMES = tuple(f.name for f in fields(Options) if f.init)
 

@@ -19,24 +19,36 @@ def reward_of(kind, points, penalty):
 
 
 FRAME_REWARDS = ("points", "win")
-"""Rewards of a frame. ``"points"``: the player's points minus the opponent's in this step, pots and penalties of both. ``"win"``: +1 or -1
-when the frame ends, else 0.
+"""Rewards of a frame. ``"points"``: the growth of the player's lead, pots and penalties of both, since he was last paid. The rewards of an
+episode add up to the final difference: the first one includes a first visit of the opponent. ``"win"``: +1 or -1 when the frame ends, else
+0.
 """
+MATCH_REWARDS = (*FRAME_REWARDS, "frames")
+"""Rewards of a match. ``"points"``: as in a frame, added up over the frames. ``"win"``: +1 or -1 when the match ends. ``"frames"``: +1 or
+-1 when a frame ends.
+"""
+(POINTS_PAID, WIN_PAID, FRAMES_PAID) = range(3)
+
+
+@kernel
+def earned(kind, lead, frames_lead):
+    """What the column PAID of a frame counts for the reward ``kind``: a player's lead in frames, or in points."""
+    return frames_lead if kind == FRAMES_PAID else lead
 
 
 @kernel
 def frame_reward_of(kind, gained, winner, player):
-    """The reward of a step of a frame.
+    """The reward of a step of a frame or match.
 
-    ``kind`` is the index into ``FRAME_REWARDS``, ``gained`` the growth of the player's lead, ``winner`` -1 while there is none.
+    ``kind`` is the index into ``MATCH_REWARDS``, ``gained`` what the player has ``earned`` since he was paid, ``winner`` -1 for none.
     """
-    if kind == 0:
+    if kind != WIN_PAID:
         return float(gained)
     return 0.0 if winner < 0 else 1.0 if winner == player else -1.0
 
 
 def frame_reward(name: str, gained: float, winner: int | None, player: int) -> float:
     """The same for one player of a match; ``gained`` and ``winner`` (None while there is none) are those of player 0."""
-    if name == "points":
+    if name != "win":
         return float(gained if player == 0 else -gained)
     return 0.0 if winner is None else 1.0 if winner == player else -1.0

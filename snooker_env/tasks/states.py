@@ -2,16 +2,19 @@
 
 from collections.abc import Collection
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from .._check import array, flags, integer, refuse, refuse_what, truth
-from .._types import Bools, Floats, MissRule
+from .._types import Bools, Floats
 from ..game.balls import CUE, CUE_BIT, N_BALLS, REDS_MASK, BallOn, balls_on, mask_of_present, next_on
 from ..game.frame import MOST_BREAK, Frame, points_available
 from ..game.in_hand import within_d
 from ..physics.table import Table
+
+if TYPE_CHECKING:
+    from .options import Rules
 
 MOST = 2**53 - 1
 """Largest score and number of strokes in a saved frame. A float, as in observations and infos, still represents every integer up to here.
@@ -35,15 +38,27 @@ class State(NamedTuple):
 
 
 class FrameState(NamedTuple):
-    """A valid state of a frame, in ``SnookerEnv`` or a match."""
+    """A valid state of a frame or match, in ``SnookerEnv`` or with two players."""
 
     frame: Frame
     positions: Floats
     on_table: Bools
     strokes: int
+    unpaid: int
+    """What the agent has earned and no reward has paid: points, or with ``reward="frames"`` frames."""
+    due: bool
+    """Whether the episode ended before the agent's first stroke, and the next step reports it."""
     stream: list[int]
     """Key and counter of the table's stream of random numbers."""
     rng: dict[str, Any]
+    frames: tuple[int, int] | None = None
+    first_break: int | None = None
+    """Of a match: the frames that each player has won, and who broke in the first one."""
+
+
+FRAME_KEYS = ("frame", "positions", "on_table", "strokes", "unpaid", "due", "stream", "rng")
+MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break")
+"""Keys of the saved state of a frame, and of a match."""
 
 
 def check_keys(state: Any, keys: Collection[str]) -> None:
@@ -136,12 +151,13 @@ def checked(state: Any, table: Table, R: float, generator: np.random.Generator, 
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"])
 
 
-def checked_frame(state: Any, miss: MissRule, table: Table, R: float, generator: np.random.Generator) -> FrameState:
-    """The ``FrameState`` that a dict describes, under the miss rule ``miss``; ValueError names the first invalid part.
+def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) -> FrameState:
+    """The ``FrameState`` that a dict describes, under these rules; ValueError names the first invalid part.
 
     ``generator``: the NumPy generator for the part "rng"; it is not changed.
     """
-    check_keys(state, FrameState._fields)
+    check_keys(state, MATCH_KEYS if rules.frames else FRAME_KEYS)
+    miss, table, R = rules.miss, rules.table, rules.physics.R
     positions, on_table = checked_layout(("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R)
     frame = Frame.from_dict(state["frame"], "state.frame")
     strokes = integer("state.strokes", state["strokes"], 0, MOST)
@@ -149,7 +165,7 @@ def checked_frame(state: Any, miss: MissRule, table: Table, R: float, generator:
         integer(f"state.frame.scores[{k}]", points, 0, MOST)
     if frame.miss != miss:
         raise refuse("state.frame.miss", frame.miss, f"must be {miss!r}, as this environment plays")
-    if frame.phase == "lot":
+    if frame.phase == "lot" and not rules.actions.lot:
         raise refuse("state.frame.phase", frame.phase, "must not be between two steps: the lot is drawn in the step of the stroke before")
     if frame.phase != "over":
         if mask_of_present(on_table) != frame.on_table | CUE_BIT:
@@ -159,7 +175,21 @@ def checked_frame(state: Any, miss: MissRule, table: Table, R: float, generator:
         frame = replace(frame, saved=_checked_saved(frame, table, R))
     stream = check_stream(state["stream"])
     check_rng(state["rng"], generator)
-    return FrameState(frame, positions, on_table, strokes, stream, state["rng"])
+    unpaid, due = integer("state.unpaid", state["unpaid"], -MOST, MOST), truth("state.due", state["due"])
+    match = _checked_match(state, frame, rules.frames // 2 + 1) if rules.frames else ()
+    return FrameState(frame, positions, on_table, strokes, unpaid, due, stream, state["rng"], *match)
+
+
+def _checked_match(state, frame, needed):
+    """The frames won and who broke first, of a match that is won with ``needed`` frames."""
+    won = state["frames"]
+    if not isinstance(won, list | tuple) or len(won) != 2:
+        raise refuse("state.frames", won, "must be two integers, the frames that each player has won")
+    won = tuple(integer(f"state.frames[{k}]", n, 0, needed) for k, n in enumerate(won))
+    for k, n in enumerate(won):
+        if (n == needed) != (frame.winner == k):
+            raise refuse(f"state.frames[{k}]", n, f"must be {needed} for the winner of a match that is over, else below")
+    return won, integer("state.first_break", state["first_break"], 0, 1)
 
 
 def _checked_saved(frame, table, R):

@@ -14,16 +14,18 @@ from .._jit import entry, kernel
 from .._shots import count
 from .._types import Bools, Floats, Ints
 from ..game.balls import CUE, N_BALLS, REFEREE_TOUCH, TOUCH, bits
-from ..game.frame_columns import IN_HAND, strikeable
+from ..game.frame_columns import IN_HAND
 from ..game.in_hand import nearest_place
 from ..game.pots import POT_COLUMNS
+from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.engine import EventKind, Status
 from ..physics.impact.polynomial import WORK
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
-from .box_actions import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, place_of, shot_of, tip_on_disc
+from .box_actions import place_of, shot_of, tip_on_disc
+from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, playable
 from .noise import executed
 
 if TYPE_CHECKING:
@@ -123,8 +125,11 @@ def strike(intended, positions, on_table, stream, options, noise, j, r, v, w, he
 
 
 @entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen,))
-def address(which, actions, positions, on_table, game, streams, options, noise, phys, fidelity, n_steps, r, v, w, here, shots):
-    """Carry the actions (n, k) of the tables ``which`` out up to the strike: shot j is that of table which[j]."""
+def address(which, actions, positions, on_table, game, nominated, streams, options, noise, phys, fidelity, n_steps, r, v, w, here, shots):
+    """Carry the actions (n, k) of the tables ``which`` out up to the strike: shot j is that of table which[j].
+
+    ``nominated``: of frames (n,), the colour that each striker has nominated, 0 or AUTO; of visits without rows.
+    """
     found = np.empty((discrete_actions.POTS if options[A_DISCRETE] else 1, POT_COLUMNS))
     motion, phase, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
     for j in range(which.shape[0]):
@@ -133,7 +138,7 @@ def address(which, actions, positions, on_table, game, streams, options, noise, 
         if game[k, IN_HAND] and options[A_PLACEMENT]:
             x, y = place_of(a, options)
             place(p, on, x, y)
-        mask = strikeable(game[k], bits(on))
+        mask = playable(game[k], bits(on), nominated[k] if nominated.shape[0] else AUTO)
         if options[A_DISCRETE]:
             intended = discrete_actions.chosen(
                 int(a[0]), p, on, mask, phys, options[A_END_MASS], fidelity, n_steps, found, motion, phase, work

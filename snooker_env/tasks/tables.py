@@ -14,7 +14,9 @@ from .._types import Bools, Floats, Ints, Singles, Words
 from ..game.balls import N_BALLS, BallOn, balls_on, mask_of_present
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import stream_of
+from ..physics.parameters import Physics
 from . import discrete_actions, stroke
+from .discrete_actions import Choices
 from .options import NEVER, Rules
 from .played import Played, judged, struck
 
@@ -135,6 +137,8 @@ class Crew:
 
 
 _T = TypeVar("_T", bound="Tables")
+_NOTHING_SAID = Choices(Physics()).pack()
+"""Packed options of discrete actions that only choose a stroke, for tables whose own actions are a box."""
 
 
 class Tables(ABC):
@@ -160,6 +164,8 @@ class Tables(ABC):
     """(n, COLUMNS): of ``game.frame_columns``."""
     streams: Words
     """(n, 2) Key and counter of each table's random stream."""
+    nominated: Ints = np.empty(0, np.int64)
+    """(n,) Of frames: the colour that each striker has nominated. A visit has none: no rows."""
     begun: Bools
     """(n,) Which tables have an episode, possibly one that has ended."""
     packed: tuple[Floats, Floats, Floats]
@@ -216,15 +222,21 @@ class Tables(ABC):
         return balls_on(int(self.game[k, BALL_ON]), mask_of_present(self.on_table[k]))
 
     def action_masks(self, which: Ints | None = None) -> Bools:
-        """Available discrete actions on the tables ``which`` (all if None): bool (len(which), discrete_actions.SIZE)."""
+        """Available discrete actions on the tables ``which`` (all if None): bool (len(which), choices)."""
         which = np.arange(self.n) if which is None else which
-        out = np.empty((len(which), discrete_actions.SIZE), np.bool_)
-        discrete_actions.masks(which, self.positions, self.on_table, self.game, out)
+        actions = self.rules.actions
+        out = np.empty((len(which), actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE), np.bool_)
+        options = self.packed[0] if isinstance(actions, Choices) else _NOTHING_SAID
+        discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
         return out
 
     def ended(self) -> Bools:
         """Which tables have no stroke left to play: bool (n,)."""
         return ~self.begun | (self.game[:, OVER] != 0)
+
+    def finished(self) -> Bools:
+        """Which episodes have ended, and a step has said so: bool (n,)."""
+        return self.ended()
 
     def view(self: _T, k: int) -> _T:
         """Table k as a ``Tables`` with one table that shares its state."""
@@ -247,8 +259,8 @@ class Tables(ABC):
         """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
         (options, noise, phys), (fidelity, n_steps), b = self.packed, self.rules.fidelity, buffers
         stroke.address(
-            which, actions, self.positions, self.on_table, self.game, self.streams, options, noise, phys, fidelity, n_steps, b.r, b.v, b.w,
-            b.here, b.shots,
+            which, actions, self.positions, self.on_table, self.game, self.nominated, self.streams, options, noise, phys, fidelity, n_steps,
+            b.r, b.v, b.w, b.here, b.shots,
         )  # fmt: skip
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:

@@ -8,6 +8,7 @@ import numpy as np
 from .._jit import entry
 from .._types import Floats, Ints
 from ..game.philox import pair
+from .declarations import COLOURS
 from .discrete_actions import SIZE as CHOICES
 from .discrete_actions import Choices
 from .stroke import ShotBuffers
@@ -31,14 +32,14 @@ def _uniform(which, streams, actions):
 
 @entry
 def _uniform_choice(which, streams, masks, actions):
-    """A uniformly random available choice on each of the tables ``which``; masks (len(which), CHOICES)."""
+    """A uniformly random available choice on each of the tables ``which``; masks (len(which), choices)."""
     for j in range(which.shape[0]):
         k, many = which[j], 0
-        for c in range(CHOICES):
+        for c in range(masks.shape[1]):
             many += masks[j, c]
         u, _ = pair(streams[k])
         left = int(u * many)
-        for c in range(CHOICES):
+        for c in range(masks.shape[1]):
             if masks[j, c]:
                 if left == 0:
                     actions[k, 0] = c
@@ -46,7 +47,10 @@ def _uniform_choice(which, streams, masks, actions):
 
 
 class UniformOpponent:
-    """Uniform random play: every component of a box action, the decision included; or one of the available discrete actions."""
+    """Uniform random play: every component of a box action, the decision included; or one of the available discrete actions.
+
+    It never concedes: its declarations and choices are drawn from the others.
+    """
 
     def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
         """Empty actions: ``prepare`` draws them from each table's own stream."""
@@ -54,8 +58,14 @@ class UniformOpponent:
 
     def prepare(self, frames: "Frames", which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
         """Carry the strokes out up to the strike; returns the tables with a stroke."""
-        if isinstance(frames.rules.actions, Choices):
-            _uniform_choice(which, frames.streams, frames.action_masks(which), actions)
+        own = frames.rules.actions
+        if isinstance(own, Choices):
+            masks = frames.action_masks(which)
+            if own.concede:
+                masks[:, CHOICES * (1 + COLOURS * own.nominate)] = False
+            _uniform_choice(which, frames.streams, masks, actions)
         else:
             _uniform(which, frames.streams, actions)
+            if own.concede:
+                actions[which, -1] = (5.0 * actions[which, -1] + 1.0) / 6.0  # [-1, 1) becomes [-2/3, 1)
         return frames.prepare(which, actions, buffers)

@@ -30,7 +30,7 @@ ENV = [
     ],
     *[
         case(make(**{field: wrong}), field, repr(wrong), "must be True or False", f"{field}={wrong!r}")
-        for field in ("elevation", "placement", "decision", "trust")
+        for field in ("elevation", "placement", "decision", "trust", "nominate", "concede", "claim", "lot")
         for wrong in (0, 1, None, "yes", 0.5, [True])
     ],
     *[
@@ -41,6 +41,8 @@ ENV = [
         case(make(**{field: wrong}), field, repr(wrong), f'must be {plain!r} with task="visit"', f"visit-{field}")
         for field, wrong, plain in (
             ("opponent", "random", "none"), ("miss", "clear_path", "off"), ("decision", True, False), ("trust", True, False),
+            ("nominate", True, False), ("concede", True, False), ("claim", True, False), ("lot", True, False), ("frames", 5, 7),
+            ("game", "six_red", "snooker"),
         )
     ],
     *[

@@ -28,7 +28,7 @@ class Specification:
         self.frame, self.k = tables.frame(k), k
         self.positions, self.on_table = tables.positions[k].copy(), tables.on_table[k].copy()
         self.jaws = tables.rules.table.jaws[:, :3]
-        self.miss = tables.rules.miss
+        self.miss = tables.rules.misses
 
     def decide(self, action):
         """What the action's last number says after a foul; is there a stroke?"""

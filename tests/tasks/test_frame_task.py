@@ -25,10 +25,13 @@ def test_gymnasium_checks_it(observation, opponent):
 
 def test_the_spaces_grow_and_those_of_a_visit_do_not():
     assert SnookerEnv().observation_space.shape == (121,) and SnookerEnv().action_space.shape == (4,)
-    assert frame_env().observation_space.shape == (130,) and frame_env().action_space.shape == (7,)
-    assert frame_env(observation="balls").observation_space["state"].shape == (20,)
+    assert frame_env().observation_space.shape == (140,) and frame_env().action_space.shape == (7,)
+    assert frame_env(miss="clear_path").observation_space.shape == (206,)
+    assert frame_env(observation="balls").observation_space["state"].shape == (30,)
+    assert "replaced" not in frame_env(observation="balls").observation_space.spaces
+    assert frame_env(observation="balls", miss="clear_path").observation_space["replaced"].shape == (22, 3)
     assert frame_env(decision=False, placement=False).action_space.shape == (4,)
-    assert len(observations.FRAME_ENTRIES) == 9
+    assert len(observations.FRAME_ENTRIES) == 19
 
 
 def test_the_default_layout_is_that_of_the_task():

@@ -10,11 +10,13 @@ import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import D_RADIUS
-from snooker_env.tasks.observations import FRAME_ENTRIES
+from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
 from tests.tables import PLACES, frame_env, frame_state
 
 TO_BLUE = 0.0
 """Absolute aim along +x."""
+CHOICE_SEEN, FREE_BALL_SEEN = (SIZE + FRAME_ENTRIES.index(name) for name in ("choice", "free_ball"))
+"""Where an observation says that a decision is open, and that there is a free ball."""
 
 
 def test_a_step_ends_when_the_agent_is_to_play_or_the_frame_is_over():
@@ -67,7 +69,7 @@ FOULED = {"phase": "choice", "striker": 0, "scores": (0, 4)}
 def test_after_a_foul_the_action_decides(decision, own):
     """Without a miss called, "replace" is no option and means to play."""
     env = frame_state(frame_env(opponent="ghost_ball"), PLACES, FOULED)
-    assert env.tables.observe(np.zeros(1, np.int64), 0)[0][-3] == 1.0  # a decision is open
+    assert env.tables.observe(np.zeros(1, np.int64), 0)[0][CHOICE_SEEN] == 1.0
     _, _, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, decision])
     assert (info["events"] > 0) == own
     assert own or info["opponent_strokes"] > 0
@@ -95,7 +97,7 @@ def test_replacing_after_a_miss_brings_the_balls_back():
 def test_a_free_ball_is_seen_and_scores():
     places = {CUE: (0.3, 1.1), BLUE: (0.6, 1.4), 1: (-0.5, -1.2), PINK: SPOTS[PINK], BLACK: (0.0, 0.0)}
     env = frame_state(frame_env(opponent="ghost_ball"), places, FOULED | {"free_ball": True})
-    assert env.on >> BLUE & 1 and env.on >> 1 & 1 and env.tables.observe(np.zeros(1, np.int64), 0)[0][-4] == 1.0
+    assert env.on >> BLUE & 1 and env.on >> 1 & 1 and env.tables.observe(np.zeros(1, np.int64), 0)[0][FREE_BALL_SEEN] == 1.0
     _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
     assert (reward, info["points"], env.ball_on) == (1.0, 1.0, BallOn.ANY_COLOUR)
     assert np.array_equal(env.positions[BLUE], SPOTS[BLACK])  # it came back; its own spot is taken
@@ -107,21 +109,48 @@ def test_a_free_ball_is_seen_and_scores():
 
 
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
-def test_points_add_up_to_the_difference_and_win_says_who_won(opponent):
-    for seed in range(4):
+@pytest.mark.parametrize("layout", ["random:2", "pots:easy", "colours"])
+def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
+    """From the first stroke of the frame, which may be the opponent's, to the last one, which may be in his first visit."""
+    broke, before = 0, 0
+    for seed in range(15):
         totals = {}
         for reward in ("points", "win"):
-            env = frame_env(opponent=opponent, reward=reward, layout="random:2", noise="club")
-            env.reset(seed=seed)
-            start = env.frame.scores
-            rng, total, steps = np.random.default_rng(seed), 0.0, 0
-            while not env.over:
-                _, r, _, _, info = env.step(rng.uniform(-1, 1, 7))
-                total, steps = total + r, steps + 1
-                assert reward == "points" or (r == 0.0) != env.over
+            env = frame_env(opponent=opponent, reward=reward, layout=layout, noise="club")
+            _, info = env.reset(seed=seed)
+            broke, before = broke + (info["opponent_score"] + info["score"] > 0), before + (info["winner"] >= 0)
+            rng, total, over = np.random.default_rng(seed), 0.0, False
+            while not over:
+                _, r, terminated, _, info = env.step(rng.uniform(-1, 1, 7))
+                total, over = total + r, terminated
+                assert reward == "points" or (r == 0.0) != over
             totals[reward] = total
-        assert totals["points"] == info["score"] - info["opponent_score"] - (start[0] - start[1])
+        assert totals["points"] == info["score"] - info["opponent_score"] and info["winner"] >= 0
         assert totals["win"] == (1.0 if info["winner"] == 0 else -1.0)
+    assert (broke > 0) == (opponent != "none") and (before > 0 or opponent != "ghost_ball" or layout != "pots:easy")
+
+
+def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost():
+    """Nothing is dealt again: the reset shows that it is lost, the next step plays nothing and reports it; a state keeps that."""
+    env, won = frame_env(opponent="ghost_ball", layout="pots:easy", reward="win"), 0
+    for seed in range(60):
+        observation, info = env.reset(seed=seed)
+        before = env.positions
+        if info["winner"] < 0:
+            continue
+        won += 1
+        assert info["winner"] == 1 and info["opponent_strokes"] > 0 and env.over
+        state = json.loads(json.dumps(env.get_state()))
+        for start in (None, state):
+            if start:
+                env.reset(options={"state": start})
+            same, reward, terminated, truncated, after = env.step(env.action_space.sample())
+            assert (reward, terminated, truncated) == (-1.0, True, False) and np.array_equal(same, observation)
+            assert (after["strokes"], after["opponent_strokes"], after["events"]) == (info["strokes"], 0, 0) and after["winner"] == 1
+            assert np.array_equal(before, env.positions)
+            with pytest.raises(gymnasium.error.ResetNeeded):
+                env.step(env.action_space.sample())
+    assert won > 10
 
 
 # What a step returns
@@ -153,7 +182,7 @@ def test_snookers_are_needed_by_who_trails_by_more_than_is_left(lead, needs):
     observation, info = env.reset(options={"state": plain})
     assert info["needs_snookers"] is needs
     names = dict(zip(FRAME_ENTRIES, observation[-len(FRAME_ENTRIES) :].tolist(), strict=True))
-    assert names["available"] == pytest.approx(7 / 147) and names["lead"] == pytest.approx(-lead / 155)
+    assert names["available"] == pytest.approx(7 / 155) and names["lead"] == pytest.approx(-lead / (lead + 147))
 
 
 def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():

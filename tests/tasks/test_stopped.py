@@ -138,12 +138,16 @@ def test_the_strokes_are_counted_on_from_a_state():
     assert not endless.step(FOUL)[3]
 
 
-def test_every_episode_holds_a_stroke_of_the_agent():
-    """An opponent whose opening visit would reach the limit gets no frame to open."""
-    env = frame_of(opponent="random", max_strokes=1)
+def test_a_frame_that_is_stopped_in_the_opening_visit_is_reported_by_the_next_step():
+    """The referee stops it after the opponent's break-off: the agent plays nothing, and is paid what the opponent scored."""
+    env, opened = frame_of(opponent="random", max_strokes=1), 0
     for seed in range(10):
-        assert env.reset(seed=seed)[1]["strokes"] == 0
-        assert env.step(FOUL)[2:4] == (False, True)
+        _, info = env.reset(seed=seed)
+        opened += info["strokes"]
+        _, reward, terminated, truncated, after = env.step(FOUL)
+        assert (terminated, truncated, after["strokes"]) == (False, True, 1) and after["winner"] == -1
+        assert reward == after["score"] - after["opponent_score"] and (info["strokes"] == 0 or after["events"] == 0)
+    assert 0 < opened < 10
 
 
 def test_it_is_sound_for_gymnasium_and_round_trips():

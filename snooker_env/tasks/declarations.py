@@ -1,0 +1,115 @@
+"""What does a player say beside his stroke? The colour that he nominates, and whether he concedes, claims or lets the other begin.
+
+Inner kernels that read it from an action. The packed options of an action space say where: ``A_NOMINATE``, ``A_DECISION`` and
+``A_DECLARATION`` hold the index of a component of a box action, or -1; of discrete actions, ``A_NOMINATE`` is 0 or -1.
+"""
+
+from .._jit import kernel
+from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
+from ..game.frame_columns import BALL_ON, CHOICE, FREE_BALL, LOT, ON_TABLE, OVER, PHASE, STROKE, may_claim, strikeable
+from ..game.ruling import AUTO
+
+# Columns of the packed options of an action space.
+(
+    A_TARGET,
+    A_ELEVATION,
+    A_PLACEMENT,
+    A_END_MASS,
+    A_MAX_OFFSET,
+    A_DISCRETE,
+    A_NOMINATE,
+    A_DECISION,
+    A_DECLARATION,
+    A_CONCEDE,
+    A_CLAIM,
+    A_LOT,
+) = range(12)
+
+(SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)
+"""Declarations."""
+COLOURS = 6
+STROKE_CHOICES = 540
+"""``discrete_actions.SIZE``, the number of discrete actions that only choose a stroke."""
+
+
+@kernel
+def nominated_ball(n, row):
+    """The ball that the nomination ``n`` means for the striker of a frame: 0 none, 1 to 6 yellow to black.
+
+    After a red: that colour or, if it is not on the table, the next one that is. With a free ball: that colour; 0, the ball on itself, if
+    n is 0 or the colour is on anyway or not on the table. At other times AUTO: nothing is nominated.
+    """
+    if row[BALL_ON] == 0:
+        for c in range(COLOURS):
+            ball = YELLOW + (max(n, 1) - 1 + c) % COLOURS
+            if row[ON_TABLE] >> ball & 1:
+                return ball
+        return AUTO
+    if not row[FREE_BALL]:
+        return AUTO
+    ball = YELLOW + n - 1
+    free = COLOURS_MASK & row[ON_TABLE] & ~balls_on_kernel(row[BALL_ON], row[ON_TABLE])
+    return ball if n > 0 and free >> ball & 1 else 0
+
+
+@kernel
+def may_nominate(n, row):
+    """Whether a discrete action may nominate ``n`` now: one number for each thing that can be nominated."""
+    ball = nominated_ball(n, row)
+    return n == 0 if ball <= 0 else ball == YELLOW + n - 1
+
+
+@kernel
+def nomination_of(a, options, row):
+    """The ball that the action ``a`` nominates in the frame ``row``: a colour, 0 for a free ball declined, or AUTO."""
+    if options[A_NOMINATE] < 0:
+        return AUTO
+    if options[A_DISCRETE]:
+        c = int(a[0])
+        return nominated_ball(c // STROKE_CHOICES if c < STROKE_CHOICES * (1 + COLOURS) else 0, row)
+    x = 0.5 * (a[int(options[A_NOMINATE])] + 1.0)
+    if row[BALL_ON] == 0:
+        return nominated_ball(1 + min(COLOURS - 1, int(COLOURS * x)), row)
+    return nominated_ball(min(COLOURS, int((1 + COLOURS) * x)), row)
+
+
+@kernel
+def playable(row, mask, nominated):
+    """Mask of the balls in ``mask`` that may be struck first once ``nominated`` has been said: a colour, 0 for none, or AUTO."""
+    if nominated > 0:
+        return (1 << nominated) & mask
+    return balls_on_kernel(row[BALL_ON], mask) if nominated == 0 else strikeable(row, mask)
+
+
+@kernel
+def may_declare(what, row):
+    """Whether the striker of a frame may say ``what`` now."""
+    if row[OVER]:
+        return False
+    if what == CONCEDES:
+        return row[PHASE] == STROKE or row[PHASE] == CHOICE
+    return may_claim(row) if what == CLAIMS else row[PHASE] == LOT
+
+
+@kernel
+def declaration_of(a, options, row):
+    """What the striker of a frame says with the action ``a``, if he may."""
+    what = SAYS_NOTHING
+    if options[A_DISCRETE]:
+        extra = int(a[0]) - STROKE_CHOICES * (1 + COLOURS if options[A_NOMINATE] >= 0 else 1)
+        if extra < 0:
+            return SAYS_NOTHING
+        for declared, column in ((CONCEDES, A_CONCEDE), (CLAIMS, A_CLAIM), (OTHER_BEGINS, A_LOT)):
+            if options[column]:
+                if extra == 0:
+                    what = declared
+                extra -= 1
+    elif options[A_DECLARATION] >= 0:
+        x = a[int(options[A_DECLARATION])]
+        if row[PHASE] == LOT:
+            what = OTHER_BEGINS if options[A_LOT] and x < 0.0 else SAYS_NOTHING
+        elif x < -2.0 / 3.0 and options[A_CONCEDE]:
+            what = CONCEDES
+        elif x > 2.0 / 3.0 and options[A_CLAIM]:
+            what = CLAIMS
+    return what if what != SAYS_NOTHING and may_declare(what, row) else SAYS_NOTHING
