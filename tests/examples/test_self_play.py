@@ -30,6 +30,7 @@ def test_a_short_run_writes_what_it_found(whole):
         for judged in against.values():
             low, high = judged["interval"]
             assert judged["frames"] == 6 and 0.0 <= low <= judged["won"] <= high <= 1.0
+            assert 2 * judged["won"] == pytest.approx(judged["won_breaking"] + judged["won_otherwise"])
 
 
 def test_an_interrupted_run_goes_on_exactly(whole, tmp_path, monkeypatch):
