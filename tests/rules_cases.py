@@ -59,7 +59,10 @@ def frame_before(before, miss):
         in_hand=before.get("in_hand", False),
         free_ball=before.get("free_ball", False),
         respotted_black=before.get("respotted_black", False),
-        miss=miss,
+        miss=before.get("miss", miss),
+        rules=before.get("rules", "snooker"),
+        misses=before.get("misses", 0),
+        clock=before.get("clock", 0),
     )
 
 
@@ -90,14 +93,29 @@ def stroke_of(shot, free_ball):
         outside_d=shot["played_from_outside_D"],
         snookered=shot["after"]["next_player_snookered"],
         behind_free_ball=shot["after"]["effective_snookering_ball_is_free_ball"],
+        no_cushion=shot.get("no_cushion", False),
     )
 
 
 SHOT_FIELDS = (
     *("nominated", "free_ball_nominated", "first_contact", "touching", "touching_ball_moved", "potted", "cue_potted", "forced_off"),
     *("jump_shot", "push_stroke", "double_hit", "played_from_outside_D", "clear_path_to_ball_on", "clear_full_ball_path", "after"),
+    *("attempt", "no_cushion", "time_to_play", "duration"),
 )
-BEFORE_FIELDS = ("reds", "colours", "ball_on", "free_ball", "scores", "striker", "in_hand", "respotted_black")
+BEFORE_FIELDS = (
+    "reds",
+    "colours",
+    "ball_on",
+    "free_ball",
+    "scores",
+    "striker",
+    "in_hand",
+    "respotted_black",
+    "rules",
+    "miss",
+    "misses",
+    "clock",
+)
 
 
 def run_shot(case):
@@ -107,7 +125,8 @@ def run_shot(case):
         return problem
     frame = frame_before(before, "clear_path" if "foul_and_a_miss" in case["expect"] else "off")
     paths = {"clear_path": bool(shot["clear_path_to_ball_on"]), "full_ball_path": bool(shot["clear_full_ball_path"])}
-    after, verdict = frame.play(stroke_of(shot, frame.free_ball), **paths)
+    more = {"attempt": shot.get("attempt", True), "time_to_play": shot.get("time_to_play", 0), "duration": shot.get("duration", 0)}
+    after, verdict = frame.play(stroke_of(shot, frame.free_ball), **paths, **more)
     over = after.phase == "over"
     answers = {
         "foul": bool(verdict.fouls),
@@ -124,6 +143,8 @@ def run_shot(case):
         "winner": PLAYERS[after.winner] if over else None,
         "respotted_black_procedure": after.phase == "lot",
         "foul_and_a_miss": after.miss_called,
+        "choices": list(after.choices),
+        "anywhere": after.anywhere,
         "scores": by_player(after.scores),
     }
     return compare(case["expect"], answers)

@@ -84,6 +84,12 @@ def player_of(agent: Any, *, trust: bool = False) -> Advisor:
     return Borrowed(by_name.player_of(name), name)
 
 
+def playing(agent: Any, *, trust: bool = False) -> Any:
+    """The player with a name, to play and not to advise: as ``player_of``, without what makes others give advice."""
+    player = player_of(agent, trust=trust)
+    return player.player if isinstance(player, Borrowed) else player
+
+
 def _own(name: str) -> Any:
     """An instance of MODULE:CLASS."""
     module, _, maker = name.partition(":")

@@ -1,5 +1,6 @@
 """The benchmark: named tasks with frozen options, and how agents are judged on them. ``python -m snooker_env.benchmark`` runs it."""
 
+from ..envs.at_frames import AtFrames
 from .agents import Agent
 from .checking import faults, replayed
 from .counts import FIGURES, counts, figure
@@ -16,8 +17,8 @@ from .statistics import RESAMPLES, Resamples, interval, iqm, unseen
 from .tasks import FREE, HELD_OUT_SEED, TASKS, Task, most_points, tables_of, task_of
 
 __all__ = [
-    "CENTURY", "COLUMNS", "FIGURES", "FREE", "HELD_OUT_SEED", "MAXIMUM", "RESAMPLES", "TASKS", "Agent", "AgentError", "FittingModel",
-    "ForeignModelPlayer", "PlayedEpisodes", "ProgramPlayer", "Resamples", "Strokes", "Task", "budget_of", "commit", "counts", "faults",
-    "figure", "figures_of", "interval", "iqm", "judge", "most_points", "page", "play_episodes", "play_visits", "processor", "read_result",
-    "replayed", "summary", "tables_of", "task_of", "unseen", "write_result",
+    "CENTURY", "COLUMNS", "FIGURES", "FREE", "HELD_OUT_SEED", "MAXIMUM", "RESAMPLES", "TASKS", "Agent", "AgentError", "AtFrames",
+    "FittingModel", "ForeignModelPlayer", "PlayedEpisodes", "ProgramPlayer", "Resamples", "Strokes", "Task", "budget_of", "commit",
+    "counts", "faults", "figure", "figures_of", "interval", "iqm", "judge", "most_points", "page", "play_episodes", "play_visits",
+    "processor", "read_result", "replayed", "summary", "tables_of", "task_of", "unseen", "write_result",
 ]  # fmt: skip

@@ -14,9 +14,9 @@ import numpy as np
 
 from .._check import choice, refuse, refuse_what
 from .._shots import simulated
-from .._types import Bools, Floats, Ints
+from .._types import Floats, Ints
+from ..envs.at_frames import AtFrames
 from ..envs.vector import SnookerVectorEnv
-from ..game.frame_columns import STEPS, VISIT_COLUMNS
 from .rollouts import play_visits
 from .tasks import FREE, Task
 
@@ -52,34 +52,6 @@ class PlayedEpisodes:
     decisions: int = 0
     seconds: float = 0.0
     simulated: int = 0
-
-
-class AtFrames:
-    """A player of visits at the tables of frames: it sees the stroke to come as one of a visit, and plays on after every foul.
-
-    Parameters
-    ----------
-    player : object
-        With ``options`` and ``act``.
-    """
-
-    def __init__(self, player: Any):
-        self.player, self.options = player, player.options
-        self._frames: Any = None
-        self._visits: Any = None
-
-    def act(self, frames: Any, observations: Any, going: Bools) -> Any:
-        """The player's actions, which mean the same in a frame."""
-        if self._frames is not frames:
-            same = {name: getattr(frames.options, name) for name in ("noise", "physics", "table", "fidelity")}
-            self._visits = SnookerVectorEnv(frames.num_envs, threads=frames.threads, **{**self.options, **same})
-            self._visits.reset(seed=0)  # whose tables are replaced by those of the frames
-            self._frames = frames
-        visits, tables = self._visits.tables, frames.tables
-        visits.positions[going], visits.on_table[going] = tables.positions[going], tables.on_table[going]
-        visits.game[going] = tables.game[going, :VISIT_COLUMNS]
-        visits.game[going, STEPS] = 0
-        return self.player.act(self._visits, visits.observe(np.arange(visits.n)), going)
 
 
 def check_player(player: Any, task: Task) -> None:

@@ -248,7 +248,8 @@ class Frame:
             clock += (min(time_to_play, self.shot_clock) if clock else 0) + (0 if late else integer("duration", duration, 0, MOST_CLOCK))
         score = {"scores": (self.scores[0] + gained[0], self.scores[1] + gained[1]), "on_table": verdict.on_table, "clock": clock}
         if verdict.over:
-            return self._over(me if verdict.outcome == Outcome.STRIKER_WINS else other, **score), verdict
+            final_break = 0 if verdict.fouls else self.break_points + verdict.points
+            return self._over(me if verdict.outcome == Outcome.STRIKER_WINS else other, break_points=final_break, **score), verdict
         after = replace(
             self,
             striker=other if verdict.stays is False else me,

@@ -26,13 +26,14 @@ VISIT_COLUMNS = 5
 (
     FREE_BALL, ON_TABLE, PHASE, STRIKER, BREAKER, SCORE_0, SCORE_1, WINNER, RESPOTTED_BLACK, MISS_CALLED, FAILURES, WARNED, SAVED,
     SAVED_ON_TABLE, SAVED_BALL_ON, SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT, STROKES, PAID, FRAMES_0, FRAMES_1, FIRST_BREAK, CLOCK,
-    MISSES, ANYWHERE,
-) = range(5, 31)  # fmt: skip
+    MISSES, ANYWHERE, OPPONENT,
+) = range(5, 32)  # fmt: skip
 """The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether there is one); strokes of both players; the agent's lead
 that rewards have already paid; frames won in a match and who broke in its first frame; simulated time played in this frame [ms]; misses
-called in succession; whether the cue ball in hand may be placed anywhere on the table. SAVED_IN_HAND is 2 if it could be placed anywhere.
+called in succession; whether the cue ball in hand may be placed anywhere on the table; which member of a pool of opponents plays, counted
+from 1 (0: none is drawn yet). SAVED_IN_HAND is 2 if the cue ball could be placed anywhere.
 """
-COLUMNS = 31
+COLUMNS = 32
 
 (STROKE, CHOICE, LOT, FINISHED) = range(4)
 """Phases, in the order of ``frame.PHASES``."""
@@ -143,6 +144,7 @@ def after_stroke(row, result, rules, miss, clear, full, attempt, layout, time_to
         limit, late = shot_clock(row, rules), is_late(row, rules, time_to_play)
         row[CLOCK] += (min(time_to_play, limit) if row[CLOCK] else 0) + (0 if late else duration)
     if result.outcome == OUTCOME.STRIKER_WINS or result.outcome == OUTCOME.OPPONENT_WINS:
+        row[POINTS] = 0 if result.fouls else row[POINTS] + result.points
         _end(row, me if result.outcome == OUTCOME.STRIKER_WINS else other)
         return
     row[STRIKER] = other if result.stays == 0 else me

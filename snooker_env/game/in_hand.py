@@ -1,6 +1,7 @@
-"""Where may the cue ball stand when it is in hand? The D, and the free place in it nearest to a given point, exact, as kernels.
+"""Where may the cue ball in hand stand? In the D or, in some games, anywhere; and the free place nearest to a given point, as kernels.
 
 The centre must lie on or within the lines of the D: the part of the baulk line between yellow and green, and the half circle behind it.
+Anywhere on the table, it must lie within the rectangle that leaves a gap to the cushions; the pockets lie outside it. Both are exact.
 """
 
 from typing import Any
@@ -10,12 +11,14 @@ import numpy as np
 from .._check import number, refuse
 from .._jit import entry, kernel
 from .._types import Flags, Place, Vectors
-from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
+from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from .balls import N_BALLS, REFEREE_TOUCH, check_table
 from .spotting import touches
 
 CLEARANCE = 2.0 * REFEREE_TOUCH
 """The gap between a cue ball placed next to a ball and that ball [m]: the referee sees that they do not touch."""
+POCKET_REACH = 0.15
+"""Least distance of the cue ball's centre from a pocket's nominal place, anywhere on the table [m]: clear of the jaws, as in layouts."""
 ROUNDING = 1e-12
 """Tolerance for points on the lines of the D [m]."""
 
@@ -93,19 +96,83 @@ def nearest_place(positions, on_table, x, y, radius):
     return place[0], place[1], place[2] < np.inf
 
 
+@kernel
+def on_bed(x, y, radius):
+    """Whether a cue ball in hand may be placed at (x, y) [m] as far as cushions and pockets are concerned."""
+    room = radius + CLEARANCE
+    if abs(x) > HALF_WIDTH - room + ROUNDING or abs(y) > HALF_LENGTH - room + ROUNDING:
+        return False
+    nearest = np.inf
+    for k in range(POCKET_PLACES.shape[0]):
+        nearest = min(nearest, np.hypot(POCKET_PLACES[k, 0] - x, POCKET_PLACES[k, 1] - y))
+    return nearest >= POCKET_REACH - ROUNDING
+
+
+@kernel
+def _better_on_bed(positions, on_table, wish_x, wish_y, px, py, best_x, best_y, best, radius):
+    """As ``_better``, on the whole bed."""
+    far = np.hypot(px - wish_x, py - wish_y)
+    if far < best and on_bed(px, py, radius) and not touches(positions, on_table, px, py, 2.0 * radius + REFEREE_TOUCH):
+        return px, py, far
+    return best_x, best_y, best
+
+
+@kernel
+def _disc(positions, on_table, i, reach):
+    """Disc i that bars places: of ball i, or of pocket i - 22: (x, y, radius); radius 0 for a ball that is not on the table."""
+    if i >= N_BALLS:
+        return POCKET_PLACES[i - N_BALLS, 0], POCKET_PLACES[i - N_BALLS, 1], POCKET_REACH
+    return positions[i, 0], positions[i, 1], reach if on_table[i] else 0.0
+
+
+@kernel
+def nearest_anywhere(positions, on_table, x, y, radius):
+    """The free place on the whole bed nearest to (x, y) [m], and whether there is one: (x, y, bool); as ``nearest_place``.
+
+    Tried are the wish, moved onto the bed; the nearest point of the circle of each ball and pocket; and where two circles, or a circle and
+    an edge of the bed, cross.
+    """
+    wide, high, reach = HALF_WIDTH - radius - CLEARANCE, HALF_LENGTH - radius - CLEARANCE, 2.0 * radius + CLEARANCE
+    x, y = min(wide, max(-wide, x)), min(high, max(-high, y))
+    place = _better_on_bed(positions, on_table, x, y, x, y, x, y, np.inf, radius)
+    if place[2] == 0.0:
+        return x, y, True
+    for i in range(N_BALLS + POCKET_PLACES.shape[0]):
+        bx, by, b = _disc(positions, on_table, i, reach)
+        if b == 0.0:
+            continue
+        away = np.hypot(x - bx, y - by)
+        ux, uy = (0.0, -1.0) if away == 0.0 else ((x - bx) / away, (y - by) / away)
+        place = _better_on_bed(positions, on_table, x, y, bx + b * ux, by + b * uy, *place, radius)
+        for sign in (-1.0, 1.0):
+            for side in (-1.0, 1.0):
+                half = np.sqrt(b * b - (side * wide - bx) ** 2)
+                place = _better_on_bed(positions, on_table, x, y, side * wide, by + sign * half, *place, radius)
+                half = np.sqrt(b * b - (side * high - by) ** 2)
+                place = _better_on_bed(positions, on_table, x, y, bx + sign * half, side * high, *place, radius)
+            for j in range(i):
+                ox, oy, o = _disc(positions, on_table, j, reach)
+                if o > 0.0:
+                    px, py = _meet(bx, by, b, ox, oy, o, sign)
+                    place = _better_on_bed(positions, on_table, x, y, px, py, *place, radius)
+    return place[0], place[1], place[2] < np.inf
+
+
 @entry
-def _nearest_place(positions, on_table, x, y, radius):
+def _nearest_place(positions, on_table, x, y, radius, anywhere):
+    if anywhere:
+        return nearest_anywhere(positions, on_table, x, y, radius)
     return nearest_place(positions, on_table, x, y, radius)
 
 
-def place_cue(positions: Vectors, on_table: Flags, x: float, y: float, *, radius: float = BALL_RADIUS) -> Place:
-    """The free place (x, y) in the D nearest to (x, y) [m]. The cue ball's own position is ignored.
+def place_cue(positions: Vectors, on_table: Flags, x: float, y: float, *, radius: float = BALL_RADIUS, anywhere: bool = False) -> Place:
+    """The free place (x, y) in the D (``anywhere``: on the bed) nearest to (x, y) [m]. The cue ball's own position is ignored.
 
-    Raises ``ValueError`` for wrong arrays or numbers, and if the D has no free place (which no legal table has).
+    Raises ``ValueError`` for wrong arrays or numbers, and if there is no free place (which no legal table has).
     """
     placed, present = check_table(positions, on_table)
     present[0] = False
-    px, py, found = _nearest_place(placed, present, number("x", x), number("y", y), float(radius))
+    px, py, found = _nearest_place(placed, present, number("x", x), number("y", y), float(radius), bool(anywhere))
     if not found:
-        raise refuse("on_table", int(present.sum()), "must leave a free place in the D")
+        raise refuse("on_table", int(present.sum()), "must leave a free place")
     return px, py

@@ -6,12 +6,14 @@ is not obstructed by a ball or balls not on": a strip as wide as a ball, from th
 not matter, everything else does. A colour is met in its centre only if no other ball at all is in the strip. This holds too where several
 colours could be on: the striker nominates one of them, and then the others are not on.
 
-The cue ball must have a place: if it was in hand, the place from which it was played.
+A path leads over the bed: it ends where the cue ball would meet a cushion, a straight nose or the curved face of a jaw (R14 speaks of a
+path of the cue ball; only the test for a snooker leaves cushions out). The cue ball must have a place: if it was in hand, the place from
+which it was played.
 """
 
 import numpy as np
 
-from .._check import integer, refuse
+from .._check import array, integer, refuse
 from .._jit import entry, kernel
 from .._types import Flags, Vectors
 from ..geometry import BALL_RADIUS
@@ -20,6 +22,10 @@ from .snookered import SLACK, segment_distance
 
 WINDOW = 1e-9
 """A narrower opening does not count [rad]: it is rounding."""
+NO_NOSES, NO_ARCS = np.empty((0, 5)), np.empty((0, 6))
+"""No cushions: ``noses`` and ``jaws`` have the rows of ``physics.Table`` (``physics.columns``)."""
+AXIS, SIDE, LEVEL, LOW, HIGH = range(5)
+ARC_X, ARC_Y, ARC_RADIUS, ARC_UX, ARC_UY, ARC_COS = range(6)
 
 
 @kernel
@@ -32,7 +38,30 @@ def meets(bx, by, ux, uy, radius):
 
 
 @kernel
-def full_ball_path(positions, on_table, on, radius):
+def to_cushion(cx, cy, ux, uy, noses, jaws, radius):
+    """Distance that the cue ball rolls from c along the unit vector u until it meets a cushion [m]; inf if it meets none."""
+    run = np.inf
+    for k in range(noses.shape[0]):
+        c, u, other, slide = (cx, ux, cy, uy) if noses[k, AXIS] == 0.0 else (cy, uy, cx, ux)
+        towards = noses[k, SIDE] * u
+        if towards > 0.0:
+            s = (noses[k, LEVEL] - radius - noses[k, SIDE] * c) / towards
+            if s >= -SLACK and noses[k, LOW] <= other + s * slide <= noses[k, HIGH]:
+                run = min(run, max(0.0, s))
+    for k in range(jaws.shape[0]):
+        bx, by, reach = jaws[k, ARC_X] - cx, jaws[k, ARC_Y] - cy, jaws[k, ARC_RADIUS] + radius
+        along, across = bx * ux + by * uy, bx * uy - by * ux
+        if along <= 0.0 or abs(across) >= reach:
+            continue
+        s = along - np.sqrt(reach * reach - across * across)
+        px, py = s * ux - bx, s * uy - by
+        if s >= -SLACK and px * jaws[k, ARC_UX] + py * jaws[k, ARC_UY] >= jaws[k, ARC_COS] * reach - SLACK:
+            run = min(run, max(0.0, s))
+    return run
+
+
+@kernel
+def full_ball_path(positions, on_table, on, noses, jaws, radius):
     """Whether a ball on (mask ``on``) can be struck full from the place of the cue ball."""
     cx, cy = positions[0, 0], positions[0, 1]
     for target in range(1, N_BALLS):
@@ -42,7 +71,7 @@ def full_ball_path(positions, on_table, on, radius):
             # The path ends at contact, 2 R before the target's centre.
             d = np.hypot(tx - cx, ty - cy)
             run = max(0.0, 1.0 - 2.0 * radius / d)
-            clear = True
+            clear = to_cushion(cx, cy, (tx - cx) / d, (ty - cy) / d, noses, jaws, radius) >= run * d - SLACK
             for i in range(1, N_BALLS):
                 if on_table[i] and not (harmless >> i) & 1:
                     gap = segment_distance(positions[i, 0], positions[i, 1], cx, cy, cx + run * (tx - cx), cy + run * (ty - cy))
@@ -53,8 +82,8 @@ def full_ball_path(positions, on_table, on, radius):
 
 
 @kernel
-def _open_direction(positions, on_table, on, target, angle, radius):
-    """Whether the cue ball, rolling at ``angle`` [rad], meets ``target`` before any ball not on."""
+def _open_direction(positions, on_table, on, target, angle, noses, jaws, radius):
+    """Whether the cue ball, rolling at ``angle`` [rad], meets ``target`` before any ball not on and any cushion."""
     ux, uy = np.cos(angle), np.sin(angle)
     cx, cy = positions[0, 0], positions[0, 1]
     run = meets(positions[target, 0] - cx, positions[target, 1] - cy, ux, uy, radius)
@@ -63,18 +92,59 @@ def _open_direction(positions, on_table, on, target, angle, radius):
     for i in range(1, N_BALLS):
         if on_table[i] and not (on >> i) & 1 and meets(positions[i, 0] - cx, positions[i, 1] - cy, ux, uy, radius) < run:
             return False
-    return True
+    return to_cushion(cx, cy, ux, uy, noses, jaws, radius) >= run - SLACK
+
+
+@kernel
+def _cushion_edges(edges, n, cx, cy, tx, ty, towards, noses, jaws, radius):
+    """Append the directions at which a cushion may open or close the path from c to the target at t; returns their number.
+
+    A nose: the cue ball meets it and the target at the same time, or passes its end. A jaw: the same, or it grazes the curve.
+    """
+    for k in range(noses.shape[0]):
+        level, vertical = noses[k, SIDE] * (noses[k, LEVEL] - radius), noses[k, AXIS] == 0.0
+        away = level - (tx if vertical else ty)
+        half2 = 4.0 * radius * radius - away * away
+        for end in range(4):
+            if end < 2 and half2 < 0.0:
+                continue
+            at = noses[k, LOW + end - 2] if end >= 2 else (ty if vertical else tx) + (2 * end - 1) * np.sqrt(half2)
+            edges[n] = (np.arctan2(at - cy, level - cx) if vertical else np.arctan2(level - cy, at - cx)) - towards
+            n += 1
+    for k in range(jaws.shape[0]):
+        bx, by, reach = jaws[k, ARC_X] - cx, jaws[k, ARC_Y] - cy, jaws[k, ARC_RADIUS] + radius
+        turn, graze = np.arctan2(by, bx) - towards, np.arcsin(min(1.0, reach / np.hypot(bx, by)))
+        edges[n], edges[n + 1] = turn - graze, turn + graze
+        # The ends of the arc, and where both circles are met at the same time.
+        side = np.sqrt(max(0.0, 1.0 - jaws[k, ARC_COS] * jaws[k, ARC_COS]))
+        for sign in (-1.0, 1.0):
+            ex = jaws[k, ARC_COS] * jaws[k, ARC_UX] - sign * side * jaws[k, ARC_UY]
+            ey = jaws[k, ARC_COS] * jaws[k, ARC_UY] + sign * side * jaws[k, ARC_UX]
+            edges[n + 2 + (sign > 0.0)] = np.arctan2(by + reach * ey, bx + reach * ex) - towards
+        n += 4
+        sx, sy = bx + cx - tx, by + cy - ty
+        apart = np.hypot(sx, sy)
+        if abs(reach - 2.0 * radius) < apart < reach + 2.0 * radius:
+            along = 0.5 * (apart + (4.0 * radius * radius - reach * reach) / apart)
+            height = np.sqrt(max(0.0, 4.0 * radius * radius - along * along))
+            for sign in (-1.0, 1.0):
+                mx = tx + (along * sx - sign * height * sy) / apart
+                my = ty + (along * sy + sign * height * sx) / apart
+                edges[n] = np.arctan2(my - cy, mx - cx) - towards
+                n += 1
+    return n
 
 
 @entry  # np.sort makes an array, which an inner kernel may not
-def clear_path(positions, on_table, on, radius):
+def clear_path(positions, on_table, on, noses, jaws, radius):
     """Whether there is a straight path to any part of a ball on (mask ``on``) from the place of the cue ball.
 
-    The path can open or close only at finitely many directions: tangents to a ball, and those in which the cue ball would meet the target
-    and another ball at the same time. Between two neighbouring ones nothing changes, so it is exact to test their midpoints.
+    The path can open or close only at finitely many directions: tangents to a ball or a jaw, those to an end of a cushion, and those in
+    which the cue ball would meet the target and another ball or a cushion at the same time. Between two neighbouring ones nothing changes,
+    so it is exact to test their midpoints.
     """
     cx, cy = positions[0, 0], positions[0, 1]
-    edges = np.empty(4 * N_BALLS)
+    edges = np.empty(4 * N_BALLS + 4 * noses.shape[0] + 6 * jaws.shape[0])
     for target in range(1, N_BALLS):
         if not (on_table[target] and (on >> target) & 1):
             continue
@@ -103,28 +173,35 @@ def clear_path(positions, on_table, on, radius):
                     my = 0.5 * (by + ty) + sign * height * sx
                     edges[n] = np.arctan2(my, mx) - towards
                     n += 1
+        n = _cushion_edges(edges, n, cx, cy, tx + cx, ty + cy, towards, noses, jaws, radius)
         for k in range(n):  # into (-pi, pi], so that the target's window is one interval about 0
             edges[k] -= 2.0 * np.pi * np.round(edges[k] / (2.0 * np.pi))
         ordered = np.sort(edges[:n])
         for k in range(n - 1):
             low, high = ordered[k], ordered[k + 1]
             inside = low >= -half and high <= half and high - low > WINDOW
-            if inside and _open_direction(positions, on_table, on, target, towards + 0.5 * (low + high), radius):
+            if inside and _open_direction(positions, on_table, on, target, towards + 0.5 * (low + high), noses, jaws, radius):
                 return True
     return False
 
 
 @entry(what="the paths of the miss rule", seconds=2)
-def _paths(positions, on_table, on, radius):
-    return clear_path(positions, on_table, on, radius), full_ball_path(positions, on_table, on, radius)
+def _paths(positions, on_table, on, noses, jaws, radius):
+    full = full_ball_path(positions, on_table, on, noses, jaws, radius)
+    return clear_path(positions, on_table, on, noses, jaws, radius), full
 
 
-def paths(positions: Vectors, on_table: Flags, on: int, *, radius: float = BALL_RADIUS) -> tuple[bool, bool]:
-    """Both tests for Python: (any part, full ball). Raises ``ValueError`` if the cue ball is not on the table."""
+def paths(
+    positions: Vectors, on_table: Flags, on: int, *, noses: Vectors = NO_NOSES, jaws: Vectors = NO_ARCS, radius: float = BALL_RADIUS
+) -> tuple[bool, bool]:
+    """Both tests for Python: (any part, full ball); ``noses``, ``jaws``: of a ``Table``.
+
+    Raises ``ValueError`` if the cue ball is not on the table.
+    """
     placed, present = check_table(positions, on_table)
     if not present[0]:
         raise refuse("on_table[0]", False, "must be True: the cue ball must be on the table")
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on", on, "must name object balls only")
-    any_part, full = _paths(placed, present, on, float(radius))
+    any_part, full = _paths(placed, present, on, array("noses", noses, (-1, 5)), array("jaws", jaws, (-1, 6)), float(radius))
     return bool(any_part), bool(full)

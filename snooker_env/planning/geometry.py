@@ -18,6 +18,7 @@ from ..game.paths import clear_path, full_ball_path
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..game.snookered import segment_distance
 from ..geometry import BALL_RADIUS
+from ..physics.table import Table
 from ..tasks.discrete_actions import POTS
 from .positions import Positions, PositionsLike, rows_of
 
@@ -185,15 +186,17 @@ def obstructions(
 
 
 @entry(what="the clear paths of positions", seconds=2, uses=())
-def _clear_paths(positions, on_table, game, any_part, full_ball):
+def _clear_paths(positions, on_table, game, noses, jaws, any_part, full_ball):
     for k in range(len(any_part)):
         on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
-        any_part[k] = on_table[k, 0] and clear_path(positions[k], on_table[k], on, BALL_RADIUS)
-        full_ball[k] = on_table[k, 0] and full_ball_path(positions[k], on_table[k], on, BALL_RADIUS)
+        any_part[k] = on_table[k, 0] and clear_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
+        full_ball[k] = on_table[k, 0] and full_ball_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
 
 
 def clear_paths(positions: PositionsLike) -> Paths:
-    """Determine whether the cue ball can roll straight from where it lies to a ball on without touching another ball first.
+    """Determine whether the cue ball can roll straight from where it lies to a ball on without touching another ball or a cushion first.
+
+    The cushions are those of the match table.
 
     Parameters
     ----------
@@ -220,5 +223,6 @@ def clear_paths(positions: PositionsLike) -> Paths:
     """
     at = Positions.of(positions)
     out = Paths(np.zeros(len(at), np.bool_), np.zeros(len(at), np.bool_))
-    _clear_paths(at.positions, at.on_table, at.game, *out)
+    table = Table.preset("match")
+    _clear_paths(at.positions, at.on_table, at.game, table.noses, table.jaws, *out)
     return out

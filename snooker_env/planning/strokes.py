@@ -24,6 +24,7 @@ from ..physics.parameters import Physics, PhysicsLike
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.discrete_actions import POTS, SIZE, chosen, masks
 from ..tasks.pot_aim import solved_aim
+from ..tasks.tables import STROKES_ONLY
 from .positions import Positions, PositionsLike, rows_of
 
 Dynamics = tuple[Physics, tuple[int, int]]
@@ -62,7 +63,7 @@ def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
     """
     at = Positions.of(positions)
     out = np.empty((len(at), SIZE), np.bool_)
-    masks(np.arange(len(at)), at.positions, at.on_table, at.game, out)
+    masks(np.arange(len(at)), at.positions, at.on_table, at.game, STROKES_ONLY, out)
     return out
 
 

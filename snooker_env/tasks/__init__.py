@@ -13,8 +13,9 @@ from .observations import OBSERVATIONS, STATE_ENTRIES
 from .observations import SIZE as OBSERVATION_SIZE
 from .observations import shaped as shaped_observations
 from .observations import space as observation_space
+from .opponent_pool import OpponentPool
 
 __all__ = [
     "CHOICES", "LEVELS", "MAX_SPEED", "MIN_SPEED", "OBSERVATIONS", "OBSERVATION_SIZE", "POTS", "SIDES", "SPEEDS", "STATE_ENTRIES",
-    "STROKES", "TOPS", "Noise", "choice_of", "observation_space", "shaped_observations",
+    "STROKES", "TOPS", "Noise", "OpponentPool", "choice_of", "observation_space", "shaped_observations",
 ]  # fmt: skip

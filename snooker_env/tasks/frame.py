@@ -30,6 +30,7 @@ from ..game.frame_columns import (
     FIRST_BREAK,
     FREE_BALL,
     IN_HAND,
+    OPPONENT,
     PAID,
     PHASE,
     POINTS,
@@ -46,6 +47,7 @@ from ..game.ruling import AUTO
 from . import frame_kernels
 from .frame_kernels import AGENT
 from .observations import FRAME_SIZE, REPLACED_SIZE
+from .opponents import asked
 from .options import NEVER, Rules
 from .rewards import MATCH_REWARDS
 from .states import FrameState, checked_frame
@@ -148,7 +150,8 @@ class Frames(Tables):
         if not len(which):
             return
         if self.rules.misses:
-            frame_kernels.remember(which, self.positions, self.on_table, self.game, self.saved, self.nominated, buffers.seen)
+            table, layout = self.rules.table, (self.positions, self.on_table, self.game, self.saved, self.nominated)
+            frame_kernels.remember(which, *layout, table.noses, table.jaws, buffers.seen)
         unfinished = self.run(which, buffers)
         self._conclude(which, buffers, out, own, alone)
         for j in unfinished:
@@ -220,13 +223,13 @@ class Frames(Tables):
         opponent = self.rules.opponent
         assert opponent is not None  # without an opponent there are no replies
         while len(which := which[(self.game[which, STRIKER] != AGENT) & ~self.ended()[which]]):
-            actions: Any = opponent.ask(self, which, crew.generators)
+            for player, tables, actions in asked(opponent, self, which, crew.generators):
 
-            def play(part, buffers, actions=actions):
-                self.complete(opponent.prepare(self, part, actions, buffers), out, buffers, crew, own=False)
-                self.go_on(part)
+                def play(part, buffers, player=player, actions=actions):
+                    self.complete(player.prepare(self, part, actions, buffers), out, buffers, crew, own=False)
+                    self.go_on(part)
 
-            crew(which, play)
+                crew(tables, play)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew, *, breakers: Ints | None = None) -> None:
         """New frames on the tables ``wanted`` (n,) bool; the results for all tables into ``out``. ``breakers``: see ``deal``."""
@@ -292,7 +295,8 @@ class Frames(Tables):
         """Table k as JSON types: the fields of a ``states.FrameState`` except "rng"."""
         return {
             "positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist(), "frame": self.frame(k).to_dict(),
-            "strokes": int(self.game[k, STROKES]), "unpaid": self._unpaid(k), "due": bool(self.due[k]), "stream": self.streams[k].tolist(),
+            "strokes": int(self.game[k, STROKES]), "opponent": int(self.game[k, OPPONENT]), "unpaid": self._unpaid(k),
+            "due": bool(self.due[k]), "stream": self.streams[k].tolist(),
         }  # fmt: skip
 
     def _unpaid(self, k):
@@ -327,6 +331,7 @@ class Frames(Tables):
         """Restore a valid ``states.FrameState`` on table k."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
+        self.game[k, OPPONENT] = state.opponent
         self.game[k, FIRST_BREAK] = state.frame.breaker
         self.game[k, PAID] = self._worth(k) - state.unpaid
         self.streams[k] = np.array(state.stream, np.uint64)

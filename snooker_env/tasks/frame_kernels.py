@@ -119,7 +119,7 @@ def decide(which, actions, options, positions, on_table, game, saved, nominated,
 
 
 @entry(what="the paths of the miss rule", seconds=2)
-def remember(which, positions, on_table, game, saved, nominated, seen):
+def remember(which, positions, on_table, game, saved, nominated, noses, jaws, seen):
     """Record what the miss rule needs of the tables ``which`` before their strokes: the position, and which paths are clear.
 
     ``nominated`` (n,): the colour that each striker has nominated, the only one that he may then strike first, 0 for none, or AUTO.
@@ -127,8 +127,8 @@ def remember(which, positions, on_table, game, saved, nominated, seen):
     for j in range(which.shape[0]):
         k = which[j]
         on = playable(game[k], bits(on_table[k]) & ~1, nominated[k])
-        seen[j, CLEAR_PATH] = clear_path(positions[k], on_table[k], on, BALL_RADIUS)
-        seen[j, FULL_PATH] = full_ball_path(positions[k], on_table[k], on, BALL_RADIUS)
+        seen[j, CLEAR_PATH] = clear_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
+        seen[j, FULL_PATH] = full_ball_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
         for i in range(N_BALLS):
             saved.positions[k, i, 0], saved.positions[k, i, 1] = positions[k, i, 0], positions[k, i, 1]
             saved.on_table[k, i] = on_table[k, i]

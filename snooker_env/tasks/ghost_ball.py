@@ -55,8 +55,9 @@ def stroke_at(positions, on_table, on, in_hand, failed, found, stream):
 
     ``in_hand``: the cue ball has just been placed; ``failed``: a stroke from this position has failed.
     """
-    if in_hand and racked(positions, on_table):
-        return break_off(positions)
+    end_red = racked(positions, on_table) if in_hand else 0
+    if end_red:
+        return break_off(positions, end_red)
     touching = touching_balls(positions, on_table)
     x, y = positions[0, 0], positions[0, 1]
     if not failed and find_pots(positions, on_table, on & ~touching, BALL_RADIUS, found):

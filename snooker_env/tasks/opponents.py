@@ -1,15 +1,17 @@
-"""Who plays the other side of a frame? Uniform random play and a geometric player as kernels, any callable, or a saved model.
+"""Who plays the other side of a frame? Two players as kernels, any callable, saved model or player, or a pool of them.
 
 For all tables at which it is the opponent's turn, ``ask(frames, which, generators)`` is called once, in Python, and returns actions or
 None. Then ``prepare(frames, which, actions, buffers)``, on several threads, carries them out up to the strike.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 
+from .. import _entry_points
 from .._check import refuse, truth
 from .._types import Action, Bools, Floats, Ints, Observation, ObservationKind
 from . import observations
@@ -17,16 +19,32 @@ from .box_actions import Actions
 from .discrete_actions import SIZE as CHOICES
 from .discrete_actions import Choices
 from .ghost_ball import GhostBallOpponent
-from .saved_models import SavedModel, outline
+from .opponent_pool import OpponentPool, PoolOpponent
+from .player_opponent import PlayerOpponent, is_player
+from .saved_models import SavedModel, by_train, entries, outline
 from .stroke import ShotBuffers
 from .uniform_opponent import UniformOpponent
 
 if TYPE_CHECKING:
     from .frame import Frames
 
+
+class Player(Protocol):
+    """Any player of this project: ``options`` says how its actions are read."""
+
+    options: Any
+
+    def act(self, tables: Any, observations: Any, going: Bools) -> Any:
+        """An action for each table; only those of the tables ``going`` are played."""
+
+
 Policy: TypeAlias = Callable[[Observation, np.random.Generator], Action]
 """A player in Python: maps the observation from its own side of the table, and a generator for its random numbers, to an action."""
 OPPONENTS = ("none", "random", "ghost_ball")
+ALLOWED = (
+    "must be one of " + ", ".join(map(repr, OPPONENTS)) + ", a path to a model (.zip), the name of a player, a callable(observation, rng) "
+    "-> action, a player with options and act(...), or an OpponentPool"
+)
 PLAYER = 1
 """Index of the opponent in the frame."""
 
@@ -137,7 +155,16 @@ class SavedPolicy:
         return network
 
 
-Opponent: TypeAlias = UniformOpponent | GhostBallOpponent | AskedOpponent
+Opponent: TypeAlias = UniformOpponent | GhostBallOpponent | AskedOpponent | PlayerOpponent | PoolOpponent
+OpponentLike: TypeAlias = str | Path | Policy | Player | OpponentPool
+"""What the option ``opponent`` accepts."""
+
+
+def asked(opponent: Opponent, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> list[tuple[Any, Ints, Any]]:
+    """Who plays on which of the tables ``which``, and his actions there, for his ``prepare``: [(player, tables, actions), ...]."""
+    if isinstance(opponent, PoolOpponent):
+        return opponent.asked(frames, which, generators)
+    return [(opponent, which, opponent.ask(frames, which, generators))]
 
 
 def visit_part(observation: Observation) -> Observation:
@@ -155,20 +182,42 @@ def without_replaced(observation: Observation) -> Observation:
 
 
 def opponent_of(
-    opponent: str | Path | Policy, kind: ObservationKind, actions: Actions | Choices, trust: bool = False, *, replaced: bool = False
-) -> Opponent | None:
+    opponent: OpponentLike, kind: ObservationKind, actions: Actions | Choices, trust: bool = False, *, shared: Mapping[str, Any],
+    replaced: bool = False,
+) -> Opponent | None:  # fmt: skip
     """The player that ``opponent`` names; None for "none".
 
-    ``kind``: of the observation; ``trust``: code in a model's file may run; ``replaced``: the observation holds that layout.
+    ``kind``: of the observation; ``trust``: code in a model's file may run; ``shared``: the options that both players share; ``replaced``:
+    the observation holds the layout that "replace" restores.
     """
-    allowed = "must be one of " + ", ".join(map(repr, OPPONENTS)) + ", a path to a model (.zip), or a callable(observation, rng) -> action"
     truth("trust", trust)
+    if isinstance(opponent, OpponentPool):
+        return PoolOpponent(opponent, partial(opponent_of, kind=kind, actions=actions, trust=trust, shared=shared, replaced=replaced))
     if not isinstance(opponent, str | Path):
+        if is_player(opponent):
+            return PlayerOpponent(opponent, actions.physics, shared)
         if not (callable(opponent) or callable(getattr(opponent, "many", None))):
-            raise refuse("opponent", opponent, allowed)
+            raise refuse("opponent", opponent, ALLOWED)
         return AskedOpponent(opponent)
-    if str(opponent) in OPPONENTS:
-        return {"none": lambda: None, "random": UniformOpponent, "ghost_ball": GhostBallOpponent}[str(opponent)]()
-    if Path(opponent).suffix != ".zip":
-        raise refuse("opponent", opponent, allowed)
-    return AskedOpponent(SavedPolicy(opponent, kind, actions, trust, replaced))
+    name = str(opponent)
+    if name in OPPONENTS:
+        return {"none": lambda: None, "random": UniformOpponent, "ghost_ball": GhostBallOpponent}[name]()
+    if Path(name).suffix == ".zip" and not _of_train(name):
+        return AskedOpponent(SavedPolicy(name, kind, actions, trust, replaced))
+    if not name:
+        raise refuse("opponent", name, ALLOWED)
+    try:
+        player = _entry_points.load(_entry_points.PLAYER)(name, trust=trust)
+    except ValueError as error:
+        if Path(name).exists() or ":" in name:
+            raise ValueError(f"opponent = {name!r}: {error}") from error
+        raise refuse("opponent", opponent, ALLOWED) from error
+    return PlayerOpponent(player, actions.physics, shared, name)
+
+
+def _of_train(name: str) -> bool:
+    """Whether that is a model of this repository's ``train.py``; False for what is no sound model's file."""
+    try:
+        return by_train(entries(name))
+    except Exception:  # ``SavedPolicy`` says what is wrong with it
+        return False

@@ -6,7 +6,6 @@ keywords.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -23,7 +22,7 @@ from .box_actions import AIMS, Actions
 from .discrete_actions import Choices
 from .noise import Noise, NoiseLike
 from .observations import OBSERVATIONS
-from .opponents import Opponent, Policy, opponent_of
+from .opponents import Opponent, OpponentLike, opponent_of
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
 from .table_fit import fitted, table_of
 
@@ -112,7 +111,8 @@ class Options:
     fidelity : str, optional
         How impacts are solved: "fast", "standard" (default), "reference" or "euler:N".
     opponent : str, Path or callable, optional
-        In a frame: "none" (default), "random", "ghost_ball", a model's ``.zip``, or ``opponent(observation, rng) -> action``.
+        In a frame: "none" (default), "random", "ghost_ball", the name of a player, a model's ``.zip``, ``opponent(observation, rng) ->
+        action``, a player object, or an ``OpponentPool`` of these (docs/environment/opponents.md).
     miss : {"off", "clear_path"}, optional
         In a frame: the rule for a foul and a miss (``snooker_env.game.frame``). Default "off".
     decision : bool, optional
@@ -165,7 +165,7 @@ class Options:
     physics: PhysicsLike = "paper"
     table: TableLike = "match"
     fidelity: Fidelity = "standard"
-    opponent: str | Path | Policy = "none"
+    opponent: OpponentLike = "none"
     miss: MissRule = "off"
     decision: bool = False
     max_strokes: int | None = MAX_STROKES
@@ -199,7 +199,8 @@ class Options:
             choice("miss", self.miss, MISS_RULES[:2])
             choice("game", self.game, GAMES)
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
-            opponent = opponent_of(self.opponent, self.observation, actions, self.trust, replaced=self.miss != "off")
+            replaced = self.miss != "off"
+            opponent = opponent_of(self.opponent, self.observation, actions, self.trust, shared=self.shared(), replaced=replaced)
             if one_stroke:
                 raise refuse("one_stroke", True, f'must be False with task="{self.task}"; it belongs to task="visit"')
         else:
@@ -218,6 +219,10 @@ class Options:
         if integer("frames", self.frames, 1, 999) % 2 == 0:
             raise refuse("frames", self.frames, "must be odd, so that one player wins")
         return int(self.frames)
+
+    def shared(self) -> dict[str, Any]:
+        """The options that both players share: all but those that say how the agent sees, acts and is paid, and against whom."""
+        return {name: getattr(self, name) for name in NAMES if name not in AGENTS}
 
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)
@@ -274,6 +279,11 @@ class Options:
 FRAME_ONLY = ("opponent", "trust", "miss", "decision", "max_strokes", "nominate", "concede", "claim", "lot", "game")
 """Options that have a meaning in the frame task only."""
 NAMES = tuple(f.name for f in fields(Options) if f.init)
+AGENTS = (
+    "action", "aim", "observation", "reward", "elevation", "placement", "decision", "opponent", "trust", "one_stroke", "nominate",
+    "concede", "claim", "lot",
+)  # fmt: skip
+"""Options of the agent alone."""
 
 
 def options_of(options: Options | None, given: Mapping[str, Any]) -> Options:

@@ -9,7 +9,7 @@ before, the length of its curve to the square of it. ``_REBOUND`` holds this, fr
 from math import atan2, cos, hypot, pi, sin, sqrt
 
 from .._jit import kernel
-from ..game.balls import N_BALLS, SPOTS
+from ..game.balls import N_BALLS, N_REDS, SPOTS
 from ..game.philox import pair
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 
@@ -23,7 +23,6 @@ _BREAK_SPEED, _BREAK_SIDE, _BREAK_TOP, _BREAK_OFF = 3.4, 0.42, 0.1, 0.62
 """Of the break-off: a third of the end red, with running side, so that the cue ball comes back to baulk over three cushions. The last: how
 far the cue ball's path passes the centre of the red, over 2 R. Chosen among 6,000 random ones: of those that return the cue ball to baulk
 in each of 40 trials of a professional, one that leaves hardly a pot."""
-_END_RED = 15
 _ROLLING = 0.4
 """Tip offset over R with which a ball rolls from the start."""
 
@@ -76,18 +75,24 @@ def met(positions, on_table, x, y, ux, uy, far):
 
 @kernel
 def racked(positions, on_table):
-    """Whether all balls stand as at the start of a frame."""
+    """The end red of the last row if all balls stand as at the start of a frame, with 15 reds or 6; else 0."""
+    end = 0
     for i in range(1, N_BALLS):
-        if not on_table[i] or abs(positions[i, 0] - SPOTS[i, 0]) > 1e-3 or abs(positions[i, 1] - SPOTS[i, 1]) > 1e-3:
-            return False
-    return True
+        if on_table[i] and (abs(positions[i, 0] - SPOTS[i, 0]) > 1e-3 or abs(positions[i, 1] - SPOTS[i, 1]) > 1e-3):
+            return 0
+        if on_table[i] and i <= N_REDS:
+            end = i
+    return end if on_table[1] and on_table[end // 2] and (end == N_REDS or end == 6) else 0
 
 
 @kernel
-def break_off(positions):
-    """The stroke from the place of the cue ball: (speed, side, top, direction of the cue ball), at the end red on its side."""
+def break_off(positions, end_red):
+    """The stroke from the place of the cue ball: (speed, side, top, direction of the cue ball), at the end red on its side.
+
+    ``end_red``: that on the right.
+    """
     sign = -1.0 if positions[0, 0] < 0.0 else 1.0
-    dx, dy = sign * SPOTS[_END_RED, 0] - positions[0, 0], SPOTS[_END_RED, 1] - positions[0, 1]
+    dx, dy = sign * SPOTS[end_red, 0] - positions[0, 0], SPOTS[end_red, 1] - positions[0, 1]
     return _BREAK_SPEED, sign * _BREAK_SIDE, _BREAK_TOP, atan2(dy, dx) - sign * _BREAK_OFF * 2.0 * BALL_RADIUS / hypot(dx, dy)
 
 

@@ -44,6 +44,8 @@ class FrameState(NamedTuple):
     positions: Floats
     on_table: Bools
     strokes: int
+    opponent: int
+    """Which member of a pool of opponents plays, counted from 1; 0: none is drawn."""
     unpaid: int
     """What the agent has earned and no reward has paid: points, or with ``reward="frames"`` frames."""
     due: bool
@@ -56,7 +58,7 @@ class FrameState(NamedTuple):
     """Of a match: the frames that each player has won, and who broke in the first one."""
 
 
-FRAME_KEYS = ("frame", "positions", "on_table", "strokes", "unpaid", "due", "stream", "rng")
+FRAME_KEYS = ("frame", "positions", "on_table", "strokes", "opponent", "unpaid", "due", "stream", "rng")
 MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break")
 """Keys of the saved state of a frame, and of a match."""
 
@@ -175,9 +177,10 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
         frame = replace(frame, saved=_checked_saved(frame, table, R))
     stream = check_stream(state["stream"])
     check_rng(state["rng"], generator)
+    opponent = integer("state.opponent", state["opponent"], 0, MOST)
     unpaid, due = integer("state.unpaid", state["unpaid"], -MOST, MOST), truth("state.due", state["due"])
     match = _checked_match(state, frame, rules.frames // 2 + 1) if rules.frames else ()
-    return FrameState(frame, positions, on_table, strokes, unpaid, due, stream, state["rng"], *match)
+    return FrameState(frame, positions, on_table, strokes, opponent, unpaid, due, stream, state["rng"], *match)
 
 
 def _checked_match(state, frame, needed):

@@ -137,7 +137,7 @@ class Crew:
 
 
 _T = TypeVar("_T", bound="Tables")
-_NOTHING_SAID = Choices(Physics()).pack()
+STROKES_ONLY = Choices(Physics()).pack()
 """Packed options of discrete actions that only choose a stroke, for tables whose own actions are a box."""
 
 
@@ -226,7 +226,7 @@ class Tables(ABC):
         which = np.arange(self.n) if which is None else which
         actions = self.rules.actions
         out = np.empty((len(which), actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE), np.bool_)
-        options = self.packed[0] if isinstance(actions, Choices) else _NOTHING_SAID
+        options = self.packed[0] if isinstance(actions, Choices) else STROKES_ONLY
         discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
         return out
 

@@ -313,6 +313,13 @@ def test_impossible_frames_are_refused(wrong):
         Frame(**wrong)
 
 
+def test_the_break_at_the_end_of_a_frame():
+    """The last black belongs to the break; a foul ends it, as everywhere."""
+    frame = last(BallOn.BLACK, (60, 20), break_points=140)
+    assert played(frame, pot(BLACK)).break_points == 147
+    assert played(frame, MISSED).break_points == 0
+
+
 def test_a_strange_dict_is_refused():
     plain = Frame.start().to_dict()
     for wrong in (plain | {"more": 1}, {k: v for k, v in plain.items() if k != "miss"}, [], plain | {"ball_on": 9}):

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from snooker_env.game import in_hand
 from snooker_env.game.balls import BROWN, GREEN, REFEREE_TOUCH, SPOTS, YELLOW
 from snooker_env.game.in_hand import CLEARANCE, place_cue
-from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
+from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
+from snooker_env.physics.table import Table
 from tests.kernels import from_python
 
 in_d = from_python(in_hand.in_d)
@@ -118,3 +119,40 @@ def test_no_place_drawn_at_random_is_nearer(seed, number):
     assert all(np.hypot(*(ball - place)) > 2 * BALL_RADIUS + CLEARANCE / 2 for ball in balls)
     if len(tries):
         assert np.hypot(*(tries - wish).T).min() > np.hypot(*(place - wish)) - 1e-9
+
+
+# Anywhere on the table
+
+on_bed = from_python(in_hand.on_bed)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(0, 21))
+def test_anywhere_no_place_drawn_at_random_is_nearer(seed, number):
+    rng = np.random.default_rng(seed)
+    corner = rng.choice([-1, 1], 2) * [0.6, 1.5]  # in one part of the bed, next to a corner pocket or a middle one, so that balls are close
+    balls = []
+    for place in corner + rng.uniform([-0.35, -0.3], [0.35, 0.3], (400, 2)):
+        if len(balls) < number and all(np.hypot(*(place - ball)) > 2 * BALL_RADIUS for ball in balls):
+            balls.append(place)
+    wish = corner + rng.uniform([-0.4, -0.4], [0.4, 0.4])
+    place = np.array(place_cue(*table(*balls), *wish, anywhere=True))
+    edge = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - CLEARANCE
+    wish = np.clip(wish, -edge, edge)
+    tries = wish + rng.normal(0, 1, (8000, 2)) * rng.choice([0.01, 0.1, 0.3], (8000, 1))
+    tries = np.vstack([tries, np.clip(tries, -edge, edge)])
+    tries = tries[[on_bed(x, y, BALL_RADIUS) for x, y in tries]]
+    for ball in balls:
+        tries = tries[np.hypot(*(tries - ball).T) > REACH]
+    assert on_bed(*place, BALL_RADIUS)
+    assert all(np.hypot(*(ball - place)) > 2 * BALL_RADIUS + CLEARANCE / 2 for ball in balls)
+    assert not len(tries) or np.hypot(*(tries - wish).T).min() > np.hypot(*(place - wish)) - 1e-9
+
+
+def test_anywhere_is_on_the_bed_and_off_the_pockets():
+    assert place_cue(*table(), 0.3, 1.2, anywhere=True) == (0.3, 1.2)
+    for x, y in [(5.0, 0.3), (0.3, -9.0), (HALF_WIDTH, HALF_LENGTH), (-HALF_WIDTH, 0.0)]:
+        place = place_cue(*table(), x, y, anywhere=True)
+        assert on_bed(*place, BALL_RADIUS)
+        Table.preset("match").check([place], BALL_RADIUS)
+    assert in_d(*place_cue(*table(), 0.3, 1.2)) and not on_bed(0.0, HALF_LENGTH, BALL_RADIUS)

@@ -7,11 +7,13 @@ import pytest
 
 from tests import rules_cases
 
-FILE = Path(__file__).parents[1] / "data" / "rules_cases.json"
+DATA = Path(__file__).parents[1] / "data"
+FILE = DATA / "rules_cases.json"
 CASES = json.loads(FILE.read_text(encoding="utf-8"))["cases"]
+MORE = json.loads((DATA / "more_rules_cases.json").read_text(encoding="utf-8"))["cases"]
 
 
-@pytest.mark.parametrize("case", CASES, ids=[case["id"] for case in CASES])
+@pytest.mark.parametrize("case", CASES + MORE, ids=[case["id"] for case in CASES + MORE])
 def test_case(case):
     assert rules_cases.run(case) is None
 
@@ -19,7 +21,7 @@ def test_case(case):
 WRONG = {True: False, False: True, None: "A", "A": "B", "B": "A", "red": "blue", "black": "yellow"}
 
 
-@pytest.mark.parametrize("case", CASES, ids=[case["id"] for case in CASES])
+@pytest.mark.parametrize("case", CASES + MORE, ids=[case["id"] for case in CASES + MORE])
 def test_a_wrong_expectation_fails(case):
     expect = case["expect"]
     if isinstance(expect, bool):

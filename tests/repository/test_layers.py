@@ -29,6 +29,7 @@ ALLOWED = {
     "_types": set(),
     "_files": set(),
     "_shots": set(),
+    "_entry_points": set(),
     "_check": {"_types"},
     "checks": {"_check", "physics"},
     "kernels": {"_jit", "game", "tasks"},
@@ -38,7 +39,7 @@ ALLOWED = {
     "impacts": BASE | {"physics", "shot"},
     "simulation": BASE | {"physics", "shot"},
     "game": BASE,
-    "tasks": BASE | {"physics", "simulation", "game"},
+    "tasks": BASE | {"_entry_points", "physics", "simulation", "game"},
     "planning": BASE | {"physics", "simulation", "game", "tasks"},
     "advice": BASE | {"physics", "simulation", "game", "tasks", "planning", "envs"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render", "replays"},
@@ -70,7 +71,7 @@ ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "abc", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools",
     "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "re", "subprocess", "sys", "tempfile",
-    "textwrap", "threading", "time", "types", "typing", "warnings", "zipfile", "zlib",
+    "textwrap", "threading", "time", "types", "typing", "warnings", "weakref", "zipfile", "zlib",
 }  # fmt: skip
 
 

@@ -27,7 +27,8 @@ class Specification:
     def __init__(self, tables, k):
         self.frame, self.k = tables.frame(k), k
         self.positions, self.on_table = tables.positions[k].copy(), tables.on_table[k].copy()
-        self.jaws = tables.rules.table.jaws[:, :3]
+        self.table = tables.rules.table
+        self.jaws = self.table.jaws[:, :3]
         self.miss = tables.rules.misses
 
     def decide(self, action):
@@ -45,7 +46,8 @@ class Specification:
         before, self.positions = self.frame, start
         mask = mask_of_present(self.on_table) & ~1
         on = balls_on(before.ball_on, mask) | (COLOURS_MASK & mask if before.free_ball else 0)
-        clear = paths(self.positions, self.on_table, on) if self.miss else (False, False)
+        table = self.table
+        clear = paths(self.positions, self.on_table, on, noses=table.noses, jaws=table.jaws) if self.miss else (False, False)
         layout = layout_of(self.positions, self.on_table) if self.miss else None
         first, touching, moved, potted = (int(seen[c]) for c in (FIRST, TOUCHING, MOVED, DOWN))
         stroke = Stroke(first=first, touching=touching, moved=moved, potted=potted)

@@ -4,7 +4,6 @@ import copy
 import pickle
 import random
 import zipfile
-from pathlib import Path
 
 import gymnasium
 import numpy as np
@@ -228,13 +227,6 @@ def test_a_file_that_is_none_of_stable_baselines_is_refused(tmp_path, content):
     for name in ("plain", "data", "large"):
         with pytest.raises(ValueError, match=rf"^opponent = '.*{name}.zip': must be a model saved by Stable-Baselines3 \("):
             SnookerEnv(task="frame", opponent=str(tmp_path / f"{name}.zip"), trust=True)
-
-
-@pytest.mark.parametrize("name", ["ppo_mask", "ppo_target"])
-def test_the_agents_of_this_project_see_more_than_a_frame_shows(name):
-    file = Path(__file__).parents[2] / f"agents/pretrained/{name}.zip"
-    with pytest.raises(ValueError, match=r"opponent = .*: must be a model that observes what the environment shows and nothing else"):
-        SnookerEnv(task="frame", opponent=file, trust=True)
 
 
 def test_consent_is_a_plain_option_of_the_frame_task(saved):

@@ -1,0 +1,147 @@
+"""How does a player of visits see a frame? On tables of his own that show the stroke to come as one of a visit.
+
+A player has ``options``, the keywords that say how its actions are read, and ``act(tables, observations, going)``, which returns an action
+for each table of a ``SnookerVectorEnv`` with flat observations. Planning players simulate on those tables, which have the physics, table,
+noise and fidelity of the frames. A player whose attribute ``frames`` is True gets tables of frames instead, from his own side.
+
+With a free ball, the tables of a visit show that any colour is on. It is right in all but one thing: what it scores.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from .._types import Bools, Ints
+from ..game.frame_columns import (
+    BALL_ON,
+    BREAKER,
+    FIRST_BREAK,
+    FRAMES_0,
+    FRAMES_1,
+    FREE_BALL,
+    PAID,
+    SCORE_0,
+    SCORE_1,
+    STEPS,
+    STRIKER,
+    VISIT_COLUMNS,
+    WINNER,
+)  # fmt: skip
+from ..tasks.frame import Frames
+from .vector import SnookerVectorEnv
+
+PHYSICAL = ("noise", "physics", "table", "fidelity")
+"""The options of frames that hold for visits, too."""
+
+
+class Seat:
+    """The tables on which a player sees frames.
+
+    Parameters
+    ----------
+    player : object
+        With ``options``, and optionally ``frames``.
+    n : int
+        Number of tables.
+    game : mapping
+        Options of the frames: at least those of ``PHYSICAL``.
+    threads : int, optional
+        As in ``SnookerVectorEnv``.
+
+    Attributes
+    ----------
+    tables : SnookerVectorEnv
+        The player's own tables.
+    """
+
+    def __init__(self, player: Any, n: int, game: Mapping[str, Any], threads: int | None = None):
+        self._frames = getattr(player, "frames", False) is True
+        same, own = dict(game), dict(player.options)
+        if not self._frames:
+            same = {name: game[name] for name in PHYSICAL}
+            own.pop("decision", None)  # there is none in a visit
+        self.tables = SnookerVectorEnv(n, threads=threads, **own | same)
+        self.tables.reset(seed=0)  # whose tables are replaced by those of the frames
+
+    def show(self, frames: Frames, which: Ints, rows: Ints | None = None, side: int = 0) -> None:
+        """Show the tables ``which`` of frames on ``rows`` (by default the same) as player ``side`` sees them."""
+        own: Any = self.tables.tables
+        rows = which if rows is None else rows
+        own.positions[rows], own.on_table[rows] = frames.positions[which], frames.on_table[which]
+        game = frames.game[which]
+        if self._frames:
+            own.saved.positions[rows], own.saved.on_table[rows] = frames.saved.positions[which], frames.saved.on_table[which]
+            own.game[rows] = swapped(game) if side else game
+            return
+        game[game[:, FREE_BALL] != 0, BALL_ON] = 0
+        game[:, STEPS] = 0
+        own.game[rows] = game[:, :VISIT_COLUMNS]
+
+    def act(self, player: Any, going: Bools) -> Any:
+        """The player's actions on these tables."""
+        return player.act(self.tables, self.tables.tables.observe(np.arange(self.tables.num_envs)), going)
+
+
+def swapped(game: Ints) -> Ints:
+    """Rows of frames (m, COLUMNS) as if the players had changed sides: a new array."""
+    other = game.copy()
+    for a, b in ((SCORE_0, SCORE_1), (FRAMES_0, FRAMES_1)):
+        other[:, a], other[:, b] = game[:, b], game[:, a]
+    for column in (STRIKER, BREAKER, FIRST_BREAK):
+        other[:, column] = 1 - game[:, column]
+    other[:, WINNER] = np.where(game[:, WINNER] < 0, game[:, WINNER], 1 - game[:, WINNER])
+    other[:, PAID] = -game[:, PAID]
+    return other
+
+
+class AtFrames:
+    """A player of visits as the agent at tables of frames: it sees the stroke to come as one of a visit, and plays on after every foul.
+
+    Parameters
+    ----------
+    player : object
+        With ``options`` and ``act``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> from snooker_env.benchmark import AtFrames
+    >>> class Soft:
+    ...     options = {}
+    ...     def act(self, tables, observations, going):
+    ...         return np.full((len(going), 4), -1.0)
+    >>> frames = sn.SnookerVectorEnv(2, task="frame", threads=1)
+    >>> observations, _ = frames.reset(seed=0)
+    >>> AtFrames(Soft()).act(frames, observations, np.ones(2, bool)).shape
+    (2, 4)
+    """
+
+    def __init__(self, player: Any):
+        self.player, self.options = player, player.options
+        self._frames: Any = None
+        self._seat: Any = None
+
+    def act(self, frames: Any, observations: Any, going: Bools) -> Any:
+        """The player's actions, which mean the same in a frame.
+
+        Parameters
+        ----------
+        frames : SnookerVectorEnv
+            The n tables, with ``task="frame"`` or "match".
+        observations : numpy.ndarray
+            Theirs; the player gets those of a visit instead.
+        going : numpy.ndarray
+            bool (n,): tables on which the player is to play.
+
+        Returns
+        -------
+        numpy.ndarray
+            An action for each table.
+        """
+        if self._frames is not frames:
+            same = {name: getattr(frames.options, name) for name in PHYSICAL}
+            self._seat, self._frames = Seat(self.player, frames.num_envs, same, frames.threads), frames
+        self._seat.show(frames.tables, np.flatnonzero(going))
+        return self._seat.act(self.player, going)

@@ -1,0 +1,95 @@
+"""Was it the best effort? How near a snookered striker's cue ball came to a ball on, exact, as kernels: the rule ``miss="attempt"``.
+
+S3 R14(a) demands that the striker "endeavours to the best of his ability to hit a ball on", which a referee judges. Here a declared rule
+of geometry does: the cue ball must pass within ``ATTEMPT_GAP`` of a ball on before its first contact with any ball, or before it comes to
+rest if it strikes none. Until then no ball on has moved, so the gap is that to balls at rest, along the path that was really played, off
+every cushion.
+
+The cue ball moves on pieces x + v t + a t^2 / 2. Its squared distance from a ball has a cubic as derivative; between the extremes of that
+cubic it changes sign at most once, so that bisection finds every minimum.
+"""
+
+import numpy as np
+
+from .._jit import kernel
+from ..geometry import BALL_RADIUS
+from .balls import CUE, N_BALLS
+
+ATTEMPT_GAP = 2.0 * BALL_RADIUS
+"""A gap up to this between the cue ball and a ball on counts as the best effort [m]: one ball would just fit between them."""
+
+X, Y, VX, VY, AX, AY, START, END, BALL = 0, 1, 2, 3, 4, 5, 9, 10, 15
+"""Columns of a piece of a path, as in ``physics.cloth``."""
+_HALVINGS = 60
+
+
+@kernel
+def _slope(c0, c1, c2, c3, t):
+    """The cubic c0 + c1 t + c2 t^2 + c3 t^3."""
+    return c0 + t * (c1 + t * (c2 + t * c3))
+
+
+@kernel
+def _minimum(c0, c1, c2, c3, low, high):
+    """Where in [low, high], in which the cubic is monotone, it rises through zero; otherwise an end."""
+    if _slope(c0, c1, c2, c3, low) >= 0.0:
+        return low
+    if _slope(c0, c1, c2, c3, high) <= 0.0:
+        return high
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        if _slope(c0, c1, c2, c3, middle) < 0.0:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+@kernel
+def nearest_on_piece(dx, dy, vx, vy, ax, ay, T):
+    """The smallest distance from the origin of a point that moves as d + v t + a t^2 / 2 for t in [0, T] [m]."""
+    c0, c1 = dx * vx + dy * vy, vx * vx + vy * vy + dx * ax + dy * ay
+    c2, c3 = 1.5 * (vx * ax + vy * ay), 0.5 * (ax * ax + ay * ay)
+    # The slope turns where c1 + 2 c2 t + 3 c3 t^2 = 0.
+    first, second = T, T
+    if c3 > 0.0:
+        root = c2 * c2 - 3.0 * c1 * c3
+        if root > 0.0:
+            first, second = (-c2 - np.sqrt(root)) / (3.0 * c3), (-c2 + np.sqrt(root)) / (3.0 * c3)
+    first, second = min(T, max(0.0, first)), min(T, max(0.0, second))
+    best = np.inf
+    for part in range(3):
+        low = 0.0 if part == 0 else first if part == 1 else second
+        high = first if part == 0 else second if part == 1 else T
+        t = _minimum(c0, c1, c2, c3, low, high)
+        for at in (low, t, high):
+            best = min(best, np.hypot(dx + at * (vx + 0.5 * at * ax), dy + at * (vy + 0.5 * at * ay)))
+    return best
+
+
+@kernel
+def closest_approach(segments, n_segments, until, positions, on_table, on, radius):
+    """The smallest gap between the cue ball and a ball of the mask ``on`` up to the time ``until`` [s], along its path [m]; inf for none.
+
+    ``segments``, ``n_segments``: the path log of the shot; ``positions``, ``on_table``: the balls before it, which must not have moved.
+    """
+    best, k = np.inf, 0
+    while k < n_segments:
+        if segments[k, BALL] != CUE:
+            k += 1
+            continue
+        following = k + 1
+        while following < n_segments and segments[following, BALL] != CUE:
+            following += 1
+        end = min(until, segments[k, END])
+        if following < n_segments:
+            end = min(end, segments[following, START])
+        T = end - segments[k, START]
+        if T >= 0.0:
+            for i in range(1, N_BALLS):
+                if on_table[i] and (on >> i) & 1:
+                    dx, dy = segments[k, X] - positions[i, 0], segments[k, Y] - positions[i, 1]
+                    far = nearest_on_piece(dx, dy, segments[k, VX], segments[k, VY], segments[k, AX], segments[k, AY], T)
+                    best = min(best, far - 2.0 * radius)
+        k = following
+    return best

@@ -1,0 +1,163 @@
+"""How does one train against several opponents? ``OpponentPool``: one of them is drawn for each frame, from the table's own stream."""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._check import integer, number, refuse
+from .._types import Ints
+from ..game.frame_columns import OPPONENT
+from .player_opponent import drawn
+
+if TYPE_CHECKING:
+    from .frame import Frames
+
+
+class OpponentPool:
+    """Several opponents, one of whom is drawn for each table and frame, with chances in proportion to their weights.
+
+    The draw comes from the table's own stream of random numbers and is part of its state: the same seed meets the same opponents, whatever
+    happens on other tables, and a saved state plays on exactly. Members may be added at any time, for instance past selves during training:
+    frames that begin later may draw them.
+
+    Parameters
+    ----------
+    members : iterable, optional
+        What ``opponent=`` of an environment accepts, except another pool: names, models' files, callables, players. Default: none yet.
+    weights : iterable of float, optional
+        One weight for each member, at least 0; default 1 for each.
+
+    Attributes
+    ----------
+    members : tuple
+        The members, in the order in which they were added.
+    weights : tuple of float
+        Their weights.
+
+    Raises
+    ------
+    ValueError
+        If there is not one weight for each member, or a weight is wrong.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.tasks import OpponentPool
+    >>> pool = OpponentPool(["random", "ghost_ball"], weights=[1, 3])
+    >>> env = sn.SnookerEnv(task="frame", opponent=pool)
+    >>> pool.add("random")
+    >>> pool.weights
+    (1.0, 3.0, 1.0)
+    """
+
+    def __init__(self, members: Iterable[Any] = (), weights: Iterable[float] | None = None):
+        self._members: list[Any] = []
+        self._weights: list[float] = []
+        given = list(members)
+        each = [1.0] * len(given) if weights is None else list(weights)
+        if len(each) != len(given):
+            raise refuse("weights", each, f"must be {len(given)} numbers, one for each member")
+        for member, weight in zip(given, each, strict=True):
+            self.add(member, weight)
+
+    @property
+    def members(self) -> tuple[Any, ...]:
+        """The members, in the order in which they were added."""
+        return tuple(self._members)
+
+    @property
+    def weights(self) -> tuple[float, ...]:
+        """Their weights."""
+        return tuple(self._weights)
+
+    def add(self, member: Any, weight: float = 1.0) -> None:
+        """Add a member, which later frames may draw.
+
+        Parameters
+        ----------
+        member : str, Path, callable or player
+            As in ``members``. It is checked when an environment uses it first.
+        weight : float, optional
+            Its weight, at least 0; default 1.
+
+        Raises
+        ------
+        ValueError
+            If the weight is wrong, or the member is a pool.
+
+        Examples
+        --------
+        >>> from snooker_env.tasks import OpponentPool
+        >>> pool = OpponentPool()
+        >>> pool.add("ghost_ball", 0.5)
+        >>> pool.members
+        ('ghost_ball',)
+        """
+        if isinstance(member, OpponentPool) or member is None or (isinstance(member, str) and member == "none"):
+            raise refuse("member", member, "must be one opponent: a name, a model's file, a callable or a player")
+        weight = number("weight", weight, 0.0)
+        self._members.append(member)
+        self._weights.append(weight)
+
+    def set_weight(self, index: int, weight: float) -> None:
+        """Change the weight of a member. With 0 it is drawn no more; frames in which it plays go on.
+
+        Parameters
+        ----------
+        index : int
+            Its index in ``members``.
+        weight : float
+            The weight, at least 0.
+
+        Raises
+        ------
+        ValueError
+            If there is no such member, or the weight is wrong.
+
+        Examples
+        --------
+        >>> from snooker_env.tasks import OpponentPool
+        >>> pool = OpponentPool(["random", "ghost_ball"])
+        >>> pool.set_weight(0, 0.0)
+        >>> pool.weights
+        (0.0, 1.0)
+        """
+        self._weights[integer("index", index, 0, len(self._members) - 1)] = number("weight", weight, 0.0)
+
+
+class PoolOpponent:
+    """The members of a pool as opponents; ``opponent_of`` makes a member ready to play."""
+
+    def __init__(self, pool: OpponentPool, opponent_of: Callable[[Any], Any]):
+        self.pool, self._opponent_of = pool, opponent_of
+        self._ready: list[Any] = []
+        self._complete()
+
+    def _complete(self):
+        self._ready += [self._opponent_of(member) for member in self.pool.members[len(self._ready) :]]
+
+    def asked(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> list[tuple[Any, Ints, Any]]:
+        """As ``opponents.asked``: one entry for each member that plays on some of the tables ``which``."""
+        self._complete()
+        self._draw(frames, which)
+        playing = frames.game[which, OPPONENT]
+        turns = []
+        for number_ in np.unique(playing).tolist():
+            if number_ > len(self._ready):
+                raise refuse("opponent", f"member {number_ - 1} of a pool", f"must be below {len(self._ready)}, as many as the pool has")
+            member, own = self._ready[number_ - 1], which[playing == number_]
+            turns.append((member, own, member.ask(frames, own, generators)))
+        return turns
+
+    def _draw(self, frames, which):
+        """Draw an opponent where none has been drawn in this frame."""
+        new = which[frames.game[which, OPPONENT] == 0]
+        if not len(new):
+            return
+        shares = np.cumsum(self.pool.weights)
+        if not len(shares) or shares[-1] <= 0.0:
+            raise refuse("opponent", "an OpponentPool", "must have a member with a weight above 0")
+        numbers = np.empty(len(new))
+        drawn(new, frames.streams, numbers)
+        frames.game[new, OPPONENT] = 1 + np.searchsorted(shares, numbers * shares[-1], side="right")

@@ -1,0 +1,147 @@
+"""How does any player of this project play as the opponent in frames? Seen from his own side, by his own action options, in one call.
+
+A player is an object with ``options`` (how its actions are read) and ``act(tables, observations, going)``. ``tables`` are his own: a
+``SnookerVectorEnv`` of visits that shows the strokes to come (``envs.at_frames``). So agents trained on visits and planning players can
+play frames. A player whose attribute ``frames`` is True gets tables of frames.
+
+* After a foul he plays on, unless his options hold ``decision``; he begins after a lot that he has won.
+* Without ``placement`` in his options, a cue ball in hand stands where "ghost_ball" would put it.
+* With a free ball, a player of visits sees that any colour is on.
+* What he strikes first after a red is the colour nominated, unless his own options hold ``nominate``.
+
+A player with a method ``begin(seed)`` is called for each table by itself, after ``begin`` with a seed from that table's stream: his strokes
+then depend on that table alone, and a saved state plays on exactly. Any other one is called once for all tables that wait.
+"""
+
+import copy
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from .. import _entry_points
+from .._check import choice, refuse, refuse_what
+from .._jit import entry
+from .._types import Floats, Ints
+from ..game.balls import bits
+from ..game.frame_columns import BALL_ON, FREE_BALL, IN_HAND, strikeable
+from ..game.philox import pair
+from ..game.pots import POT_COLUMNS
+from ..physics.parameters import Physics
+from .box_actions import Actions
+from .discrete_actions import Choices
+from .ghost_ball import put
+from .stroke import ShotBuffers
+
+if TYPE_CHECKING:
+    from .frame import Frames
+
+SEEDS = 1024
+"""Seeds of ``begin`` are below this."""
+_VISITS = ("action", "aim", "observation", "elevation", "placement", "decision")
+_FRAMES = (*_VISITS, "nominate", "concede", "claim", "lot")
+_ROW = np.zeros(1, np.int64)
+
+
+@entry(what="the places of the opponent's cue ball", seconds=2)
+def _put(which, positions, on_table, game, streams):
+    """Place the cue balls in hand on the tables ``which``."""
+    found = np.empty((1, POT_COLUMNS))
+    for j in range(which.shape[0]):
+        k = which[j]
+        if game[k, IN_HAND]:
+            put(positions[k], on_table[k], strikeable(game[k], bits(on_table[k]) & ~1), found, streams[k])
+
+
+@entry
+def drawn(which, streams, out):
+    """One uniform number in [0, 1) from the stream of each of the tables ``which``: out (len(which),)."""
+    for j in range(which.shape[0]):
+        out[j], _ = pair(streams[which[j]])
+
+
+def is_player(thing: Any) -> bool:
+    """Whether that is a player: with ``options``, a mapping, and ``act``."""
+    return isinstance(getattr(thing, "options", None), Mapping) and callable(getattr(thing, "act", None))
+
+
+class PlayerOpponent:
+    """A player as the opponent.
+
+    ``game``: the options of the frames that his own tables share. ``name``: what errors call him.
+
+    Raises ValueError if his options are not those of a player.
+    """
+
+    def __init__(self, player: Any, physics: Physics, game: Mapping[str, Any], name: str | None = None):
+        self.player, self.game, self.name = player, dict(game), name or type(player).__name__
+        self.frames = getattr(player, "frames", False) is True
+        options = dict(player.options)
+        for key in options:
+            choice(f"key of the options of opponent {self.name}", key, _FRAMES if self.frames else _VISITS)
+        if options.get("observation", "flat") != "flat":
+            raise refuse(f"observation of opponent {self.name}", options["observation"], 'must be "flat": players get flat observations')
+        said = {key: options[key] for key in ("nominate", "concede", "claim", "lot") if self.frames and key in options}
+        if choice("action", options.get("action", "box"), ("box", "discrete")) == "discrete":
+            self.actions: Actions | Choices = Choices(physics, **said)
+        else:
+            elevation, placement, decision = (options.get(key, False) for key in ("elevation", "placement", "decision"))
+            self.actions = Actions(options.get("aim", "absolute"), elevation, placement, physics, decision, **said)
+        self._seats: Any = WeakKeyDictionary()
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self.__dict__ | {"_seats": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, _seats=WeakKeyDictionary())
+
+    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
+        """His actions on the tables ``which``: (n, k). Raises ValueError, naming him, for invalid ones."""
+        if not self.actions.placement:
+            _put(which, frames.positions, frames.on_table, frames.game, frames.streams)
+        alone = callable(getattr(self.player, "begin", None))
+        seat = self._seats.get(frames)
+        if seat is None:
+            n = 1 if alone else frames.n
+            seat = self._seats[frames] = _entry_points.load(_entry_points.SEAT)(self.player, n, self.game)
+        actions = np.zeros((frames.n, self.actions.size))
+        if not alone:
+            seat.show(frames, which, side=1)
+            going = np.zeros(frames.n, np.bool_)
+            going[which] = True
+            actions[which] = self._checked(seat.act(self.player, going), which, frames.n)
+            return actions
+        numbers = np.empty(len(which))
+        drawn(which, frames.streams, numbers)
+        for j, k in enumerate(which.tolist()):
+            self.player.begin(int(SEEDS * numbers[j]))
+            seat.show(frames, which[j : j + 1], _ROW, side=1)
+            actions[k] = self._checked(seat.act(self.player, np.ones(1, np.bool_)), _ROW, 1)
+        return actions
+
+    def _checked(self, answer, which, n):
+        """The valid actions of the tables ``which`` among n answers."""
+        try:
+            answers = np.asarray(answer)
+            if answers.ndim == 0 or len(answers) != n:
+                raise refuse_what("actions", f"array of shape {answers.shape}", f"must be {n}, one for each table")
+            return self.actions.check_many(answers[which], len(which))
+        except ValueError as error:
+            raise ValueError(f"opponent {self.name}: {error}") from None
+
+    def prepare(self, frames: "Frames", which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
+        """Carry his strokes out up to the strike; returns the tables with a stroke."""
+        own = copy.copy(frames)  # the same tables, and his actions
+        own.rules = replace(frames.rules, actions=self.actions)
+        own.packed = (self.actions.pack(), *frames.packed[1:])
+        free = which[frames.game[which, FREE_BALL] != 0]
+        if self.frames or not len(free):
+            return own.prepare(which, actions, buffers)
+        before = frames.game[free][:, [BALL_ON, FREE_BALL]]
+        frames.game[free, BALL_ON] = frames.game[free, FREE_BALL] = 0  # as he has seen it
+        try:
+            return own.prepare(which, actions, buffers)
+        finally:
+            frames.game[free, BALL_ON], frames.game[free, FREE_BALL] = before.T

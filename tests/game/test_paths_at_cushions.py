@@ -1,0 +1,116 @@
+"""Do the paths of the miss rule end at cushions? Shots that the physics really plays are the judge."""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.game.balls import BLACK, BLUE, CUE, GREEN, N_BALLS, PINK, SPOTS, mask_of
+from snooker_env.game.paths import paths
+from snooker_env.geometry import BALL_RADIUS as R
+from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
+
+TABLE = sn.Table.preset("match")
+
+
+def scene(**places):
+    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
+    ids = {"cue": CUE, "green": GREEN, "blue": BLUE, "pink": PINK, "black": BLACK, "red": 1, "brown": 18, "yellow": 16}
+    for name, place in places.items():
+        positions[ids[name]], on_table[ids[name]] = place, True
+    return positions, on_table
+
+
+@pytest.mark.parametrize(
+    ("ball", "places", "expected"),
+    [
+        # All of the green that the black leaves is on the cushion's side of it.
+        (
+            GREEN,
+            {"cue": (0.77383054, 1.144633), "green": (-0.47865361, 1.75807142), "black": (0.02533072, 1.4767108)},
+            (False, False),
+        ),
+        # From the mouth of a corner pocket straight down the rail: the nose stands in the way.
+        (
+            PINK,
+            {"cue": (-0.86717741, 1.71866203), "pink": (-0.84330693, -1.70098841), "black": (0.29997489, -1.7007613)},
+            (False, False),
+        ),
+        # A ball in the mouth of a middle pocket: a jaw hides its centre, not all of it.
+        (BLUE, {"cue": (0.69633264, -1.31231604), "blue": (0.88835116, 0.02550654)}, (True, False)),
+        (BLUE, {"cue": (0.0, 0.0), "blue": (HALF_WIDTH - R, 0.6)}, (True, True)),
+    ],
+)
+def test_named_cases(ball, places, expected):
+    assert paths(*scene(**places), 1 << ball, noses=TABLE.noses, jaws=TABLE.jaws) == expected
+
+
+def first_met(positions, on_table, angles):
+    """What a cue ball that rolls fast along each angle meets first: a ball's id, or -1 for a cushion or nothing."""
+    n = len(angles)
+    velocities, spins = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS, 3))
+    c, s = np.cos(angles), np.sin(angles)
+    velocities[:, CUE] = 20 * np.column_stack([c, s])
+    spins[:, CUE, :2] = 20 / R * np.column_stack([-s, c])
+    out = sn.simulate_batch(
+        np.repeat(positions[None], n, 0), velocities, spins, "match", on_table=np.repeat(on_table[None], n, 0), events=True
+    )
+    met = np.full(n, -1)
+    for k in range(n):
+        own = [e for e in out.events[k] if e["i"] == CUE and e["kind"] in (0, 1, 2, 3, 6)]
+        if own and own[0]["kind"] == 0:
+            met[k] = own[0]["j"]
+    return met
+
+
+def in_mouths_and_at_rails(rng):
+    """A place near the rails, or in the mouth of a pocket, that the table leaves to a ball."""
+    while True:
+        place = rng.uniform([-HALF_WIDTH, -HALF_LENGTH], [HALF_WIDTH, HALF_LENGTH])
+        if rng.random() < 0.6:
+            side = rng.integers(2)
+            place[side] = np.sign(place[side]) * ((HALF_WIDTH, HALF_LENGTH)[side] - R - rng.exponential(0.003) + 0.004)
+        if rng.random() < 0.4:
+            place[1] = rng.choice([-HALF_LENGTH, 0, HALF_LENGTH]) + rng.normal(0, 0.05)
+        try:
+            TABLE.check([place], R)
+        except ValueError:
+            continue
+        return place
+
+
+def test_paths_agree_with_rolled_balls():
+    """Cue ball and target near rails and pockets, two balls between them; 300 directions, then 6,000, over the whole target."""
+    rng, met = np.random.default_rng(8), {"any": 0, "full": 0, "barred": 0, "partly": 0, "by cushions": 0}
+    while met["any"] < 60:
+        cue, red = in_mouths_and_at_rails(rng), in_mouths_and_at_rails(rng)
+        if rng.random() < 0.7:
+            red[0] = cue[0]  # along the same rail
+        across = np.array([cue[1] - red[1], red[0] - cue[0]]) / np.hypot(*(red - cue))
+        places = [cue, red, *(cue + rng.uniform(0.1, 0.9) * (red - cue) + rng.uniform(-2.5, 2.5) * R * across for _ in range(2))]
+        try:
+            TABLE.check([red], R)
+            TABLE.check([places[2]], R)
+            TABLE.check([places[3]], R)
+        except ValueError:
+            continue
+        apart = [np.hypot(*(a - b)) for k, a in enumerate(places) for b in places[:k]]
+        if min(apart) < 2 * R + 1e-3:
+            continue
+        positions, on_table = scene(cue=places[0], red=places[1], blue=places[2], pink=places[3])
+        d = places[1] - places[0]
+        towards, half = np.arctan2(d[1], d[0]), np.arcsin(2 * R / np.hypot(*d))
+        any_part, full = paths(positions, on_table, mask_of([1]), noses=TABLE.noses, jaws=TABLE.jaws)
+        found = (first_met(positions, on_table, towards + half * np.linspace(-0.999, 0.999, 300)) == 1).any()
+        if any_part and not found:  # a narrow opening
+            found = (first_met(positions, on_table, towards + half * np.linspace(-1, 1, 6000)) == 1).any()
+        assert found == any_part
+        # The edge of what decides the centre line is left out: a hair to either side must agree.
+        straight = first_met(positions, on_table, towards + np.array([-1e-5, 0.0, 1e-5])) == 1
+        if straight.all() or not straight.any():
+            assert full == straight[1]
+        met["any"] += any_part
+        met["full"] += full
+        met["barred"] += not any_part
+        met["partly"] += any_part and not full
+        met["by cushions"] += (any_part, full) != paths(positions, on_table, mask_of([1]))
+    assert min(met.values()) >= 5
