@@ -81,3 +81,8 @@ def test_without_a_pot_the_nearest_ball_on_stands_first():
         assert shown[k, 0] == 1.0 and (shown[k, 13::13] == 0.0).all()
         assert shown[k, 1:3] == pytest.approx(way[near] / far[near], abs=1e-5)
         assert shown[k, 5] == pytest.approx(far[near] / 1.7845 - 1.0, abs=1e-5)
+
+
+def test_the_published_agent_is_an_opponent_that_a_constant_choice_does_not_beat():
+    against = self_play.judge(self_play.Softly(), self_play.SelfPlayed(), 60, 1)
+    assert against["won"] < 0.5
