@@ -1,10 +1,14 @@
 """Do whole frames end by the rules, and is every point and ball accounted for? Random and ghost-ball players, each stroke checked.
 
-    python -m benchmarks.frames [--frames 2000] [--jobs N] [--seed 0] [--json FILE] [--out FOLDER]
+    python -m benchmarks.frames [--frames 2000] [--nomination] [--jobs N] [--seed 0] [--json FILE] [--out FOLDER]
 
 Checked at every stroke: the scores against a count of its own of what was potted and given, no visit above 155, no ball lost, doubled,
 overlapping or off the table; and once a frame, that the state written as JSON and read again plays on identically, bit for bit.
-No player concedes, claims or is stopped: a frame ends by its last black, by a re-spotted black, or by a third miss ("clear_path").
+No player concedes or is stopped: a frame ends by its last black, by a re-spotted black, by a third miss ("clear_path"), or, where
+players nominate and declare ("said"), by a claim.
+
+``--nomination``: instead, how many strokes at a colour after a red are judged otherwise where the player must name it. Each of ghost_ball's
+strokes at a club player's errors is judged twice, with the colour that it aims at and with the one that it strikes first.
 """
 
 import json
@@ -36,7 +40,9 @@ MOST_STROKES = 20_000
 REPLAYED = 20
 """Strokes played again from the JSON."""
 PLAYERS = {"random": UniformOpponent(), "ghost_ball": GhostBallOpponent()}
-KINDS = (("random", "off"), ("random", "clear_path"), ("ghost_ball", "off"))
+SAID = {"nominate": True, "concede": True, "claim": True, "lot": True}
+KINDS = (("random", "off"), ("random", "clear_path"), ("ghost_ball", "off"), ("ghost_ball", "clear_path"), ("random", "said"))
+"""Who plays, and the miss rule; "said": without misses, but with everything that a player may say."""
 
 
 @dataclass
@@ -72,8 +78,9 @@ class Turn(NamedTuple):
 class FrameTable:
     """One frame in progress, played turn by turn by the same player on both sides, the rules' own arrays behind it."""
 
-    def __init__(self, miss):
-        options = Options(task="frame", aim="target", placement=True, decision=True, miss=miss, max_strokes=None)
+    def __init__(self, kind, **more):
+        rules = SAID if kind == "said" else {"miss": kind}
+        options = Options(**{"task": "frame", "aim": "target", "placement": True, "decision": True, "max_strokes": None} | rules | more)
         self.tables, self.buffers, self.generator = Frames(options.rules, 1), ShotBuffers(1), np.random.default_rng()
 
     def start(self, seed):
@@ -168,10 +175,12 @@ def check_replay(text, wanted, player, miss):
 
 def ending(before, played, frame):
     """How the frame ended."""
-    if before.warned and played.fouls and frame.on_table:
+    if played is not None and before.warned and played.fouls and frame.on_table:
         return "third miss"
     if frame.respotted_black:
         return "re-spotted black"
+    if played is None:
+        return "claimed"
     return "foul on the black" if played.fouls else "black potted"
 
 
@@ -188,6 +197,7 @@ def play_frame(seed, kind, miss):
         if saved is not None and len(following) < REPLAYED:
             following.append(table.as_json())
         if played is None:
+            tally.ending = ending(before, played, table.frame) if table.over else ""
             continue
         if before.phase == "choice":
             before = before.choose("play")  # the only decision with a stroke in the same turn
@@ -216,6 +226,22 @@ def play_frame(seed, kind, miss):
     return tally
 
 
+def judged_otherwise(seed):
+    """One frame of ghost_ball against itself at club noise: strokes at a colour after a red, and those judged otherwise by nomination."""
+    player, named, plain = PLAYERS["ghost_ball"], FrameTable("off", noise="club", nominate=True), FrameTable("off", noise="club")
+    named.start(seed)
+    strokes = other = 0
+    while not named.over:
+        plain.take(named.as_json())
+        asked = named.frame.ball_on == BallOn.ANY_COLOUR
+        one, two = named.turn(player), plain.turn(player)
+        if asked:
+            check((one is None, one and one.potted) == (two is None, two and two.potted), "another stroke", one, two)
+            strokes += 1
+            other += one is not None and (one.points, one.penalty) != (two.points, two.penalty)
+    return strokes, other
+
+
 def figures_of(kind, miss, tallies, seconds):
     """A row of the table."""
     strokes, breaks = [t.strokes for t in tallies], [b for t in tallies for b in t.breaks]
@@ -239,8 +265,14 @@ def main():
     parser = Command("frames", __doc__, seed=0)
     parser.add_argument("--frames", type=at_least(1), default=2000, help="of each kind")
     parser.add_argument("--jobs", type=at_least(1), default=os.cpu_count() or 1, help="processes")
+    parser.add_argument("--nomination", action="store_true", help="measure what nomination changes")
     args = parser.options()
     rows = []
+    if args.nomination:
+        strokes, other = np.sum([judged_otherwise(seed) for seed in range(args.seed, args.seed + args.frames)], axis=0).tolist()
+        print(f"{other} of {strokes} strokes at a colour after a red ({100 * other / strokes:.2f} %) are judged otherwise by nomination")
+        save_json(args.json, {"seed": args.seed, "frames": args.frames, "strokes": strokes, "judged_otherwise": other})
+        return
     print("players    miss rule   frames  strokes   most  fouls %  break  best seconds   endings")
     quiet = {"initializer": signal.signal, "initargs": (signal.SIGINT, signal.SIG_DFL)}  # Ctrl-C ends them without a word
     with ProcessPoolExecutor(args.jobs, mp_context=get_context("spawn"), **quiet) as pool:

@@ -12,12 +12,12 @@ else:  # PettingZoo and the environments are loaded at their first use
 
 
 def match_env(options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any) -> "_MatchEnv":
-    """Make a frame of snooker between "player_0" and "player_1", as a PettingZoo AEC environment.
+    """Make a frame or match of snooker between "player_0" and "player_1", as a PettingZoo AEC environment.
 
     Parameters
     ----------
     options : Options, optional
-        The options, with ``task="frame"`` and no opponent. Default None: they are made from the keywords.
+        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the keywords.
     render_mode : {"human", "rgb_array", "ansi"}, optional
         How ``render`` shows the table; default None: not at all.
     **given

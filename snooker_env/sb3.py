@@ -88,7 +88,8 @@ class SnookerVecEnv(VecEnv):
         """Begin new episodes on all tables, with the seeds and options set before.
 
         ``set_options([{"state": ...}, ...])`` starts from states, ``set_options([{"position": ...}, ...])`` from positions, one for each
-        table. States hold their random streams; after a call of ``seed`` too, those of the seeds replace them.
+        table; ``set_options([{"breaker": 0}, ...])`` says who breaks. States hold their random
+        streams; after a call of ``seed`` too, those of the seeds replace them.
 
         Returns
         -------
@@ -102,12 +103,12 @@ class SnookerVecEnv(VecEnv):
         """
         options = None
         if any(self._options):
-            key = "position" if "position" in self._options[0] else "state"
+            key = next((key for key in ("position", "breaker") if key in self._options[0]), "state")
             for k, own in enumerate(self._options):
                 if set(own) != {key}:
-                    wanted = '"state" alone or "position" alone, the same for each table, or nothing for all'
+                    wanted = '"state", "position" or "breaker" alone, the same for each table, or nothing for all'
                     raise refuse(f"keys of options[{k}]", list(own), f"must be {wanted}")
-            options = {f"{key}s": [own[key] for own in self._options]}
+            options = {key if key == "breaker" else f"{key}s": [own[key] for own in self._options]}
         observation, info = self.tables.reset(seed=self._seeds, options=options)
         self.reset_infos = [{key: info[key][k] for key in self.info_keys} for k in range(self.num_envs)]
         self._reset_seeds()

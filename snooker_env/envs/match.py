@@ -1,4 +1,4 @@
-"""How do two agents play a frame against each other? PettingZoo's AEC interface around one table of ``tasks.frame``."""
+"""How do two agents play a frame or match against each other? PettingZoo's AEC interface around one table of ``tasks.frame``."""
 
 import copy
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ PLAYERS = ("player_0", "player_1")
 
 
 class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
-    """A frame of snooker between two players, one stroke a step.
+    """A frame of snooker between two players, one stroke a step; with ``task="match"`` the best of ``frames`` frames.
 
     ## Turns
     ``agent_selection`` is the player whose turn it is: the same player as long as he scores, the other one after a miss or a foul.
@@ -47,28 +47,29 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
       the offender. In between, or without a miss, the player plays himself, with the rest of this same action.
     * ``placement=False`` and ``decision=False`` leave these components out: the cue ball is then played from where it was put, and the
       player always plays after a foul.
+    * ``nominate=True`` adds the nomination before the decision; ``concede``, ``claim`` and ``lot`` add a declaration at the end: see
+      ``SnookerEnv``. Without them the colour after a red, and the free ball, is the one first struck, and nobody concedes or claims.
 
-    The colour after a red, and the free ball, is the one first struck. Nobody concedes or claims the frame.
-
-    ``action="discrete"``: ``Discrete(540)`` as in ``Snooker-v0``, without place and decision. The available choices of the player whose
+    ``action="discrete"``: ``Discrete(540)`` or longer as in ``Snooker-v0``, without place and decision.
+    The available choices of the player whose
     turn it is are ``action_mask(agent)`` and, as in PettingZoo's own games, ``infos[agent]["action_mask"]``.
 
     ## Observation space
-    That of ``Snooker-v0`` with ``task="frame"``, from each player's point of view: his own score first, and whether it is his turn.
+    That of ``Snooker-v0`` with the same task, from each player's point of view: his own score first, and whether it is his turn.
 
     ## Rewards
     ``"points"`` (default): the points that the step added to the player's score minus those added to the other's; both rewards sum to zero.
-    ``"win"``: +1 and -1 when the frame ends, else 0.
+    ``"win"``: +1 and -1 when the frame or match ends, else 0. ``"frames"``, of a match: +1 and -1 when a frame ends.
 
     ## Start and end
-    The seed determines who breaks off. Both players terminate when the frame ends by the rules. Both are truncated when
+    The seed determines who breaks off, or ``reset(options={"breaker": 0 or 1})``. In a match the players break in turn, and the next rack
+    follows in the step that ends a frame. Both players terminate when the frame or match ends by the rules. Both are truncated when
     they have played ``max_strokes`` strokes together (default 1000, None for never): the referee stops the frame, without a winner. No ball
     leaves the table, because the physics is planar.
 
     ## Infos
-    The same keys for both players: ``points``, ``penalty`` and ``fouls`` of the last stroke (``fouls``: bits of
-    ``snooker_env.game.ruling.Foul``), ``score``, ``opponent_score``, ``strokes`` (of both so far), ``break``, ``choice`` (a decision is
-    open), ``free_ball``, ``winner`` (-1, 0 or 1).
+    The keys of ``SnookerEnv``, for both players: ``points`` to ``events`` are of the last stroke, whoever played it, ``opponent_strokes``
+    is 1 for the one who did not, scores and ``needs_snookers`` are as the player sees them, ``winner`` is -1, 0 or 1 for both.
 
     ## States
     ``get_state`` and ``set_state`` save and restore everything as JSON types, the random stream included: playing on from a state
@@ -82,7 +83,7 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
     Parameters
     ----------
     options : Options, optional
-        The options, with ``task="frame"`` and no opponent. Default None: they are made from the keywords.
+        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the keywords.
     render_mode : {"human", "rgb_array", "ansi"}, optional
         How ``render`` shows the table; default None: not at all.
     render_size : (int, int), optional
@@ -223,7 +224,7 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
         Returns
         -------
         numpy.ndarray
-            int8 (540,). 1 for each available choice; all 0 unless it is the player's turn.
+            int8 (n,), n the number of choices. 1 for each available choice; all 0 unless it is the player's turn.
 
         Raises
         ------

@@ -203,7 +203,7 @@ class Plan:
     @property
     def in_hand(self) -> bool:
         """Whether the cue ball is in hand at the start, and may be placed in the D."""
-        return self.name == "break_off"
+        return self.name.startswith("break_off")
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
         return plan_of, (self.name, self.unfit)
@@ -215,6 +215,7 @@ _NAMES = {
     "colours": (COLOURS, 0),
     "snookered": (SNOOKERED, SNOOKERED_REDS),
 }
+_COUNTED = {"random": RANDOM, "break_off": BREAK_OFF}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = ("opened", "held_out", *_NAMES)
 """Names of the layouts without a number: "opened", "held_out", "break_off", "line_up", "colours" and "snookered"."""
@@ -226,7 +227,7 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     Parameters
     ----------
     name : str
-        One of ``LAYOUTS``, ``"random:N"`` with N reds from 0 to 15, or ``"pots:D"`` with D one of ``POT_WINDOWS``.
+        One of ``LAYOUTS``, ``"random:N"`` or ``"break_off:N"`` with N reds from 0 to 15, or ``"pots:D"`` with D one of ``POT_WINDOWS``.
     unfit : tuple of int
         Indices of tables of the bank that are not to be dealt, in rising order.
 
@@ -254,13 +255,13 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
         code = (OPENED, N_REDS, part.start, part.stop)
     elif isinstance(name, str) and name in _NAMES:
         code = (*_NAMES[name], 0, 0)
-    elif head == "random" and which in _COUNTS:
-        code = (RANDOM, int(which), 0, 0)
+    elif head in _COUNTED and which in _COUNTS:
+        code = (_COUNTED[head], int(which), 0, 0)
     elif head == "pots" and which in POT_WINDOWS:
         code = (POT, 1, *POT_WINDOWS[which])
     if code is None:
         known = ", ".join(map(repr, LAYOUTS))
-        allowed = f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard" or "random:N" with N from 0 to {N_REDS}'
+        allowed = f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard", "random:N" or "break_off:N" with N from 0 to {N_REDS}'
         raise refuse("layout", name, allowed)
     return Plan(name, np.array(code, np.float64), tables, unfit if len(tables) else ())
 

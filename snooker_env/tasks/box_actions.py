@@ -11,7 +11,7 @@ from .._jit import entry, kernel
 from .._types import Action, Flags, Floats, Vectors
 from ..game.balls import N_BALLS
 from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, find_pots
-from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
+from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
 from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_TARGET
@@ -38,6 +38,13 @@ def place_of(a, options):
     at = 5 if options[A_ELEVATION] else 4
     x, back = a[at], 0.5 * (a[at + 1] + 1.0)
     return D_RADIUS * x, BAULK_Y - D_RADIUS * sqrt(max(0.0, 1.0 - x * x)) * back
+
+
+@kernel
+def place_anywhere_of(a, options):
+    """The place anywhere on the table (x, y) [m] that they mean where the cue ball may stand anywhere: shares of half its width, length."""
+    at = 5 if options[A_ELEVATION] else 4
+    return HALF_WIDTH * a[at], HALF_LENGTH * a[at + 1]
 
 
 @kernel

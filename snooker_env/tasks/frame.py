@@ -80,11 +80,11 @@ class Frames(Tables):
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
         self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
-        self._limits = np.array([rules.max_strokes, rules.frames // 2 + 1, 0])
+        self._limits = np.array([rules.max_strokes, rules.frames // 2 + 1, rules.rule_set.clock])
         self._kind = MATCH_REWARDS.index(rules.reward)
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
-            write_frame(Frame.start(miss=rules.miss), 0, self.game[0], self.saved, 0)
+            write_frame(Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.saved, 0)
             self.game[:] = self.game[0]
         self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
 
@@ -98,7 +98,7 @@ class Frames(Tables):
 
     def frame(self, k: int) -> Frame:
         """The ``game.frame.Frame`` on table k."""
-        return frame_of(self.game[k], self.rules.miss, self.saved, k)
+        return frame_of(self.game[k], self.rules.miss, self.saved, k, self.rules.game)
 
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k: the balls on and, with a free ball, every colour."""
@@ -132,13 +132,17 @@ class Frames(Tables):
         if said.nominate or said.declares or self.game[which, PHASE].any():
             which = which[self.decide(which, actions)]
         self.address(which, actions, buffers)
+        if self.rules.rule_set.clock:
+            b, code = buffers, self.rules.rule_set.code
+            frame_kernels.hold_late(which, self.game, code, self.rules.time_to_play, b.v, b.w, b.shots)
         return which
 
     def decide(self, which: Ints, actions: Floats) -> Bools:
         """What the strikers of the tables ``which`` say before their strokes; returns which of them play one."""
         plays = np.empty(len(which), np.bool_)
         frame_kernels.decide(
-            which, actions, self.packed[0], self.positions, self.on_table, self.game, self.saved, self.nominated, plays
+            which, actions, self.packed[0], self.rules.rule_set.code, self.positions, self.on_table, self.game, self.saved, self.nominated,
+            plays,
         )  # fmt: skip
         return plays
 
@@ -161,8 +165,8 @@ class Frames(Tables):
     def _conclude(self, which, b, out, own, alone):
         frame_kernels.conclude(
             which, self.positions, self.on_table, self.game, self.streams, self.nominated, b.r, b.potted, b.status, b.duration,
-            b.event_time, b.event_what, b.n_events, b.shots, b.seen, self._jaws, self.packed[0], self.rules.misses, own,
-            alone, self._played if own else self._replies, out.reals, out.counts,
+            b.event_time, b.event_what, b.n_events, b.shots, b.seen, self._jaws, self.packed[0], self.rules.rule_set.code,
+            self.rules.time_to_play, self.rules.misses, own, alone, self._played if own else self._replies, out.reals, out.counts,
         )  # fmt: skip
 
     def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:
@@ -353,7 +357,7 @@ class Frames(Tables):
         ball_on, in_hand, points = game[[BALL_ON, IN_HAND, POINTS]].tolist()
         frame = Frame(
             break_points=points, on_table=mask_of_present(on_table) & ~CUE_BIT, ball_on=BallOn(ball_on), in_hand=bool(in_hand),
-            miss=self.rules.miss,
+            miss=self.rules.miss, rules=self.rules.game,
         )  # fmt: skip
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)

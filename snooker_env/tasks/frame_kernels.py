@@ -5,7 +5,7 @@
 
 from .._jit import entry, kernel
 from ..game.apply_ruling import settle
-from ..game.balls import CUE, N_BALLS, SPOTS, bits
+from ..game.balls import BLACK, CUE, N_BALLS, SPOTS, bits
 from ..game.frame_columns import (
     ANYWHERE,
     BALL_ON,
@@ -25,6 +25,7 @@ from ..game.frame_columns import (
     OVER,
     PAID,
     PHASE,
+    PLACE_ANYWHERE,
     PLAY,
     PLAY_AGAIN,
     POINTS,
@@ -44,13 +45,16 @@ from ..game.frame_columns import (
     claim,
     concede,
     draw,
+    is_late,
     lead_of,
+    may_place_anywhere,
+    may_replace,
     strikeable,
 )  # fmt: skip
 from ..game.paths import clear_path, full_ball_path
 from ..game.philox import pair
-from ..game.rule_sets import SNOOKER
-from ..game.ruling import AUTO
+from ..game.rule_sets import SHOOT_OUT, SIX_RED
+from ..game.ruling import AUTO, FLAG
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import Status
 from .declarations import (
@@ -67,7 +71,24 @@ from .declarations import (
 )
 from .observations import FRAME_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, earned, frame_reward_of
-from .stroke import CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, TOUCHING, place, see, write_ruling
+from .stroke import (
+    CLEAR_PATH,
+    DOWN,
+    FIRST,
+    FULL_PATH,
+    MOVED,
+    TOUCHING,
+    VX,
+    VY,
+    WX,
+    WY,
+    WZ,
+    place,
+    place_anywhere,
+    reached_cushion,
+    see,
+    write_ruling,
+)  # fmt: skip
 from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
@@ -82,23 +103,26 @@ _OK = int(Status.OK)
 
 
 @kernel
-def _choose(k, wish, row, positions, on_table, saved):
+def _choose(k, wish, rules, row, positions, on_table, saved):
     """The decision ``wish`` after a foul; whether a stroke follows."""
-    what = PLAY_AGAIN if wish < -1.0 / 3.0 else REPLACE if wish > 1.0 / 3.0 and row[MISS_CALLED] else PLAY
+    what = PLAY_AGAIN if wish < -1.0 / 3.0 else PLAY
+    if wish > 1.0 / 3.0:
+        what = REPLACE if may_replace(row, rules) else PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
     choose(row, what)
     if what == REPLACE:
         for i in range(N_BALLS):
             positions[k, i, 0], positions[k, i, 1] = saved.positions[k, i, 0], saved.positions[k, i, 1]
             on_table[k, i] = saved.on_table[k, i]
-    return what == PLAY
+    return what == PLAY or what == PLACE_ANYWHERE
 
 
 @entry(what="the decisions of frames", seconds=2)
-def decide(which, actions, options, positions, on_table, game, saved, nominated, plays):
+def decide(which, actions, options, rules, positions, on_table, game, saved, nominated, plays):
     """What the strikers of the tables ``which`` say before a stroke: declarations, decisions after a foul, nominations.
 
-    ``options``: packed, of the action space. A decision below -1/3: the offender plays again; above 1/3: from the position before, if a
-    miss was called. ``plays[j]``: whether a stroke follows.
+    ``options``: packed, of the action space; ``rules``: the code of the rule set. A decision below -1/3: the offender plays again; above
+    1/3: from the position before, if a miss was called, or, after the last one that may be, the striker from anywhere on the table.
+    ``plays[j]``: whether a stroke follows.
     """
     for j in range(which.shape[0]):
         k = which[j]
@@ -113,7 +137,7 @@ def decide(which, actions, options, positions, on_table, game, saved, nominated,
             draw(row, 1 - row[STRIKER] if said == OTHER_BEGINS else row[STRIKER])
         elif row[PHASE] == CHOICE:
             wish = a[int(options[A_DECISION])] if options[A_DECISION] >= 0 else 0.0
-            plays[j] = _choose(k, wish, row, positions, on_table, saved)
+            plays[j] = _choose(k, wish, rules, row, positions, on_table, saved)
         if plays[j] and options[A_NOMINATE] >= 0:
             nominated[k] = nomination_of(a, options, row)
 
@@ -143,12 +167,30 @@ def _hand_back(row):
         row[STRIKER] = AGENT  # ``after_stroke`` has ended the break already
 
 
+@kernel
+def _leave_the_black(positions, on_table):
+    """Before a re-spotted black: nothing else is on the table, also where the time was up with more of the balls on it."""
+    for i in range(1, N_BALLS):
+        on_table[i] = i == BLACK
+    positions[BLACK, 0], positions[BLACK, 1] = SPOTS[BLACK, 0], SPOTS[BLACK, 1]
+
+
+@entry
+def hold_late(which, game, rules, time_to_play, v, w, shots):
+    """Shots of the tables ``which`` that would not be begun within the shot clock are not played: the cue ball is not struck."""
+    for j in range(which.shape[0]):
+        if is_late(game[which[j]], rules, time_to_play):
+            v[j, CUE, 0] = v[j, CUE, 1] = w[j, CUE, 0] = w[j, CUE, 1] = w[j, CUE, 2] = 0.0
+            shots[j, VX] = shots[j, VY] = shots[j, WX] = shots[j, WY] = shots[j, WZ] = 0.0
+
+
 @entry(what="the referee of frames", seconds=6)
 def conclude(which, positions, on_table, game, streams, nominated, r, potted, status, duration, event_time, event_what, n_events, shots,
-              seen, jaws, options, miss, own, alone, played, reals, counts):  # fmt: skip
+              seen, jaws, options, rules, time_to_play, miss, own, alone, played, reals, counts):  # fmt: skip
     """Judge the shots that came to rest and update tables and frames. ``own``: infos report the strokes; ``played`` counts them.
 
     ``nominated`` (n,): the colour that each striker has nominated, 0 for none, or AUTO: the one first struck. It is AUTO afterwards.
+    ``rules``: the code of the rule set; ``time_to_play`` [ms]: of each stroke, in a game with a clock.
     """
     for j in range(which.shape[0]):
         if status[j] != _OK:
@@ -158,22 +200,37 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
         see(j, event_time, event_what, n_events, potted, p, on, shots, seen)
         for i in range(N_BALLS):
             p[i, 0], p[i, 1] = r[j, i, 0], r[j, i, 1]
-        ball_on = row[BALL_ON]
+        ball_on, flags = row[BALL_ON], 0
+        if rules == SIX_RED:
+            flags = FLAG.SIX_RED
+        elif rules == SHOOT_OUT:
+            flags = FLAG.SHOOT_OUT
+            if is_late(row, rules, time_to_play):
+                flags |= FLAG.LATE
+            if not reached_cushion(event_what[j], n_events[j]):
+                flags |= FLAG.NO_CUSHION
         result = settle(
             p, on, ball_on, row[FREE_BALL], lead_of(row, row[STRIKER]), seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN],
-            0, nominated[k], 0, jaws, BALL_RADIUS,
+            0, nominated[k], flags, jaws, BALL_RADIUS,
         )  # fmt: skip
         nominated[k] = AUTO
         write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result, seen)
-        after_stroke(row, result, SNOOKER, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], True, miss, 0, 0)
+        lasted = int(1000.0 * duration[j] + 0.5)
+        after_stroke(row, result, rules, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], True, miss, time_to_play, lasted)
         row[STROKES] += 1
         if row[PHASE] == LOT:
+            _leave_the_black(p, on)
             u, _ = pair(streams[k])
             row[STRIKER] = int(2.0 * u)  # the winner of the lot
             if alone or not options[A_LOT]:
                 draw(row, row[STRIKER])  # who begins
         if row[IN_HAND] and not row[OVER]:
-            place(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
+            if not row[ANYWHERE]:
+                place(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
+            elif seen[j, DOWN] & 1:
+                place_anywhere(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
+            else:  # where it came to rest
+                place_anywhere(p, on, p[CUE, 0], p[CUE, 1])
         played[k] += 1
         if own:
             write_stroke_info(j, k, result, ball_on, seen, duration, n_events, reals, counts)

@@ -10,10 +10,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from .._check import choice, integer, refuse, refuse_what, truth
+from .._check import choice, integer, number, refuse, refuse_what, truth
 from .._types import Fidelity, Floats, MissRule, ObservationKind, Solver
 from ..game.frame import MISS_RULES
 from ..game.layouts import Plan
+from ..game.rule_sets import RULES, RuleSet, RulesName, rule_set
 from ..geometry import BALL_RADIUS
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
@@ -27,7 +28,9 @@ from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
 from .table_fit import fitted, table_of
 
 TASKS = ("visit", "frame", "match")
-GAMES = ("snooker",)
+TIME_TO_PLAY = 9.0
+"""Default time [s] from the rest of the balls to the next stroke, in a game with a clock. With the strokes' own duration some 14 s a
+stroke, as in the Shoot Out of professionals."""
 ACTIONS = ("box", "discrete")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 """What layout="default" means in each task."""
@@ -66,6 +69,15 @@ class Rules:
     """In a visit: whether it ends after its first stroke."""
     frames: int = 0
     """In a match: of how many frames at most. 0 for a single frame, which is no match."""
+    game: RulesName = "snooker"
+    """In a frame: the rule set."""
+    time_to_play: int = 0
+    """In a frame with a clock: the time from the rest of the balls to the next stroke [ms]."""
+
+    @property
+    def rule_set(self) -> RuleSet:
+        """The ``RuleSet`` of the game."""
+        return rule_set(self.game)
 
     @property
     def misses(self) -> bool:
@@ -126,8 +138,10 @@ class Options:
         In a frame: whether the striker's action may concede the frame, or claim it where the rules allow it. Default False.
     lot : bool, optional
         In a frame: whether the winner of the lot for a re-spotted black may let the other player begin. Default False: he begins.
-    game : {"snooker"}, optional
-        In a frame: the rules of the game. Default "snooker".
+    game : {"snooker", "six_red", "shoot_out"}, optional
+        In a frame: the rules of the game (``snooker_env.game.rule_sets``). Default "snooker".
+    time_to_play : float, optional
+        In a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s]; default 9.
     frames : int, optional
         In a match: the most frames that it can have, an odd number; default 7.
     one_stroke : bool, optional
@@ -175,7 +189,8 @@ class Options:
     concede: bool = False
     claim: bool = False
     lot: bool = False
-    game: Literal["snooker"] = "snooker"
+    game: RulesName = "snooker"
+    time_to_play: float = TIME_TO_PLAY
     frames: int = FRAMES
     rules: Rules = field(init=False, repr=False, compare=False)
 
@@ -188,7 +203,10 @@ class Options:
                 object.__setattr__(self, name, read)
         actions = self._actions(physics)
         default = isinstance(self.layout, str) and self.layout == "default"
-        plan = fitted(LAYOUTS[self.task] if default else self.layout, table)
+        layout = LAYOUTS[self.task] if default else self.layout
+        if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
+            layout = f"break_off:{rule_set(self.game).reds}"
+        plan = fitted(layout, table)
         choice("observation", self.observation, OBSERVATIONS)
         truth("trust", self.trust)
         choice("reward", self.reward, {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}[self.task])
@@ -197,7 +215,11 @@ class Options:
         frames = self._frames()
         if frame:
             choice("miss", self.miss, MISS_RULES[:2])
-            choice("game", self.game, GAMES)
+            choice("game", self.game, RULES)
+            if rule_set(self.game).anywhere and self.miss != "off":
+                raise refuse("miss", self.miss, f'must be "off" with game="{self.game}", in which no miss is called')
+            if not rule_set(self.game).clock and self.time_to_play != TIME_TO_PLAY:
+                raise refuse("time_to_play", self.time_to_play, f'must be {TIME_TO_PLAY} with game="{self.game}", which has no clock')
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             replaced = self.miss != "off"
             opponent = opponent_of(self.opponent, self.observation, actions, self.trust, shared=self.shared(), replaced=replaced)
@@ -206,7 +228,8 @@ class Options:
         else:
             self._check_visit()
         read = Rules(
-            actions, noise, physics, table, fidelity, plan, self.reward, self.observation, self.miss, limit, opponent, one_stroke, frames
+            actions, noise, physics, table, fidelity, plan, self.reward, self.observation, self.miss, limit, opponent, one_stroke, frames,
+            self.game, round(1000 * number("time_to_play", self.time_to_play, 0.001, 3600)),
         )  # fmt: skip
         object.__setattr__(self, "rules", read)
 
@@ -276,7 +299,7 @@ class Options:
         return replace(self, **changes)
 
 
-FRAME_ONLY = ("opponent", "trust", "miss", "decision", "max_strokes", "nominate", "concede", "claim", "lot", "game")
+FRAME_ONLY = ("opponent", "trust", "miss", "decision", "max_strokes", "nominate", "concede", "claim", "lot", "game", "time_to_play")
 """Options that have a meaning in the frame task only."""
 NAMES = tuple(f.name for f in fields(Options) if f.init)
 AGENTS = (

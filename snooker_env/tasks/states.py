@@ -167,12 +167,14 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
         integer(f"state.frame.scores[{k}]", points, 0, MOST)
     if frame.miss != miss:
         raise refuse("state.frame.miss", frame.miss, f"must be {miss!r}, as this environment plays")
+    if frame.rules != rules.game:
+        raise refuse("state.frame.rules", frame.rules, f"must be {rules.game!r}, as this environment plays")
     if frame.phase == "lot" and not rules.actions.lot:
         raise refuse("state.frame.phase", frame.phase, "must not be between two steps: the lot is drawn in the step of the stroke before")
     if frame.phase != "over":
         if mask_of_present(on_table) != frame.on_table | CUE_BIT:
             raise refuse("state.on_table", on_table.tolist(), "must hold the cue ball and the balls of state.frame.on_table, no others")
-        check_in_hand("state.frame.in_hand", frame.in_hand, "state.positions", positions)
+        check_in_hand("state.frame.in_hand", frame.in_hand and not frame.anywhere, "state.positions", positions)
     if frame.saved is not None:
         frame = replace(frame, saved=_checked_saved(frame, table, R))
     stream = check_stream(state["stream"])
@@ -207,7 +209,7 @@ def _checked_saved(frame, table, R):
     positions, on_table = checked_layout((f"{field}[0]", f"{field}[1]"), *saved.layout, table, R)
     if mask_of_present(on_table) != saved.on_table | CUE_BIT:
         raise refuse(f"{field}[1]", on_table.tolist(), "must hold the cue ball and the balls of state.frame.saved.on_table, no others")
-    check_in_hand("state.frame.saved.in_hand", saved.in_hand, f"{field}[0]", positions)
+    check_in_hand("state.frame.saved.in_hand", saved.in_hand and not saved.anywhere, f"{field}[0]", positions)
     return replace(saved, layout=layout_of(positions, on_table))
 
 

@@ -14,8 +14,8 @@ from .._jit import entry, kernel
 from .._shots import count
 from .._types import Bools, Floats, Ints
 from ..game.balls import CUE, N_BALLS, REFEREE_TOUCH, TOUCH, bits
-from ..game.frame_columns import IN_HAND
-from ..game.in_hand import nearest_place
+from ..game.frame_columns import ANYWHERE, IN_HAND
+from ..game.in_hand import nearest_anywhere, nearest_place
 from ..game.pots import POT_COLUMNS
 from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS
@@ -24,7 +24,7 @@ from ..physics.engine import EventKind, Status
 from ..physics.impact.polynomial import WORK
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
-from .box_actions import place_of, shot_of, tip_on_disc
+from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, playable
 from .noise import executed
 
@@ -109,6 +109,25 @@ def place(positions, on_table, x, y):
 
 
 @kernel
+def place_anywhere(positions, on_table, x, y):
+    """As ``place``, on the whole bed."""
+    on_table[CUE] = False
+    x, y, free = nearest_anywhere(positions, on_table, x, y, BALL_RADIUS)
+    on_table[CUE] = True
+    if free:
+        positions[CUE, 0], positions[CUE, 1] = x, y
+
+
+@kernel
+def reached_cushion(event_what, n_events):
+    """From the log of a shot: whether any ball met a nose or a jaw."""
+    reached = False
+    for e in range(n_events):
+        reached = reached or event_what[e, 0] == _CUSHION or event_what[e, 0] == _JAW
+    return reached
+
+
+@kernel
 def strike(intended, positions, on_table, stream, options, noise, j, r, v, w, here, shots):
     """Shot j: the table as it lies, and the cue ball struck as ``intended`` = (speed, side, top, aim, elevation), errors included."""
     speed, side, top, aim, elevation = executed(*intended, noise, stream)
@@ -136,8 +155,12 @@ def address(which, actions, positions, on_table, game, nominated, streams, optio
         k = which[j]
         a, p, on = actions[k], positions[k], on_table[k]
         if game[k, IN_HAND] and options[A_PLACEMENT]:
-            x, y = place_of(a, options)
-            place(p, on, x, y)
+            if game.shape[1] > ANYWHERE and game[k, ANYWHERE]:
+                x, y = place_anywhere_of(a, options)
+                place_anywhere(p, on, x, y)
+            else:
+                x, y = place_of(a, options)
+                place(p, on, x, y)
         mask = playable(game[k], bits(on), nominated[k] if nominated.shape[0] else AUTO)
         if options[A_DISCRETE]:
             intended = discrete_actions.chosen(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from snooker_env.game.apply_ruling import settle_table
-from snooker_env.game.balls import COLOURS_MASK, CUE, SPOTS, balls_on, mask_of_present
+from snooker_env.game.balls import BLACK, COLOURS_MASK, CUE, SPOTS, balls_on, mask_of_present
 from snooker_env.game.frame_columns import SCORE_0, STRIKER
 from snooker_env.game.in_hand import place_cue
 from snooker_env.game.paths import paths
@@ -30,18 +30,24 @@ class Specification:
         self.table = tables.rules.table
         self.jaws = self.table.jaws[:, :3]
         self.miss = tables.rules.misses
+        self.time_to_play = tables.rules.time_to_play
+
+    def times(self, duration):
+        """The times of a stroke [ms]."""
+        return {"time_to_play": self.time_to_play, "duration": int(1000 * duration + 0.5)}
 
     def decide(self, action):
         """What the action's last number says after a foul; is there a stroke?"""
         if self.frame.phase != "choice":
             return True
-        what = "play_again" if action[-1] < -1 / 3 else "replace" if action[-1] > 1 / 3 and self.frame.miss_called else "play"
+        last = self.frame.choices[-1]
+        what = "play_again" if action[-1] < -1 / 3 else last if action[-1] > 1 / 3 and last in ("replace", "anywhere") else "play"
         saved, self.frame = self.frame.saved, self.frame.choose(what)
         if what == "replace":
             self.positions, self.on_table = (np.array(part) for part in saved.layout)
-        return what == "play"
+        return what in ("play", "anywhere")
 
-    def judge(self, start, rest, seen, first_at_the_lot):
+    def judge(self, start, rest, seen, first_at_the_lot, events, duration):
         """The stroke that left ``start`` (positions (22, 2)) and ended at ``rest``, as the referee saw it."""
         before, self.positions = self.frame, start
         mask = mask_of_present(self.on_table) & ~1
@@ -50,15 +56,19 @@ class Specification:
         clear = paths(self.positions, self.on_table, on, noses=table.noses, jaws=table.jaws) if self.miss else (False, False)
         layout = layout_of(self.positions, self.on_table) if self.miss else None
         first, touching, moved, potted = (int(seen[c]) for c in (FIRST, TOUCHING, MOVED, DOWN))
-        stroke = Stroke(first=first, touching=touching, moved=moved, potted=potted)
+        cushion, late = bool(np.isin(events, (1, 2)).any()), 0 < before.shot_clock < self.time_to_play
+        stroke = Stroke(first=first, touching=touching, moved=moved, potted=potted, no_cushion=not cushion, late=late)
+        assert not late or (duration == 0.0 and not len(events))
         verdict, self.positions, self.on_table = settle_table(rest, self.on_table, before.situation, stroke, jaws=self.jaws)
         stroke = replace(stroke, snookered=verdict.free_ball, behind_free_ball=bool(verdict.fouls & verdict.fouls.BEHIND_FREE_BALL))
-        self.frame, verdict = before.play(stroke, clear_path=clear[0], full_ball_path=clear[1], layout=layout)
+        self.frame, verdict = before.play(stroke, clear_path=clear[0], full_ball_path=clear[1], layout=layout, **self.times(duration))
         if self.frame.phase == "lot":
+            self.on_table[1:], self.positions[BLACK] = np.arange(1, 22) == BLACK, SPOTS[BLACK]
             self.frame = self.frame.draw(first_at_the_lot)
         if self.frame.in_hand and self.frame.phase != "over":
             self.on_table[CUE] = False
-            self.positions[CUE] = place_cue(self.positions, self.on_table, *SPOTS[CUE])
+            place = rest[CUE] if self.frame.anywhere and not potted & 1 else SPOTS[CUE]
+            self.positions[CUE] = place_cue(self.positions, self.on_table, *place, anywhere=self.frame.anywhere)
             self.on_table[CUE] = True
         return verdict
 
@@ -75,13 +85,23 @@ class Recording(Crew):
     def saw(self, which, buffers, own):
         """Play no more than there is room for: no shot of these needs a longer log."""
         assert not buffers.enlarged and own
-        self.shots = {k: (j, buffers.r[j].copy(), buffers.seen[j].copy()) for j, k in enumerate(which.tolist())}
+        self.shots = {
+            k: (buffers.r[j].copy(), buffers.seen[j].copy(), buffers.event_what[j, : buffers.n_events[j], 0].copy(), buffers.duration[j])
+            for j, k in enumerate(which.tolist())
+        }
 
 
-@pytest.mark.parametrize("miss", ["off", "clear_path"])
-@pytest.mark.parametrize("layout", ["break_off", "random:1", "snookered", "colours"])
-def test_every_stroke_is_judged_as_by_the_specification(miss, layout):
-    options = Options(task="frame", layout=layout, miss=miss, aim="target", decision=True, placement=True, max_strokes=None)
+SNOOKER = [("snooker", miss, layout) for miss in ("off", "clear_path") for layout in ("break_off", "random:1", "snookered", "colours")]
+SIX_RED = [("six_red", miss, layout) for miss, layout in [("off", "break_off"), ("clear_path", "break_off"), ("clear_path", "random:3")]]
+SHOOT_OUT = [("shoot_out", "off", layout) for layout in ("break_off", "colours")]
+
+
+@pytest.mark.parametrize(("game", "miss", "layout"), SNOOKER + SIX_RED + SHOOT_OUT)
+def test_every_stroke_is_judged_as_by_the_specification(game, miss, layout):
+    clock = {"time_to_play": 12.0} if game == "shoot_out" else {}  # too long in the second half
+    options = Options(
+        task="frame", layout=layout, miss=miss, aim="target", decision=True, placement=True, max_strokes=None, game=game, **clock
+    )
     tables, rng, met = Frames(options.rules, N), np.random.default_rng(2), Counter()
     for k in range(N):
         tables.seed(k, rng)
@@ -111,16 +131,20 @@ def test_every_stroke_is_judged_as_by_the_specification(miss, layout):
                 continue
             assert spec.decide(actions[k]) == played[k]
             if played[k]:
-                _, rest, seen = crew.shots[k]
-                verdict = spec.judge(starts[k], rest, seen, int(tables.game[k, STRIKER]))
+                rest, seen, events, duration = crew.shots[k]
+                verdict = spec.judge(starts[k], rest, seen, int(tables.game[k, STRIKER]), events, duration)
                 assert (out.reals[k, 0], out.counts[k, 0], out.counts[k, 2]) == (verdict.points, verdict.penalty, int(verdict.fouls))
                 met[verdict.visit_end.name] += 1
                 met["free ball"] += spec.frame.free_ball
                 met["miss"] += spec.frame.miss_called
                 met["over"] += spec.frame.phase == "over"
                 met["respotted"] += spec.frame.respotted_black
+                met["anywhere"] += spec.frame.anywhere
+                met["late"] += bool(verdict.fouls & verdict.fouls.LATE)
             met["replaced"] += not played[k] and spec.frame.saved is not None
             spec.check(tables)
-    assert met["FOUL"] > 100 and met["MISS"] > 20 and met["CONTINUES"] > 20 and met["free ball"] > 5
+    assert met["FOUL"] > 100 and met["MISS"] > 20 and met["CONTINUES"] > 20 and (met["free ball"] > 5) == (game != "shoot_out")
+    assert (met["anywhere"] > 20) == (met["late"] > 5) == (game == "shoot_out")
     assert (met["miss"] > 5 and met["replaced"] > 2) == (miss == "clear_path")
-    assert met["over"] > 0 or layout in ("break_off", "snookered")
+    assert met["over"] > 0 or (layout in ("break_off", "snookered") and game == "snooker") or game == "six_red"
+    assert (met["over"] >= N / 2) == (game == "shoot_out") or layout == "colours"

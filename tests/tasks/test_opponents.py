@@ -29,8 +29,7 @@ def test_any_callable_may_play_and_sees_the_table_from_its_own_side():
     seen.clear()
     env.step([-0.9, 0, 0, 1.0, 0, 0, 0])
     assert seen and env.observation_space.contains(seen[0])
-    own, other, lead = seen[0][121:124] * 155
-    assert (own, other, lead) == pytest.approx((62, 31, 31), abs=1e-3)  # the stroke before was fair and scored nothing
+    assert seen[0][121:124] == pytest.approx((62 / 209, 31 / 178, 31 / 178), abs=1e-6)  # the stroke before was fair and scored nothing
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,147 @@
+"""Do frames and matches go the same way in ``SnookerEnv``, ``SnookerVectorEnv`` and ``MatchEnv``? Random play, replayed bit for bit."""
+
+import json
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.envs.match import PLAYERS
+from snooker_env.envs.vector import SnookerVectorEnv
+
+pytest.importorskip("pettingzoo")
+
+PLAIN = {"aim": "target", "noise": "club", "placement": True, "decision": True}
+SAID = {"nominate": True, "concede": True, "claim": True, "lot": True}
+KINDS = {
+    "plain": PLAIN | {"task": "frame", "layout": "random:1"},
+    "miss": PLAIN | {"task": "frame", "layout": "random:2", "miss": "clear_path", "reward": "win"},
+    "everything said": PLAIN | SAID | {"task": "frame", "layout": "random:1", "miss": "clear_path"},
+    "a match": PLAIN | SAID | {"task": "match", "frames": 3, "layout": "random:0", "max_strokes": 90},
+    "frames of a match": PLAIN | {"task": "match", "frames": 5, "layout": "colours", "reward": "frames", "miss": "clear_path"},
+    "discrete": SAID | {"task": "match", "frames": 3, "layout": "random:1", "action": "discrete", "noise": "amateur"},
+}
+
+
+class Played:
+    """One random frame or match of two players: the actions of each, and what player 0 was shown whenever it was his turn."""
+
+    def __init__(self, options, seed):
+        env = sn.match_env(**options)
+        env.reset(seed=seed)
+        self.key = _key(env.np_random)
+        self.actions, self.seen = ([], []), []
+        self.total, rng = 0.0, np.random.default_rng(seed)
+        while not any(env.terminations.values()) and not any(env.truncations.values()):
+            player = PLAYERS.index(env.agent_selection)
+            if player == 0:
+                self.seen.append(env.observe(PLAYERS[0]).tobytes())
+            self.actions[player].append(self._action(env, rng))
+            env.step(self.actions[player][-1])
+            self.total += env.rewards[PLAYERS[0]]
+        self.seen.append(env.observe(PLAYERS[0]).tobytes())
+        self.end = _end(env.get_state())
+        self.ended = any(env.terminations.values()), any(env.truncations.values())
+        info = env.infos[PLAYERS[0]]
+        self.info = {name: info[name] for name in info if name in ("score", "opponent_score", "winner", "frames_won", "strokes", "frame")}
+
+    def _action(self, env, rng):
+        if env.options.action == "discrete":
+            mask = env.action_mask(env.agent_selection)
+            if rng.uniform() > 0.02 and env.options.concede:
+                mask[3780] = False
+            return int(rng.choice(np.flatnonzero(mask)))
+        a = rng.uniform(-1, 1, env.action_space(PLAYERS[0]).shape)
+        a[1:4] *= 0.3
+        if env.options.concede and rng.uniform() > 0.02:
+            a[-1] = abs(a[-1])
+        return a
+
+
+def _key(rng):
+    """What identifies the generator of a table: its state after the key of the table's stream was drawn from it."""
+    return json.dumps(rng.bit_generator.state, default=str)
+
+
+def _end(state):
+    """What must agree at the end, in every bit: nobody is paid in the same places."""
+    return json.dumps({key: value for key, value in state.items() if key not in ("unpaid", "due")})
+
+
+class Other:
+    """The opponent who plays again what player 1 played."""
+
+    def __init__(self, played):
+        self.left = {one.key: iter(one.actions[1]) for one in played}
+        self.nothing = 0 if isinstance((played[0].actions[0] + played[0].actions[1])[0], int) else 0.0 * played[0].actions[0][0]
+
+    def __call__(self, observation, rng):
+        return next(self.left[_key(rng)], self.nothing)
+
+
+def check_alike(options, seeds):
+    played = [Played(options, seed) for seed in seeds]
+    for seed, one in zip(seeds, played, strict=True):
+        env = sn.SnookerEnv(**options, opponent=Other([one]))
+        shown, _ = env.reset(seed=seed)
+        seen, total = [shown.tobytes()], 0.0
+        for action in one.actions[0] or [0 * one.actions[1][0]]:  # if the opponent has ended it in his first visit, any action
+            shown, reward, terminated, truncated, info = env.step(action)
+            seen.append(shown.tobytes())
+            total += reward
+        if one.actions[0]:
+            assert seen == one.seen
+        assert (terminated, truncated) == one.ended and total == one.total and _end(env.get_state()) == one.end
+        assert {name: info[name] for name in one.info} == one.info
+    n = len(seeds)
+    tables = SnookerVectorEnv(n, **options, opponent=Other(played), threads=1)
+    tables.reset(seed=list(seeds))
+    totals, over = np.zeros(n), np.zeros(n, bool)
+    for step in range(max(len(one.actions[0]) or 1 for one in played)):
+        actions = [one.actions[0][step] if step < len(one.actions[0]) else 0 * (one.actions[0] or one.actions[1])[0] for one in played]
+        shown, rewards, terminated, truncated, info = tables.step(np.array(actions))
+        totals += np.where(over, 0.0, rewards)
+        for k in np.flatnonzero((terminated | truncated) & ~over).tolist():
+            one, over[k] = played[k], True
+            assert step + 1 == max(1, len(one.actions[0])) and shown[k].tobytes() == one.seen[-1]
+            assert (bool(terminated[k]), bool(truncated[k])) == one.ended and _end(tables.get_state()[k]) == one.end
+            assert {name: info[name][k].item() for name in one.info} == one.info
+    assert over.all() and totals.tolist() == [one.total for one in played]
+    return played
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_random_play_ends_alike_in_all_three(kind):
+    played = check_alike(KINDS[kind], range(6))
+    assert sum(len(one.actions[1]) for one in played) > 20
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_two_hundred_frames_of_random_play_end_alike_in_all_three(kind):
+    check_alike(KINDS[kind], range(100, 136))
+
+
+def test_a_match_goes_on_from_its_state_bit_for_bit():
+    """Saved in the middle of the second frame, as JSON, and played on in another environment."""
+    options = KINDS["everything said"] | {"task": "match", "frames": 5, "layout": "random:0"}
+    env, other = sn.match_env(**options), sn.match_env(**options)
+    env.reset(seed=5)
+    rng, state = np.random.default_rng(1), None
+    for _ in range(3000):
+        if any(env.terminations.values()):
+            break
+        action = rng.uniform(-1, 1, env.action_space("player_0").shape)
+        action[-1] = abs(action[-1])
+        env.step(action)
+        if state is None and env.infos["player_0"]["frame"] == 1 and env.strokes > 3:
+            state = json.loads(json.dumps(env.get_state()))
+            other.reset(options={"state": state})
+        elif state is not None:
+            other.step(action)
+            assert json.dumps(other.get_state()) == json.dumps(env.get_state()) and other.rewards == env.rewards
+            assert other.observe("player_1").tobytes() == env.observe("player_1").tobytes()
+    assert state is not None and sum(state["frames"]) == 1 and max(env.get_state()["frames"]) == 3
+    for change, field in (({"frames": [3, 0]}, "state.frames"), ({"first_break": 2}, "state.first_break"), ({"frames": 1}, "state.frames")):
+        with pytest.raises(ValueError, match=field.replace(".", r"\.")):
+            other.reset(options={"state": state | change})

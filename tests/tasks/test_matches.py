@@ -1,0 +1,140 @@
+"""How does a match go? Frames won, the players in turn at the break, the next rack in the same step, rewards, the end, who breaks."""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
+from tests.refusals import refused
+from tests.tables import frame_env
+
+FRAMES_SEEN = [SIZE + FRAME_ENTRIES.index(name) for name in ("frames_won", "opponent_frames", "frames_needed", "broke")]
+
+
+def whole(seed, **options):
+    """A random match: (rewards, infos, breakers, observations) of its steps."""
+    env = frame_env(**{"task": "match", "layout": "pots:easy", "opponent": "random", "frames": 5} | options)
+    shown, info = env.reset(seed=seed)
+    rng, steps, over = np.random.default_rng(seed), [(0.0, info, env.frame.breaker, shown)], False
+    while not over:
+        shown, reward, terminated, truncated, info = env.step(rng.uniform(-1, 1, env.action_space.shape))
+        steps.append((reward, info, env.frame.breaker, shown))
+        over = terminated or truncated
+    return steps, terminated, env
+
+
+def test_the_players_break_in_turn_and_the_frame_that_decides_ends_it():
+    seen = set()
+    for seed in range(12):
+        steps, terminated, env = whole(seed)
+        last = steps[-1][1]
+        assert terminated and {last["frames_won"], last["opponent_frames"]} >= {3} and last["winner"] == int(last["opponent_frames"] == 3)
+        first = env.get_state()["first_break"]
+        for _, info, breaker, shown in steps:
+            assert breaker == (first + info["frame"]) % 2
+            won, lost = info["frames_won"], info["opponent_frames"]
+            assert shown[FRAMES_SEEN] == pytest.approx([won / (won + 1), lost / (lost + 1), 3 / 4, float(breaker == 0)])
+        assert last["frame"] == last["frames_won"] + last["opponent_frames"] - 1
+        seen.add((last["frames_won"], last["opponent_frames"]))
+    assert len(seen) > 2
+
+
+@pytest.mark.parametrize("reward", ["win", "frames"])
+def test_rewards_add_up(reward):
+    for seed in range(10):
+        steps, _, _ = whole(seed, reward=reward, opponent="ghost_ball", noise="club")
+        total, last = sum(step[0] for step in steps), steps[-1][1]
+        if reward == "frames":
+            assert total == last["frames_won"] - last["opponent_frames"]
+        else:
+            assert total == steps[-1][0] == (1.0 if last["winner"] == 0 else -1.0)
+
+
+def test_points_of_a_match_are_those_of_both_players_over_its_frames():
+    pytest.importorskip("pettingzoo")
+    env = sn.match_env(task="match", frames=3, layout="pots:easy", aim="target")
+    for seed in range(6):
+        env.reset(seed=seed)
+        rng, total, paid = np.random.default_rng(seed), np.zeros(2), np.zeros(2)
+        while not any(env.terminations.values()):
+            player = env.possible_agents.index(env.agent_selection)
+            env.step(rng.uniform(-1, 1, 7))
+            info = env.infos["player_0"]
+            total[player] += info["points"]
+            total[1 - player] += info["penalty"]
+            paid += [env.rewards["player_0"], env.rewards["player_1"]]
+        assert paid.tolist() == [total[0] - total[1], total[1] - total[0]] and env.infos["player_1"]["winner"] == env.frame.winner
+        assert env.infos["player_0"]["frames_won"] == env.infos["player_1"]["opponent_frames"]
+
+
+def test_a_frame_that_is_stopped_truncates_the_match():
+    env = frame_env(task="match", max_strokes=5)
+    env.reset(seed=1)
+    ends = [env.step([-1.0, 0, 0, 0.9, 0, 0, 0])[2:4] for _ in range(5)]
+    assert ends == [(False, False)] * 4 + [(False, True)]
+
+
+@pytest.mark.parametrize(("frames", "allowed"), [(2, "must be odd"), (0, "must be an integer"), (True, "must be"), ("7", "must be")])
+def test_wrong_lengths_are_refused(frames, allowed):
+    refused(lambda: SnookerEnv(task="match", frames=frames), "frames", repr(frames), allowed)
+    refused(lambda: SnookerEnv(task="frame", frames=5), "frames", "5", 'must be 7 with task="frame"')
+    refused(lambda: SnookerEnv(task="frame", reward="frames"), "reward", "'frames'", "must be one of 'points', 'win'")
+
+
+def test_pettingzoo_checks_a_match(capsys):
+    pytest.importorskip("pettingzoo")
+    from pettingzoo.test import api_test, seed_test
+
+    options = {"task": "match", "frames": 3, "layout": "pots:easy", "nominate": True, "concede": True, "aim": "target"}
+    api_test(sn.match_env(**options, action="discrete"), num_cycles=100)
+    seed_test(lambda: sn.match_env(**options), num_cycles=50)
+    assert "Passed API test" in capsys.readouterr().out
+
+
+def test_gymnasium_checks_a_match():
+    from gymnasium.utils.env_checker import check_env
+
+    check_env(SnookerEnv(task="match", layout="pots:easy", opponent="random", nominate=True, lot=True), skip_render_check=True)
+
+
+# Who breaks
+
+
+def test_reset_says_who_breaks_and_the_errors_do_not_depend_on_it():
+    drawn = set()
+    for seed in range(6):
+        ends = {}
+        for breaker in (None, 0, 1):
+            env = frame_env(opponent="random", noise="club")
+            env.reset(seed=seed, options={} if breaker is None else {"breaker": breaker})
+            assert breaker in (None, env.frame.breaker)
+            ends[breaker] = env.get_state()
+        drawn.add(ends[None]["frame"]["breaker"])
+        assert ends[None] == ends[ends[None]["frame"]["breaker"]]
+    assert drawn == {0, 1}
+
+
+def test_reset_says_who_breaks_on_many_tables_and_in_a_match():
+    tables = sn.SnookerVectorEnv(4, task="match", opponent="ghost_ball", threads=1)
+    for given, want in ((1, [1] * 4), ([0, 1, 1, 0], [0, 1, 1, 0]), (np.array([1, 0, 1, 0]), [1, 0, 1, 0])):
+        tables.reset(seed=3, options={"breaker": given})
+        assert [frame.breaker for frame in tables.call("frame")] == want
+    pytest.importorskip("pettingzoo")
+    match = sn.match_env()
+    for breaker in (0, 1):
+        match.reset(seed=1, options={"breaker": breaker})
+        assert match.agent_selection == f"player_{breaker}"
+
+
+@pytest.mark.parametrize(
+    ("options", "breaker", "allowed"),
+    [
+        ({"task": "frame", "opponent": "random"}, 2, "must be an integer"), ({"task": "frame", "opponent": "random"}, "0", "must be"),
+        ({"task": "frame"}, 0, "no opponent"), ({}, 0, "no opponent"), ({"task": "frame", "opponent": "random"}, [0, 1], "1 of them"),
+    ],
+)  # fmt: skip
+def test_who_breaks_is_checked(options, breaker, allowed):
+    env = SnookerEnv(**options)
+    with pytest.raises(ValueError, match=r'options\["breaker"\].*' + allowed):
+        env.reset(seed=1, options={"breaker": breaker})
