@@ -1,9 +1,24 @@
 """How does one compile everything in advance? ``warmup`` calls each kernel of this package once."""
 
+from typing import Any, ClassVar
+
 from ._jit import ENTRIES
 from ._notices import warming_up
 from .impacts import collide_balls, collide_cushion, strike
 from .simulation import simulate
+
+
+class _Still:
+    """A player of visits whose random numbers can be set: for the kernels of such opponents."""
+
+    options: ClassVar[dict[str, Any]] = {}
+
+    def begin(self, seed: int) -> None:
+        """Nothing is drawn."""
+
+    def act(self, tables: Any, observations: Any, going: Any) -> list[list[float]]:
+        """The same stroke on each table."""
+        return [[0.0] * 4] * len(going)
 
 
 def warmup() -> None:
@@ -48,7 +63,8 @@ def warmup() -> None:
         for seed in range(3):  # in one of them the opponent breaks off
             env.reset(seed=seed)
             env.step([0.0] * 7)
-        for opponent, action in ((lambda observation, rng: [0.0] * 4, [0.0] * 4), ("random", 0), ("random", [0.0] * 4)):
+        opponents: list[tuple[Any, Any]] = [(lambda observation, rng: [0.0] * 4, [0.0] * 4), (_Still(), [0.0] * 4)]
+        for opponent, action in (*opponents, ("random", 0), ("random", [0.0] * 4)):
             env = SnookerEnv(task="frame", opponent=opponent, action="discrete" if action == 0 else "box")
             for seed in range(3):
                 env.reset(seed=seed)

@@ -153,7 +153,8 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | miss | "off" | frame only; "clear_path": the rule for a foul and a miss (``snooker_env.game.frame``) |
     | max_strokes | 1000 | frame only; None for no limit |
     | decision, nominate, concede, claim, lot | False | frame only; see Action space |
-    | game | "snooker" | frame only; the rules of the game |
+    | game | "snooker" | frame only; "six_red", "shoot_out": another game (``snooker_env.game.rule_sets``) |
+    | time_to_play | 9.0 | frame of the Shoot Out only; time from the rest of the balls to the next stroke [s] |
     | frames | 7 | match only; odd: the best of so many |
     | one_stroke | False | visit only; True: the visit ends after its first stroke |
     | options | None | an ``Options`` in place of all of the above |

@@ -154,7 +154,7 @@ class Frames(Tables):
         if not len(which):
             return
         if self.rules.misses:
-            table, layout = self.rules.table, (self.positions, self.on_table, self.game, self.saved, self.nominated)
+            table, layout = self.rules.table, (self.positions, self.on_table, self.game, self.saved)
             frame_kernels.remember(which, *layout, table.noses, table.jaws, buffers.seen)
         unfinished = self.run(which, buffers)
         self._conclude(which, buffers, out, own, alone)

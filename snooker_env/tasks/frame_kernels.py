@@ -67,7 +67,6 @@ from .declarations import (
     SAYS_NOTHING,
     declaration_of,
     nomination_of,
-    playable,
 )
 from .observations import FRAME_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, earned, frame_reward_of
@@ -143,14 +142,14 @@ def decide(which, actions, options, rules, positions, on_table, game, saved, nom
 
 
 @entry(what="the paths of the miss rule", seconds=2)
-def remember(which, positions, on_table, game, saved, nominated, noses, jaws, seen):
+def remember(which, positions, on_table, game, saved, noses, jaws, seen):
     """Record what the miss rule needs of the tables ``which`` before their strokes: the position, and which paths are clear.
 
-    ``nominated`` (n,): the colour that each striker has nominated, the only one that he may then strike first, 0 for none, or AUTO.
+    S3 R14(c) speaks of every ball "that is or could be on": after a red of all colours, whichever the striker has nominated.
     """
     for j in range(which.shape[0]):
         k = which[j]
-        on = playable(game[k], bits(on_table[k]) & ~1, nominated[k])
+        on = strikeable(game[k], bits(on_table[k]) & ~1)
         seen[j, CLEAR_PATH] = clear_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
         seen[j, FULL_PATH] = full_ball_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
         for i in range(N_BALLS):

@@ -222,7 +222,7 @@ class Options:
                 raise refuse("time_to_play", self.time_to_play, f'must be {TIME_TO_PLAY} with game="{self.game}", which has no clock')
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             replaced = self.miss != "off"
-            opponent = opponent_of(self.opponent, self.observation, actions, self.trust, shared=self.shared(), replaced=replaced)
+            opponent = opponent_of(self.opponent, self.observation, actions, self.trust, shared=self._shared(), replaced=replaced)
             if one_stroke:
                 raise refuse("one_stroke", True, f'must be False with task="{self.task}"; it belongs to task="visit"')
         else:
@@ -243,7 +243,7 @@ class Options:
             raise refuse("frames", self.frames, "must be odd, so that one player wins")
         return int(self.frames)
 
-    def shared(self) -> dict[str, Any]:
+    def _shared(self) -> dict[str, Any]:
         """The options that both players share: all but those that say how the agent sees, acts and is paid, and against whom."""
         return {name: getattr(self, name) for name in NAMES if name not in AGENTS}
 

@@ -8,6 +8,7 @@
 ``tiny_steps``       a whole shot on an unbounded cloth by small fixed steps of the forces.
 ``pocket_3d``        one ball in a pocket in three dimensions, by small fixed steps of the forces.
 ``motions``          what the oracles' own tests share.
+``frame_oracle``     whole frames judged by the rules of snooker, stroke by stroke; a command. Its parts begin with the same name.
 
 The oracles are derived from rigid-body mechanics alone and share no code, formula or constant with ``snooker_env.physics``.
 

@@ -100,10 +100,10 @@ def test_placement_puts_the_ball_in_hand_where_it_says(a, b, elevation):
     placed = env.last_shot.at(0.0)[0][CUE]
     depth = D_RADIUS * math.sqrt(1 - a * a) * (b + 1) / 2
     want = (D_RADIUS * a, BAULK_Y - depth)
-    if np.hypot(*(SPOTS[16:19] - want).T).min() > 2 * R + 1e-5:
+    if np.hypot(*(SPOTS[16:19] - want).T).min() > 2 * R + 2e-4:
         assert placed == pytest.approx(want, abs=1e-12)
     else:  # the brown's spot is taken: the nearest place where it is clear of it
-        assert 2 * R < np.hypot(*(placed - SPOTS[18])) < 2 * R + 1e-5
+        assert 2 * R < np.hypot(*(placed - SPOTS[18])) < 2 * R + 2e-4
     assert np.hypot(placed[0], placed[1] - BAULK_Y) <= D_RADIUS + 1e-12 and placed[1] <= BAULK_Y
     assert not np.array_equal(placed, before)
 

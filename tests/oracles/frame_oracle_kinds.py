@@ -1,0 +1,23 @@
+"""Which kinds of frames does the oracle check? The options of each, and who plays."""
+
+from __future__ import annotations
+
+from .frame_oracle_play import Kind
+
+KINDS = {
+    kind.name: kind
+    for kind in (
+        Kind("random", "random", {}),
+        Kind("off", "steady", {}),
+        Kind("clear_path", "steady", {"miss": "clear_path"}),
+        Kind("nominate", "steady", {"nominate": True}),
+        Kind("nominate_miss", "steady", {"miss": "clear_path", "nominate": True}),
+        Kind("declare", "steady", {"nominate": True, "concede": True, "claim": True, "lot": True}),
+        Kind("match", "steady", {"task": "match", "frames": 3, "nominate": True, "concede": True}),
+        Kind("ghost_ball", "ghost_ball", {"miss": "clear_path", "noise": "club"}),
+        Kind("against_ghost_ball", "steady", {"miss": "clear_path", "opponent": "ghost_ball"}),
+        Kind("tables", "steady", {"miss": "clear_path"}, tables=True),
+        Kind("tables_nominate", "steady", {"miss": "clear_path", "nominate": True, "claim": True, "lot": True}, tables=True),
+    )
+}
+"""By name. "steady" pots now and then, so that frames are short; "tables" begins from random tables with touching balls and taken spots."""
