@@ -44,6 +44,7 @@ ELSEWHERE = {
     "agents.publish": "tests/agents/evaluation/test_publish.py",
     "agents.tournament": "tests/agents/evaluation/test_tournament.py",
     "examples/fit_your_data.py": "tests/examples/test_fit.py",
+    "examples.self_play": "tests/examples/test_self_play.py",
 }
 """Module or file -> the test that runs it."""
 
