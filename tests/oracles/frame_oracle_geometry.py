@@ -149,6 +149,9 @@ def snookered_in_hand(balls_on, others, everything):
         sight = np.max([_margins(places, ball, others) for ball in balls_on], axis=0)
         return np.minimum(sight, room)
 
+    best = float(value(GRID[::29]).max())  # most often some places out of all show that there is no snooker
+    if best > 1e-5:
+        return False, best
     at = value(GRID)
     best = float(at.max())
     if best > NEAR:

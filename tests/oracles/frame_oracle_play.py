@@ -76,7 +76,7 @@ def stroke_of(shot, nominated=None) -> Stroke:
     impacts = own[own["kind"] == sn.EventKind.BALL_BALL]
     t = impacts["time"][0] if len(impacts) else np.inf
     first = sorted({int(j) for j in impacts["j"][impacts["time"] == t]})
-    rails = own["time"][np.isin(own["kind"], [sn.EventKind.CUSHION, sn.EventKind.JAW])]
+    rails = own["time"][(own["kind"] == sn.EventKind.CUSHION) | (own["kind"] == sn.EventKind.JAW)]
     leaving = [(int(e["j"]), float(e["time"])) for e in impacts if e["time"] < rails.min(initial=np.inf)]
     potted = [int(i) for i in np.flatnonzero(np.asarray(shot.potted) >= 0)]
     at, velocities, _ = shot.at(0.0)
@@ -144,6 +144,8 @@ class Checker:
     def __init__(self, kind: Kind, record: bool = False):
         self.kind, self.tally = kind, Tally()
         self.cases: list[Case] | None = [] if record else None
+        self._last: dict = {}
+        self._seed = 0
         self.env = sn.match_env(**{"aim": "target", "max_strokes": None, **kind.options})
         self.env.keep_history = True
         given = {name: kind.options[name] for name in ("miss", "nominate", "concede", "claim", "lot") if name in kind.options}
@@ -157,11 +159,13 @@ class Checker:
         """Play and check one frame."""
         env, rng = self.env, np.random.default_rng(seed)
         env.reset(seed=seed)
+        self._seed = seed
         if self.kind.tables:
             env.set_state(table(env.get_state(), rng))
-            state, most = state_of(env.get_state()), 8
-        else:
-            state = state_of(env.get_state())
+            most = 8
+        self._last = env.get_state()
+        state = state_of(self._last)
+        if not self.kind.tables:
             self._begins(state)
         for _ in range(most):
             if state.phase == "over":
@@ -173,7 +177,7 @@ class Checker:
 
     def _next_frame(self, expected, found, before):
         """A match: the frame counts, and the next begins at once, with the other player's break, or the match is decided."""
-        after = self.env.get_state()
+        after = self._last
         won = list(before["frames"])
         won[expected.winner] += 1
         self.tally.seen[f"frame won, {min(won)} to {max(won)}"] += 1
@@ -199,11 +203,12 @@ class Checker:
     def _turn(self, state, rng):
         env = self.env
         action = self._action(state, rng)
-        before = env.get_state()
+        before = self._last
         env.keep_history = False  # forget the strokes so far
         env.keep_history = True
         env.step(action)
-        found = state_of(env.get_state())
+        self._last = env.get_state()
+        found = state_of(self._last)
         shot = env.last_shot
         player = self._decide(state, action)
         if shot is None:
@@ -290,7 +295,7 @@ class Checker:
         return expected
 
     def _disagree(self, what, names, expected, found, data):
-        self.tally.disagreements.append((what, names, expected, found, data))
+        self.tally.disagreements.append((what, names, expected, found, (self._seed, *(data or ()))))
 
     def _action(self, state, rng):
         """An action of a player who pots now and then, so that frames come to their end."""
