@@ -267,6 +267,14 @@ def free(place, others, slack=0.0):
     return not len(others) or bool(np.hypot(*(others - place).T).min() >= D2 + slack)
 
 
+def free_anywhere(place, others, slack=0.0):
+    """Whether the cue ball in hand anywhere may stand at ``place``: on the bed, 0.15 m from the pockets and 0.1 mm from the balls."""
+    x, y = np.abs(place)
+    corner, middle = np.hypot(x - HALF_WIDTH, y - HALF_LENGTH), np.hypot(x - HALF_WIDTH, y)
+    bed = x <= HALF_WIDTH - R - slack and y <= HALF_LENGTH - R - slack and min(corner, middle) >= 0.15 + slack
+    return bool(bed and free(place, others, 1e-4 + slack))
+
+
 def spotted_place(ball, others, slack=0.0):
     """Where a colour is spotted among ``others`` (Section 3 Rule 7)."""
     for k in [ball, *range(21, 15, -1)]:
