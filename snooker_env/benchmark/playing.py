@@ -127,11 +127,11 @@ def _frames(task, player, seeds, run, threads):
     sums: dict[str, Floats] = {name: np.zeros(n) for name in ("strokes", "pots", "fouls")}
     last: dict[str, Ints] = {name: np.zeros(n, np.int64) for name in ("score", "opponent_score", "winner")}
     while going.any():
-        actions = _decided(player, tables, observations, going, played)
+        actions, asked = _decided(player, tables, observations, going, played)
         observations, _, terminated, truncated, info = tables.step(actions)
-        sums["strokes"] += going
-        sums["pots"] += going & (info["points"] > 0)
-        sums["fouls"] += going & (info["fouls"] != 0)
+        sums["strokes"] += asked
+        sums["pots"] += asked & (info["points"] > 0)
+        sums["fouls"] += asked & (info["fouls"] != 0)
         done = going & (terminated | truncated)
         for name, values in last.items():
             values[done] = info[name][done]
@@ -148,13 +148,19 @@ def _frames(task, player, seeds, run, threads):
 
 
 def _decided(player, tables, observations, going, played):
-    """The player's actions, its time and its simulated shots added to what was ``played``."""
+    """The player's actions, and the tables on which it had one to choose; its time and simulated shots are added to what was ``played``.
+
+    A frame that the opponent won before the player's first stroke only needs its last step: any action will do.
+    """
+    asked = going & ~tables.tables.ended()
+    if not asked.any():
+        return np.zeros(tables.action_space.shape, tables.action_space.dtype), asked
     began, before = time.perf_counter(), simulated()
-    actions = player.act(tables, observations, going)
+    actions = player.act(tables, observations, asked)
     played.seconds += time.perf_counter() - began
     played.simulated += simulated() - before
-    played.decisions += int(going.sum())
-    return actions
+    played.decisions += int(asked.sum())
+    return actions, asked
 
 
 def one_table(task: Task, player: Any, seeds: list[int], decisions: int) -> PlayedEpisodes:
@@ -180,7 +186,7 @@ def one_table(task: Task, player: Any, seeds: list[int], decisions: int) -> Play
         observations, _ = tables.reset(seed=seed)
         over = False
         while not over and played.decisions < decisions:
-            actions = _decided(player, tables, observations, going, PlayedEpisodes([]) if first else played)
+            actions, _ = _decided(player, tables, observations, going, PlayedEpisodes([]) if first else played)
             first = False
             observations, _, terminated, truncated, _ = tables.step(actions)
             over = bool(terminated[0] or truncated[0])

@@ -157,7 +157,7 @@ class PlayerOpponent:
         own.packed = (self.actions.pack(), *frames.packed[1:])
         if self.frames:
             return own.prepare(which, actions, buffers)
-        which = own.say(which, actions)
+        which = own.say(which, actions)  # before the free ball is hidden from him: it is void for an offender who plays again
         before = frames.game[which]
         frames.game[which] = as_visits(before)
         try:

@@ -1,5 +1,6 @@
 """Are the tasks of the benchmark what they promise? Frozen options, both checkers, spawned workers, and tables that nobody trains on."""
 
+import dataclasses
 import json
 import multiprocessing
 
@@ -11,7 +12,8 @@ from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
 from snooker_env._registration import ENTRY_POINTS, ID
-from snooker_env.benchmark import FREE, HELD_OUT_SEED, TASKS, tables_of, task_of
+from snooker_env.benchmark import COLUMNS, FREE, HELD_OUT_SEED, TASKS, play_episodes, tables_of, task_of
+from snooker_env.benchmark.playing import one_table
 from snooker_env.game import layout
 from snooker_env.tasks import OBSERVATION_SIZE
 from tests.processes import python
@@ -147,3 +149,25 @@ def test_the_finder_registers_all_ids_without_importing_the_package():
         "import gymnasium; print(sorted(n for n in gymnasium.registry if n.startswith('Snooker')), 'snooker_env' in sys.modules)"
     )
     assert out == f"{sorted(ENTRY_POINTS)} False\n"
+
+
+def test_a_frame_lost_before_the_first_stroke_counts_as_lost_and_asks_for_no_decision():
+    class Counted:
+        options = {"aim": "target"}  # noqa: RUF012
+
+        def __init__(self):
+            self.asked = 0
+
+        def act(self, tables, observations, going):
+            assert not tables.tables.ended()[going].any()
+            self.asked += int(going.sum())
+            return np.zeros((len(going), 4))
+
+    easy = dataclasses.replace(TASKS["SnookerFrame-v0"], judged_layout="pots:easy")
+    player = Counted()
+    played = play_episodes(easy, player, list(range(40)))
+    rows = [dict(zip(COLUMNS, row, strict=True)) for row in played.rows]
+    lost_at_once = [row for row in rows if not row["strokes"]]
+    assert 4 <= len(lost_at_once) <= 36 and all(row["score"] == 0 and row["ended"] and row["opponent_points"] > 0 for row in lost_at_once)
+    assert player.asked == played.decisions == sum(row["strokes"] for row in rows) > 0
+    assert one_table(easy, Counted(), list(range(8)), 5).decisions <= 5
