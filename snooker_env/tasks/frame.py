@@ -129,14 +129,23 @@ class Frames(Tables):
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
         """Take the decisions on the tables ``which`` and carry the strokes out up to the strike; returns the tables with a stroke."""
+        which = self.say(which, actions)
+        self.address(which, actions, buffers)
+        self.hold_late(which, buffers)
+        return which
+
+    def say(self, which: Ints, actions: Floats) -> Ints:
+        """As ``decide``; returns the tables with a stroke."""
         said = self.rules.actions
         if said.nominate or said.declares or self.game[which, PHASE].any():
-            which = which[self.decide(which, actions)]
-        self.address(which, actions, buffers)
+            return which[self.decide(which, actions)]
+        return which
+
+    def hold_late(self, which: Ints, buffers: ShotBuffers) -> None:
+        """In a game with a shot clock: shots of the tables ``which`` that would not be begun within it are not played."""
         if self.rules.rule_set.clock:
             b, code = buffers, self.rules.rule_set.code
             frame_kernels.hold_late(which, self.game, code, self.rules.time_to_play, b.v, b.w, b.shots)
-        return which
 
     def decide(self, which: Ints, actions: Floats) -> Bools:
         """What the strikers of the tables ``which`` say before their strokes; returns which of them play one."""
