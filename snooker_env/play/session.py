@@ -306,7 +306,7 @@ class Session:
 
     def _checked(self, state: dict[str, Any]) -> FrameState:
         try:
-            alone = {"unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}  # no rewards are paid here
+            alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}  # no rewards are paid here
             return self.tables.checked(state | alone, self._generator, either=True)
         except ValueError as error:
             text = str(error)

@@ -136,9 +136,10 @@ class PlayerOpponent:
         own = copy.copy(frames)  # the same tables, and his actions
         own.rules = replace(frames.rules, actions=self.actions)
         own.packed = (self.actions.pack(), *frames.packed[1:])
-        free = which[frames.game[which, FREE_BALL] != 0]
-        if self.frames or not len(free):
+        if self.frames:
             return own.prepare(which, actions, buffers)
+        which = which[own.decide(which, actions)]  # before the free ball is hidden from him: it is void for an offender who plays again
+        free = which[frames.game[which, FREE_BALL] != 0]
         before = frames.game[free][:, [BALL_ON, FREE_BALL]]
         frames.game[free, BALL_ON] = frames.game[free, FREE_BALL] = 0  # as he has seen it
         try:

@@ -139,6 +139,20 @@ def test_with_a_free_ball_any_colour_is_on_for_him():
     assert buffers.v[0, CUE, 1] > 0 and abs(buffers.v[0, CUE, 0]) < buffers.v[0, CUE, 1]  # at the green, which hides the red
 
 
+def test_a_free_ball_is_void_for_an_offender_whom_he_sends_back():
+    """A player of visits decides on the frame as it is: what he sees of the free ball is written back only where he plays."""
+
+    class Sends(Watcher):
+        def act(self, tables, observations, going):
+            return np.tile(np.array([-0.9, 0, 0, 0, -1.0], np.float32), (len(going), 1))
+
+    hidden = {CUE: (0.3, 0.3), 1: (0.3, 1.2), GREEN: (0.3, 0.6), BLACK: SPOTS[BLACK]}
+    env = frame_state(frame_env(opponent=Sends(decision=True), aim="absolute"), hidden, {"free_ball": False})
+    _, _, _, _, info = env.step([-0.9, 0, 0, -0.5, 0, 0, 0])  # away from all balls: snookered behind the green
+    assert info["foul"] and env.frame.striker == 0 and env.frame.phase == "stroke"
+    assert not env.frame.free_ball and env.ball_on == BallOn.RED and not info["free_ball"]
+
+
 @pytest.mark.parametrize("name", ["lookahead", "agents.players.built_in:GhostBall", "ppo_mask", "agents/pretrained/ppo_target.zip"])
 def test_a_name_that_the_project_knows_may_play(name):
     if name.startswith(("ppo", "agents/pre")):
