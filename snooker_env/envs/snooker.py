@@ -174,16 +174,15 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | ball_on | int | what was on, a ``BallOn`` |
     | events | int | number of events in the shot |
 
-    In a frame these are about the agent's own stroke, and there are more keys: ``score``, ``opponent_score``, ``clock`` (float; time of a
-    frame with a clock [s]), ``strokes`` (of both players so far), ``opponent_strokes`` (in this step), ``winner`` (-1 for none, 0 the agent,
-    1 the opponent), ``misses``, ``failures`` (of the miss rules), ``choice``, ``free_ball``, ``needs_snookers``, ``anywhere``, ``warned`` (bool).
+    In a frame these are about the agent's own stroke, and there are more keys: ``score``, ``opponent_score``, ``clock`` (float; the last:
+    time played by a clock [s]), ``strokes`` (of both players so far), ``opponent_strokes`` (in this step), ``winner`` (-1 for none, 0 the
+    agent, 1 the opponent), ``misses``, ``failures`` (int), ``choice``, ``free_ball``, ``needs_snookers``, ``anywhere``, ``warned`` (bool).
     They are of the frame in progress; a match adds ``frames_won``, ``opponent_frames`` and ``frame`` (from 0).
 
     ## States
     ``env.unwrapped.get_state()`` returns everything between two shots as JSON types, and ``reset(options={"state": state})``
     starts from it. A state holds the random stream: the same actions then meet the same execution errors (and the same opponent). With a
-    seed as well, ``reset(seed=..., options={"state": state})``, table and game are those of the state and the random numbers those of the
-    seed. An invalid state is refused, and then nothing has changed.
+    seed as well, table and game are those of the state, the random numbers those of the seed. An invalid state is refused; nothing changes.
 
     ``reset(options={"position": position})`` starts from a ``snooker_env.Position``, validated on this environment's table. Balls, ball on,
     in hand and points are the position's; the random stream goes on, or is that of the seed. In a frame it is the agent's turn, with a
