@@ -23,7 +23,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from multiprocessing import get_context
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -84,7 +84,8 @@ class FrameTable:
 
     def __init__(self, kind, **more):
         rules = SAID if kind == "said" else {"miss": kind}
-        options = Options(**{"task": "frame", "aim": "target", "placement": True, "decision": True, "max_strokes": None} | rules | more)
+        given: dict[str, Any] = {"task": "frame", "aim": "target", "placement": True, "decision": True, "max_strokes": None}
+        options = Options(**given | rules | more)
         self.tables, self.buffers, self.generator = Frames(options.rules, 1), ShotBuffers(1), np.random.default_rng()
 
     def start(self, seed):
@@ -242,7 +243,7 @@ def judged_otherwise(seed):
         if asked:
             check((one is None, one and one.potted) == (two is None, two and two.potted), "another stroke", one, two)
             strokes += 1
-            other += one is not None and (one.points, one.penalty) != (two.points, two.penalty)
+            other += one is not None and two is not None and (one.points, one.penalty) != (two.points, two.penalty)
     return strokes, other
 
 

@@ -78,7 +78,8 @@ def warmup() -> None:
         match = SnookerEnv(task="match", opponent="ghost_ball", concede=True)
         match.reset(seed=0)
         match.step([0.0] * 4 + [-1.0])
-        match.tables.info_of(0, None)
+        tables: Any = match.tables
+        tables.info_of(0, None)
         pots(env.positions, env.on_table, REDS_MASK)
         Actions("absolute", False, False, env.physics).shot([0.0] * 4, env.positions, env.on_table, REDS_MASK)
         line(env.positions, env.on_table, REDS_MASK)

@@ -17,6 +17,7 @@ import sys
 import time
 import zlib
 from pathlib import Path
+from typing import Any
 
 from commands.lifecycle import command, needs
 
@@ -138,7 +139,8 @@ def checked(args):
     game = game_of(args)
     for entrant in entrants:
         player = TimedPlayer(player_for(entrant, "", 0, args.budget))
-        Options(task="frame", **player.options, **played_with(game), opponent=player)  # makes sure that they can meet
+        given: dict[str, Any] = {**player.options, **played_with(game)}
+        Options(task="frame", **given, opponent=player)  # makes sure that they can meet
     if args.threads is not None:
         integer("threads", args.threads, 1, 1024)
     if args.out and args.out.exists() and not (args.resume or args.force):

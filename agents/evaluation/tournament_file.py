@@ -221,8 +221,8 @@ def _differences(got, want, name):
         return [line for key in want for line in _differences(got[key], want[key], f"{name}.{key}")]
     if isinstance(want, list) and isinstance(got, list) and len(got) == len(want):
         return [line for k in range(len(want)) for line in _differences(got[k], want[k], f"{name}[{k}]")]
-    numbers = isinstance(want, float) and type(got) in (int, float)
-    if got == want or (numbers and abs(got - want) <= 1e-6 * max(1.0, abs(want))):
+    close = isinstance(want, float) and isinstance(got, int | float) and abs(got - want) <= 1e-6 * max(1.0, abs(want))
+    if got == want or close:
         return []
     return [f"{name}: must be what follows from the rows"]
 

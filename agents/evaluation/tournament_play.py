@@ -196,7 +196,8 @@ def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
     rows = []
     for exchanged in (False, True):
         meeting = Encounter(pair, exchanged, [(seed, seed % 2) for seed in seeds], best_of)
-        _play(meeting, *(players[::-1] if exchanged else players), game, threads, _after(tick, len(seeds) * exchanged))
+        one, other = players[::-1] if exchanged else players
+        _play(meeting, one, other, game, threads, _after(tick, len(seeds) * exchanged))
         rows += meeting.rows
     return sorted(rows)
 

@@ -1,6 +1,7 @@
 """What is a result file? Its fields with their types and meanings, version by version; ``docs/benchmark.md`` prints this table."""
 
 import re
+from collections.abc import Mapping
 from datetime import datetime
 from typing import Any
 
@@ -80,7 +81,7 @@ PATTERNS = {
 
 
 def faults_of_fields(
-    found: Any, fields: dict[str, tuple[Any, bool, str]] | None = None, ranges: dict[str, tuple[float, float]] | None = None,
+    found: Any, fields: dict[str, tuple[Any, bool, str]] | None = None, ranges: Mapping[str, tuple[float, float]] | None = None,
     version: int = VERSION,
 ) -> list[str]:  # fmt: skip
     """What is wrong with the fields of a result, a line each.
@@ -107,7 +108,7 @@ def faults_of_fields(
     >>> faults_of_fields({"date": "today"}, {"date": (str, False, "when, in UTC")})
     ["date = 'today': must be a time in UTC, as 2026-11-22T19:00:00Z"]
     """
-    fields, ranges = FIELDS if fields is None else fields, RANGES | (ranges or {})
+    fields, ranges = FIELDS if fields is None else fields, {**RANGES, **(ranges or {})}
     if not isinstance(found, dict):
         return ["the file must hold one JSON object"]
     said, known = [], set(fields)

@@ -4,7 +4,8 @@ A player has ``options``, the keywords that say how its actions are read, and ``
 for each table of a ``SnookerVectorEnv`` with flat observations. Planning players simulate on those tables, which have the physics, table,
 noise and fidelity of the frames. A player whose attribute ``frames`` is True gets tables of frames instead, from his own side.
 
-With a free ball, the tables of a visit show that any colour is on. It is right in all but one thing: what it scores.
+With a free ball, the tables of a visit show that any colour is on. It is right in all but one thing: what it scores. A cue ball in
+hand that may stand anywhere is placed for the player where "ghost_ball" would place it.
 """
 
 from collections.abc import Mapping
@@ -14,12 +15,12 @@ import numpy as np
 
 from .._types import Bools, Ints
 from ..game.frame_columns import (
-    BALL_ON,
+    ANYWHERE,
     BREAKER,
     FIRST_BREAK,
     FRAMES_0,
     FRAMES_1,
-    FREE_BALL,
+    IN_HAND,
     PAID,
     SCORE_0,
     SCORE_1,
@@ -28,7 +29,9 @@ from ..game.frame_columns import (
     VISIT_COLUMNS,
     WINNER,
 )  # fmt: skip
+from ..geometry import HALF_LENGTH, HALF_WIDTH
 from ..tasks.frame import Frames
+from ..tasks.player_opponent import as_visits, put_in_hand
 from .vector import SnookerVectorEnv
 
 PHYSICAL = ("noise", "physics", "table", "fidelity")
@@ -74,7 +77,7 @@ class Seat:
             own.saved.positions[rows], own.saved.on_table[rows] = frames.saved.positions[which], frames.saved.on_table[which]
             own.game[rows] = swapped(game) if side else game
             return
-        game[game[:, FREE_BALL] != 0, BALL_ON] = 0
+        game = as_visits(game)
         game[:, STEPS] = 0
         own.game[rows] = game[:, :VISIT_COLUMNS]
 
@@ -143,5 +146,14 @@ class AtFrames:
         if self._frames is not frames:
             same = {name: getattr(frames.options, name) for name in PHYSICAL}
             self._seat, self._frames = Seat(self.player, frames.num_envs, same, frames.threads), frames
-        self._seat.show(frames.tables, np.flatnonzero(going))
-        return self._seat.act(self.player, going)
+        which = np.flatnonzero(going)
+        self._seat.show(frames.tables, which)
+        own, game, said = self._seat.tables.tables, frames.tables.game, frames.options.rules.actions
+        anywhere = which[(game[which, ANYWHERE] != 0) & (game[which, IN_HAND] != 0)]
+        if not len(anywhere) or not said.placement:
+            return self._seat.act(self.player, going)
+        put_in_hand(anywhere, own.positions, own.on_table, game, frames.tables.streams, False)
+        actions = np.array(self._seat.act(self.player, going), np.float64)
+        at = 5 if said.elevation else 4  # the place means another one where the cue ball may stand anywhere
+        actions[anywhere, at : at + 2] = own.positions[anywhere, 0] / (HALF_WIDTH, HALF_LENGTH)
+        return actions

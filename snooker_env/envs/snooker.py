@@ -24,10 +24,9 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     """Shot selection in snooker: one step is one whole shot.
 
     ## Description
-    The agent plays a visit to the table. In each step it strikes the cue ball once. The shot is simulated until all balls
-    rest, the referee judges it, colours are respotted, and the agent observes the new table. The goal is a high break: a red, then a
-    colour, then a red and so on, finally the colours in order. The physics is an exact event-driven engine with frictional impacts between
-    balls (Mathavan, Jackson and Parkin 2014) and at cushions (their model of 2010).
+    The agent plays a visit to the table. In each step it strikes the cue ball once. The shot is simulated until all balls rest, the referee
+    judges it, colours are respotted, and the agent observes the new table. The goal is a high break: a red, then a colour, and so on,
+    finally the colours in order. The physics is an exact event-driven engine with frictional impacts (see References).
 
     With ``task="frame"`` the agent plays a whole frame against ``opponent``, with scores, fouls and free balls. One step is one stroke of
     the agent and all strokes of the opponent after it. The seed determines who breaks off. ``task="match"`` is the best of ``frames``
@@ -37,11 +36,11 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     |---|---|
     | "none" | nobody: the agent plays on from its own misses and fouls; penalties go to the other score |
     | "random", "ghost_ball" | uniformly random actions; the geometric player: the widest direct pot, as softly as possible |
+    | another name | a player that ``snooker_env.advice.player_of`` knows: "lookahead"; in a clone "search", "ppo_mask"; "MODULE:CLASS" |
     | a callable | ``opponent(observation, rng) -> action``, in this environment's spaces, from its own side of the table |
-    | a path to a ``.zip`` | a model of Stable-Baselines3 or sb3-contrib, trained on either task with these options |
-
-    A model's file holds pickled Python code, which runs when it is loaded, so it needs ``trust=True``. A model that does not fit is refused
-    before any of its code runs.
+    | a player | an object with ``options``, which say how its actions are read, and ``act(tables, observations, going)`` |
+    | a path to a ``.zip`` | a model of Stable-Baselines3 or sb3-contrib. Its pickled code runs when it is loaded: it needs ``trust=True`` |
+    | a ``tasks.OpponentPool`` | one of several, drawn for each frame. More about all of them: docs/environment/opponents.md |
 
     ## Action space
     ``action="box"`` (default): ``Box(-1, 1, (4,), float32)``, or longer with the options in the last column. All components are linear.
@@ -126,15 +125,16 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | "random:N", "snookered" | N reds at random places; no straight path to any red |
     | "pots:easy", "pots:medium", "pots:hard" | one red alone, by difficulty |
 
-    ## Episode end A visit is terminated by the first stroke that pots nothing, by a foul, or by a clearance; with ``one_stroke=True``, by
-    any stroke. It is never truncated by itself (``gymnasium.make(..., max_episode_steps=N)`` does that).
+    ## Episode end
+    A visit is terminated by the first stroke that pots nothing, by a foul, or by a clearance; with ``one_stroke=True``, by any stroke. It
+    is never truncated by itself (``gymnasium.make(..., max_episode_steps=N)`` does that).
 
     A frame is terminated by its end under the rules. It is truncated, without a winner, after the last of ``max_strokes`` strokes of both
-    players together, even in the middle of a break; so is its match. A frame that ends in the opponent's opening visit is not dealt again:
-    reset's info shows its end, and the next step plays nothing and reports it.
+    players together; so is its match. A frame that ends in the opponent's opening visit is not dealt again: reset's info shows its end, and
+    the next step plays nothing and reports it.
 
     ## Arguments
-    All but a callable opponent are JSON types, so that ``EnvSpec.to_json`` round-trips. ``Options`` describes each option.
+    All but an opponent that is an object are JSON types, so that ``EnvSpec.to_json`` round-trips. ``Options`` describes each option.
 
     | name | default | values |
     |---|---|---|

@@ -88,6 +88,7 @@ class Frames(Tables):
         if n:
             write_frame(Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.saved, 0)
             self.game[:] = self.game[0]
+            self.on_table[:, 1:] = [rules.rule_set.on_table >> i & 1 for i in range(1, N_BALLS)]
         self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
 
     @property
@@ -130,14 +131,23 @@ class Frames(Tables):
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
         """Take the decisions on the tables ``which`` and carry the strokes out up to the strike; returns the tables with a stroke."""
+        which = self.say(which, actions)
+        self.address(which, actions, buffers)
+        self.hold_late(which, buffers)
+        return which
+
+    def say(self, which: Ints, actions: Floats) -> Ints:
+        """As ``decide``; returns the tables with a stroke."""
         said = self.rules.actions
         if said.nominate or said.declares or self.game[which, PHASE].any():
-            which = which[self.decide(which, actions)]
-        self.address(which, actions, buffers)
+            return which[self.decide(which, actions)]
+        return which
+
+    def hold_late(self, which: Ints, buffers: ShotBuffers) -> None:
+        """In a game with a shot clock: shots of the tables ``which`` that would not be begun within it are not played."""
         if self.rules.rule_set.clock:
             b, code = buffers, self.rules.rule_set.code
             frame_kernels.hold_late(which, self.game, code, self.rules.time_to_play, b.v, b.w, b.shots)
-        return which
 
     def decide(self, which: Ints, actions: Floats) -> Bools:
         """What the strikers of the tables ``which`` say before their strokes; returns which of them play one."""
@@ -209,6 +219,7 @@ class Frames(Tables):
             self.complete(self.prepare(acting, actions, buffers), out, buffers, crew, own=True, alone=alone)
             self.go_on(acting)
             if alone:
+                self.game[acting, STRIKER] = AGENT  # also after a decision or lot of a state in which there were two players
                 self._finish(which, out)
 
         crew(playing, play)
@@ -268,7 +279,7 @@ class Frames(Tables):
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         breakers = np.full(self.n, -1) if breakers is None else breakers
         frame_kernels.begin(which, drawn, breakers, plan.in_hand, self.on_table, self.game, self.streams)
-        self.begun[which], self.due[which] = True, False
+        self.begun[which], self.due[which], self.nominated[which] = True, False, AUTO
 
     def _show(self, which, out, *, fresh):
         frame_kernels.show(
@@ -343,7 +354,7 @@ class Frames(Tables):
         self.game[k, FIRST_BREAK] = state.frame.breaker
         self.game[k, PAID] = self._worth(k) - state.unpaid
         self.streams[k] = np.array(state.stream, np.uint64)
-        self._replies[k], self.begun[k], self.due[k] = 0, True, state.due
+        self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
 
     def standing(self, k: int) -> dict[str, Any]:
         """The fields of ``Played`` that the frame on table k determines."""
@@ -365,7 +376,7 @@ class Frames(Tables):
         )  # fmt: skip
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)
-        self._replies[k], self.begun[k], self.due[k] = 0, True, False
+        self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, False, AUTO
 
     def text(self, k: int) -> str:
         """One line of text for pictures."""

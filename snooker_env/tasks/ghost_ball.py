@@ -9,27 +9,77 @@ import numpy as np
 from .._jit import entry, kernel
 from .._types import Ints
 from ..game.balls import N_BALLS, YELLOW, bits
-from ..game.frame_columns import CHOICE, IN_HAND, LOT, PHASE, PLAY, SAVED, STRIKER, choose, draw, strikeable
+from ..game.frame_columns import (
+    ANYWHERE,
+    CHOICE,
+    IN_HAND,
+    LOT,
+    PHASE,
+    PLACE_ANYWHERE,
+    PLAY,
+    SAVED,
+    STRIKER,
+    choose,
+    draw,
+    may_place_anywhere,
+    strikeable,
+)  # fmt: skip
 from ..game.philox import pair
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
+from ..game.rule_sets import SHOOT_OUT
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from .declarations import A_END_MASS, A_NOMINATE, nominated_ball
 from .plain_stroke import BREAK_X, ROLL, SLIDE, break_off, plain, racked, soft
-from .stroke import ShotBuffers, place, strike, touching_balls
+from .stroke import ShotBuffers, place, place_anywhere, strike, touching_balls
 
 if TYPE_CHECKING:
     from .frame import Frames
 
 _PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8))
+_BEHIND = 0.3
+"""How far behind the ghost ball the cue ball is placed, where it may stand anywhere [m]."""
+_DRIVE = 4.0
+"""How much farther than needed a plain stroke would roll where some ball must reach a cushion [m]. A ball struck full comes half as far.
+"""
 
 
 @kernel
-def put(positions, on_table, mask, found, stream):
+def _put_on_bed(positions, on_table, mask, found):
+    """Place a cue ball that may stand anywhere behind the ball of the easiest pot; without a pot, where most of a ball on is seen.
+
+    The places tried lie on the straight line from each pocket through each of the balls in ``mask``, or as near as the bed allows.
+    """
+    widest, best_x, best_y = 0.0, positions[0, 0], positions[0, 1]
+    for tries in range(2):
+        for ball in range(1, N_BALLS):
+            if not (on_table[ball] and (mask >> ball) & 1):
+                continue
+            for k in range(POCKET_AIMS.shape[0]):
+                dx, dy = positions[ball, 0] - POCKET_AIMS[k, AIM_X], positions[ball, 1] - POCKET_AIMS[k, AIM_Y]
+                far = (2.0 * BALL_RADIUS + _BEHIND) / max(1e-9, hypot(dx, dy))
+                place_anywhere(positions, on_table, positions[ball, 0] + far * dx, positions[ball, 1] + far * dy)
+                worth = 0.0
+                if tries == 1:
+                    _, _, _, worth = soft(positions, on_table, 1 << ball, _DRIVE)
+                elif find_pots(positions, on_table, 1 << ball, BALL_RADIUS, found):
+                    worth = found[0, TOLERANCE]
+                if worth > widest:
+                    widest, best_x, best_y = worth, positions[0, 0], positions[0, 1]
+        if widest > 0.0:
+            break
+    positions[0, 0], positions[0, 1] = best_x, best_y
+
+
+@kernel
+def put(positions, on_table, mask, anywhere, found, stream):
     """Place a cue ball in hand where the widest pot of the balls in ``mask`` is; without a pot, where most of a ball on is seen.
 
-    For the break-off it is placed to the left or right of the brown, as the stream decides.
+    For the break-off it is placed to the left or right of the brown, as the stream decides. ``anywhere``: not in the D only.
     """
+    if anywhere:
+        _put_on_bed(positions, on_table, mask, found)
+        return
     if racked(positions, on_table):
         u, _ = pair(stream)
         place(positions, on_table, BREAK_X if u < 0.5 else -BREAK_X, BAULK_Y)
@@ -43,17 +93,18 @@ def put(positions, on_table, mask, found, stream):
         best = 0
         for c in range(len(_PLACES)):
             place(positions, on_table, *_PLACES[c])
-            _, _, _, window = soft(positions, on_table, mask)
+            _, _, _, window = soft(positions, on_table, mask, 0.0)
             if window > widest:
                 widest, best = window, c
     place(positions, on_table, *_PLACES[best])
 
 
 @kernel
-def stroke_at(positions, on_table, on, in_hand, failed, found, stream):
+def stroke_at(positions, on_table, on, in_hand, failed, drive, found, stream):
     """The shot of the geometric player at the balls in the mask ``on``: (speed, side, top, direction of the cue ball).
 
-    ``in_hand``: the cue ball has just been placed; ``failed``: a stroke from this position has failed.
+    ``in_hand``: the cue ball has just been placed; ``failed``: a stroke from this position has failed; ``drive``: how much farther than
+    needed a stroke without a pot is to roll [m].
     """
     end_red = racked(positions, on_table) if in_hand else 0
     if end_red:
@@ -65,7 +116,7 @@ def stroke_at(positions, on_table, on, in_hand, failed, found, stream):
         run = hypot(POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1])
         needed = SLIDE * sqrt(ROLL * (run + 0.6)) / max(found[0, COS_CUT], 0.2)  # of the cue ball at the impact
         return min(6.0, SLIDE * sqrt(ROLL * hypot(gx - x, gy - y) + needed * needed)), 0.0, 0.0, atan2(gy - y, gx - x)
-    return plain(positions, on_table, on, touching, failed, stream)
+    return plain(positions, on_table, on, touching, failed, drive, stream)
 
 
 @kernel
@@ -81,22 +132,22 @@ def named(positions, on_table, row, aim):
 
 
 @entry(what="the geometric opponent", seconds=3)
-def _ghost_ball(which, positions, on_table, game, nominated, streams, options, noise, r, v, w, here, shots):
-    """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike."""
-    found = np.empty((1, POT_COLUMNS))
+def _ghost_ball(which, positions, on_table, game, rules, nominated, streams, options, noise, r, v, w, here, shots):
+    """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike. ``rules``: the code of the rule set."""
+    found, drive = np.empty((1, POT_COLUMNS)), _DRIVE if rules == SHOOT_OUT else 0.0
     for j in range(which.shape[0]):
         k = which[j]
         p, on, row, stream = positions[k], on_table[k], game[k], streams[k]
         if row[PHASE] == CHOICE:
-            choose(row, PLAY)
+            choose(row, PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY)
         elif row[PHASE] == LOT:
             draw(row, row[STRIKER])
         mask = strikeable(row, bits(on) & ~1)
         if row[IN_HAND]:
-            put(p, on, mask, found, stream)
+            put(p, on, mask, row[ANYWHERE], found, stream)
         jitter, _ = pair(stream)
         failed = row[SAVED] != 0  # he plays from a position that has been restored
-        speed, side, top, aim = stroke_at(p, on, mask, row[IN_HAND], failed, found, stream)
+        speed, side, top, aim = stroke_at(p, on, mask, row[IN_HAND], failed, drive, found, stream)
         if options[A_NOMINATE] >= 0:
             nominated[k] = named(p, on, row, aim)
         speed *= 1.0 + (0.04 if row[IN_HAND] and racked(p, on) else 0.2) * (jitter - 0.5)
@@ -108,7 +159,9 @@ class GhostBallOpponent:
 
     * Without a pot it plays a plain stroke (``plain_stroke``): the break-off, a soft stroke at a ball on that it sees, an escape.
     * It nominates the colour that its line meets first. It never concedes or claims, and begins if it wins the lot.
-    * With the cue ball in hand it takes the best of ten places. After a foul it always plays the table as it lies.
+    * With the cue ball in hand it takes the best of ten places in the D. Where it may stand anywhere, it is placed straight behind the ball
+      of the easiest pot. After a foul it always plays the table as it lies.
+    * In the Shoot Out its plain strokes are harder, so that a ball reaches a cushion.
     * It allows for neither throw nor position.
     * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within the window that strikes the
       ball. From a position that was restored after its miss it tries no pot, and varies more: two exact players cannot repeat one failing
@@ -123,6 +176,8 @@ class GhostBallOpponent:
         b, f = buffers, frames
         options, noise, _ = frames.packed
         _ghost_ball(
-            which, f.positions, f.on_table, f.game, f.nominated, f.streams, options, noise, b.r, b.v, b.w, b.here, b.shots
+            which, f.positions, f.on_table, f.game, f.rules.rule_set.code, f.nominated, f.streams, options, noise, b.r, b.v, b.w, b.here,
+            b.shots,
         )  # fmt: skip
+        f.hold_late(which, b)
         return which

@@ -1,5 +1,7 @@
 """What does the agent observe? The balls and the state of the game, as float32 arrays in [-1, 1]."""
 
+from typing import Any
+
 import numpy as np
 from gymnasium import spaces
 
@@ -83,7 +85,7 @@ def space(kind: ObservationKind, *, frame: bool = False, replaced: bool = False)
     balls = spaces.Box(-1.0, 1.0, (N_BALLS, len(BALL_COLUMNS)), np.float32)
     state = spaces.Box(-1.0, 1.0, (entries,), np.float32)
     if kind == "balls":
-        parts = {"balls": balls, "state": state}
+        parts: dict[str, spaces.Space[Any]] = {"balls": balls, "state": state}
         return spaces.Dict(parts | {"replaced": spaces.Box(-1.0, 1.0, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)} if more else parts)
     return spaces.Box(-1.0, 1.0, (BALLS_SIZE + entries + more,), np.float32)
 

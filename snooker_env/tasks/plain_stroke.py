@@ -140,11 +140,11 @@ def _goes_in(positions, ball, ux, uy, v2):
 
 
 @kernel
-def soft(positions, on_table, on):
+def soft(positions, on_table, on, drive):
     """The soft stroke at the nearest ball on that is seen well: (speed, top, direction) and half its window [rad]; no window: none is.
 
     It is aimed at the middle of what is seen; where the cue ball would follow into a pocket, halfway to an edge, or so that it stops at
-    the ball, without spin at the impact.
+    the ball, without spin at the impact. ``drive``: how much farther than needed it rolls [m].
     """
     x, y = positions[0, 0], positions[0, 1]
     best, speed, top, aim, window = -1e9, 0.0, 0.0, 0.0, 0.0
@@ -157,7 +157,7 @@ def soft(positions, on_table, on):
         dx, dy = positions[ball, 0] - x, positions[ball, 1] - y
         far = hypot(dx, dy)
         run = max(0.0, far - 2.0 * BALL_RADIUS)
-        arrival = _NUDGE * _NUDGE + 2.0 * _NUDGE * sqrt(ROLL * far)  # its squared speed at the ball
+        arrival = _NUDGE * _NUDGE + 2.0 * _NUDGE * sqrt(ROLL * far) + ROLL * drive  # its squared speed at the ball
         for way in range(4):
             angle, seen, wanted, spin = middle + (0.0, 0.5, -0.5, 0.0)[way] * half, 0.5 * half, SLIDE * (sqrt(ROLL * far) + _NUDGE), 0.0
             worth = 0.0
@@ -168,6 +168,8 @@ def soft(positions, on_table, on):
                 seen = min(seen, half - abs(sin(angle - middle)))
             elif _goes_in(positions, ball, cos(angle), sin(angle), arrival):
                 worth = -5.0
+            if drive > 0.0:
+                wanted = sqrt(wanted * wanted + SLIDE * SLIDE * ROLL * drive)
             worth += 1e3 * min(seen, _EASY) - far
             if seen > 0.0 and worth > best:
                 best, speed, top, aim, window = worth, wanted, spin, angle, seen
@@ -259,7 +261,7 @@ def escape(positions, on_table, on, vary, stream):
 
 
 @kernel
-def plain(positions, on_table, on, touching, vary, stream):
+def plain(positions, on_table, on, touching, vary, drive, stream):
     """A stroke without a pot, from where the cue ball lies: (speed, side, top, direction of the cue ball), at the balls in the mask ``on``.
 
     * Straight away from a ball on that touches the cue ball (in the mask ``touching``), which counts as striking it.
@@ -268,13 +270,15 @@ def plain(positions, on_table, on, touching, vary, stream):
     * Else the direction in which it sees a little of a ball on, else that of the nearest one.
 
     ``vary``: a stroke from this position has failed, so another one is played. The direction varies within its window in any case.
+    ``drive``: how much farther than needed it is to roll, over no cushion [m].
     """
     u, _ = pair(stream)
     shift = (1.6 if vary else 0.5) * (u - 0.5)
     for ball in range(1, N_BALLS):
         if ((touching & on) >> ball) & 1:
-            return 0.6, 0.0, 0.0, atan2(positions[0, 1] - positions[ball, 1], positions[0, 0] - positions[ball, 0]) + shift
-    speed, top, aim, window = soft(positions, on_table, on)
+            speed = 0.6 if drive == 0.0 else sqrt(0.36 + SLIDE * SLIDE * ROLL * drive)
+            return speed, 0.0, 0.0, atan2(positions[0, 1] - positions[ball, 1], positions[0, 0] - positions[ball, 0]) + shift
+    speed, top, aim, window = soft(positions, on_table, on, drive)
     if window < 0.25 * _EASY:
         over, other, wide = escape(positions, on_table, on, vary, stream)
         if wide > window:

@@ -5,7 +5,8 @@ A player is an object with ``options`` (how its actions are read) and ``act(tabl
 play frames. A player whose attribute ``frames`` is True gets tables of frames.
 
 * After a foul he plays on, unless his options hold ``decision``; he begins after a lot that he has won.
-* Without ``placement`` in his options, a cue ball in hand stands where "ghost_ball" would put it.
+* Without ``placement`` in his options, a cue ball in hand stands where "ghost_ball" would put it. So it does for any player of visits where
+  it may stand anywhere, and he sees it as a cue ball that is not in hand: the places that he knows are those of the D.
 * With a free ball, a player of visits sees that any colour is on.
 * What he strikes first after a red is the colour nominated, unless his own options hold ``nominate``.
 
@@ -26,7 +27,7 @@ from .._check import choice, refuse, refuse_what
 from .._jit import entry
 from .._types import Floats, Ints
 from ..game.balls import bits
-from ..game.frame_columns import BALL_ON, FREE_BALL, IN_HAND, strikeable
+from ..game.frame_columns import ANYWHERE, BALL_ON, FREE_BALL, IN_HAND, strikeable
 from ..game.philox import pair
 from ..game.pots import POT_COLUMNS
 from ..physics.parameters import Physics
@@ -43,16 +44,26 @@ SEEDS = 1024
 _VISITS = ("action", "aim", "observation", "elevation", "placement", "decision")
 _FRAMES = (*_VISITS, "nominate", "concede", "claim", "lot")
 _ROW = np.zeros(1, np.int64)
+_KINDS = (ValueError, TypeError, ImportError)
 
 
 @entry(what="the places of the opponent's cue ball", seconds=2)
-def _put(which, positions, on_table, game, streams):
-    """Place the cue balls in hand on the tables ``which``."""
+def put_in_hand(which, positions, on_table, game, streams, within_d):
+    """Place the cue balls in hand on the tables ``which``; without ``within_d``, only those that may stand anywhere."""
     found = np.empty((1, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
-        if game[k, IN_HAND]:
-            put(positions[k], on_table[k], strikeable(game[k], bits(on_table[k]) & ~1), found, streams[k])
+        if game[k, IN_HAND] and (within_d or game[k, ANYWHERE]):
+            put(positions[k], on_table[k], strikeable(game[k], bits(on_table[k]) & ~1), game[k, ANYWHERE], found, streams[k])
+
+
+def as_visits(game: Ints) -> Ints:
+    """Rows of frames as a player of visits sees them, copied: a free ball is any colour, what may stand anywhere is placed."""
+    seen = game.copy()
+    free, anywhere = game[:, FREE_BALL] != 0, game[:, ANYWHERE] != 0
+    seen[free, BALL_ON] = seen[free, FREE_BALL] = 0
+    seen[anywhere, IN_HAND] = seen[anywhere, ANYWHERE] = 0
+    return seen
 
 
 @entry
@@ -99,8 +110,8 @@ class PlayerOpponent:
 
     def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
         """His actions on the tables ``which``: (n, k). Raises ValueError, naming him, for invalid ones."""
-        if not self.actions.placement:
-            _put(which, frames.positions, frames.on_table, frames.game, frames.streams)
+        if not (self.actions.placement and self.frames):
+            put_in_hand(which, frames.positions, frames.on_table, frames.game, frames.streams, not self.actions.placement)
         alone = callable(getattr(self.player, "begin", None))
         seat = self._seats.get(frames)
         if seat is None:
@@ -111,15 +122,23 @@ class PlayerOpponent:
             seat.show(frames, which, side=1)
             going = np.zeros(frames.n, np.bool_)
             going[which] = True
-            actions[which] = self._checked(seat.act(self.player, going), which, frames.n)
+            actions[which] = self._checked(self._raising(seat.act, self.player, going), which, frames.n)
             return actions
         numbers = np.empty(len(which))
         drawn(which, frames.streams, numbers)
         for j, k in enumerate(which.tolist()):
-            self.player.begin(int(SEEDS * numbers[j]))
+            self._raising(self.player.begin, int(SEEDS * numbers[j]))
             seat.show(frames, which[j : j + 1], _ROW, side=1)
-            actions[k] = self._checked(seat.act(self.player, np.ones(1, np.bool_)), _ROW, 1)
+            actions[k] = self._checked(self._raising(seat.act, self.player, np.ones(1, np.bool_)), _ROW, 1)
         return actions
+
+    def _raising(self, call, *args):
+        """What the player's own code returns. An error that it raises names him, and is of the same kind where callers tell kinds apart."""
+        try:
+            return call(*args)
+        except Exception as error:
+            kind = next((kind for kind in _KINDS if isinstance(error, kind)), RuntimeError)
+            raise kind(f"opponent {self.name} raised {type(error).__name__}: {error}") from error
 
     def _checked(self, answer, which, n):
         """The valid actions of the tables ``which`` among n answers."""
@@ -138,11 +157,12 @@ class PlayerOpponent:
         own.packed = (self.actions.pack(), *frames.packed[1:])
         if self.frames:
             return own.prepare(which, actions, buffers)
-        which = which[own.decide(which, actions)]  # before the free ball is hidden from him: it is void for an offender who plays again
-        free = which[frames.game[which, FREE_BALL] != 0]
-        before = frames.game[free][:, [BALL_ON, FREE_BALL]]
-        frames.game[free, BALL_ON] = frames.game[free, FREE_BALL] = 0  # as he has seen it
+        which = own.say(which, actions)  # before the free ball is hidden from him: it is void for an offender who plays again
+        before = frames.game[which]
+        frames.game[which] = as_visits(before)
         try:
-            return own.prepare(which, actions, buffers)
+            own.address(which, actions, buffers)
         finally:
-            frames.game[free, BALL_ON], frames.game[free, FREE_BALL] = before.T
+            frames.game[which] = before
+        own.hold_late(which, buffers)
+        return which

@@ -181,8 +181,11 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
     check_rng(state["rng"], generator)
     opponent = integer("state.opponent", state["opponent"], 0, MOST)
     unpaid, due = integer("state.unpaid", state["unpaid"], -MOST, MOST), truth("state.due", state["due"])
-    match = _checked_match(state, frame, rules.frames // 2 + 1) if rules.frames else ()
-    return FrameState(frame, positions, on_table, strokes, opponent, unpaid, due, stream, state["rng"], *match)
+    found = FrameState(frame, positions, on_table, strokes, opponent, unpaid, due, stream, state["rng"])
+    if not rules.frames:
+        return found
+    frames, first_break = _checked_match(state, frame, rules.frames // 2 + 1)
+    return found._replace(frames=frames, first_break=first_break)
 
 
 def _checked_match(state, frame, needed):
@@ -190,7 +193,7 @@ def _checked_match(state, frame, needed):
     won = state["frames"]
     if not isinstance(won, list | tuple) or len(won) != 2:
         raise refuse("state.frames", won, "must be two integers, the frames that each player has won")
-    won = tuple(integer(f"state.frames[{k}]", n, 0, needed) for k, n in enumerate(won))
+    won = integer("state.frames[0]", won[0], 0, needed), integer("state.frames[1]", won[1], 0, needed)
     for k, n in enumerate(won):
         if (n == needed) != (frame.winner == k):
             raise refuse(f"state.frames[{k}]", n, f"must be {needed} for the winner of a match that is over, else below")

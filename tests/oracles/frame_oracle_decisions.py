@@ -43,12 +43,22 @@ def play_again(state: State) -> State:
     return after
 
 
+def anywhere(state: State) -> State | None:
+    """Six-red snooker, after the fifth miss: the player places the cue ball anywhere; None where snookers are required."""
+    if state.misses < 5 or abs(state.scores[0] - state.scores[1]) > state.available():
+        return None
+    after = play_on(state)
+    after.in_hand, after.anywhere, after.free_ball, after.on_table[0] = True, True, False, True
+    return after
+
+
 def replace(state: State) -> State:
     """Section 3 Rule 14(b): the balls go back, and the offender plays again, with the same ball on."""
     assert state.saved is not None
     after = deepcopy(state.saved)
     after.scores, after.break_points, after.phase = list(state.scores), 0, "stroke"
     after.failures, after.warned, after.saved, after.miss_called = state.failures, state.failures == 2, None, False
+    after.misses = state.misses
     return after
 
 
@@ -56,4 +66,5 @@ def play_on(state: State) -> State:
     """The player who was fouled plays himself: the offender's failures are forgotten."""
     after = deepcopy(state)
     after.phase, after.miss_called, after.saved, after.failures, after.warned = "stroke", False, None, 0, False
+    after.misses = 0
     return after

@@ -149,6 +149,9 @@ def snookered_in_hand(balls_on, others, everything):
         sight = np.max([_margins(places, ball, others) for ball in balls_on], axis=0)
         return np.minimum(sight, room)
 
+    best = float(value(GRID[::29]).max())  # most often some places out of all show that there is no snooker
+    if best > 1e-5:
+        return False, best
     at = value(GRID)
     best = float(at.max())
     if best > NEAR:
@@ -262,6 +265,14 @@ def free(place, others, slack=0.0):
     """Whether a ball at ``place`` would touch none of ``others``."""
     others = np.asarray(others, float).reshape(-1, 2)
     return not len(others) or bool(np.hypot(*(others - place).T).min() >= D2 + slack)
+
+
+def free_anywhere(place, others, slack=0.0):
+    """Whether the cue ball in hand anywhere may stand at ``place``: on the bed, 0.15 m from the pockets and 0.1 mm from the balls."""
+    x, y = np.abs(place)
+    corner, middle = np.hypot(x - HALF_WIDTH, y - HALF_LENGTH), np.hypot(x - HALF_WIDTH, y)
+    bed = x <= HALF_WIDTH - R - slack and y <= HALF_LENGTH - R - slack and min(corner, middle) >= 0.15 + slack
+    return bool(bed and free(place, others, 1e-4 + slack))
 
 
 def spotted_place(ball, others, slack=0.0):

@@ -16,6 +16,11 @@ KINDS = {
         Kind("match", "steady", {"task": "match", "frames": 3, "nominate": True, "concede": True}),
         Kind("ghost_ball", "ghost_ball", {"miss": "clear_path", "noise": "club"}),
         Kind("against_ghost_ball", "steady", {"miss": "clear_path", "opponent": "ghost_ball"}),
+        Kind("attempt", "steady", {"miss": "attempt"}),
+        Kind("six_red", "steady", {"game": "six_red", "miss": "clear_path", "nominate": True}),
+        Kind("six_red_tables", "steady", {"game": "six_red", "miss": "clear_path"}, tables=True),
+        Kind("shoot_out", "steady", {"game": "shoot_out"}),
+        Kind("shoot_out_late", "steady", {"game": "shoot_out", "time_to_play": 12.0}),
         Kind("tables", "steady", {"miss": "clear_path"}, tables=True),
         Kind("tables_nominate", "steady", {"miss": "clear_path", "nominate": True, "claim": True, "lot": True}, tables=True),
     )

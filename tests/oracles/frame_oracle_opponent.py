@@ -32,6 +32,7 @@ class OpponentChecker(Checker):
         env.keep_history = False
         env.keep_history = True
         env.reset(seed=seed)
+        self._seed = seed
         frame = env.get_state()["frame"]
         state = self._racked(frame)
         state = self._follow(state, None)

@@ -20,7 +20,8 @@ from . import frame_oracle_rules as oracle
 from .frame_oracle_rules import Rules, State, Stroke
 from .frame_oracle_tables import table
 
-FOULS = {1: oracle.NO_CONTACT, 2: oracle.WRONG_FIRST, 4: oracle.WRONG_POT, 8: oracle.CUE_POTTED, 128: oracle.PUSH, 4096: oracle.BEHIND}
+FOULS = {1: oracle.NO_CONTACT, 2: oracle.WRONG_FIRST, 4: oracle.WRONG_POT, 8: oracle.CUE_POTTED, 128: oracle.PUSH, 4096: oracle.BEHIND,
+         32768: oracle.NO_CUSHION, 65536: oracle.LATE}  # fmt: skip
 PLACE = 3e-6
 """How far apart two places of a ball may be that the two sides computed [m]."""
 FOLLOWS = {
@@ -31,7 +32,7 @@ FOLLOWS = {
 }
 """What follows from a decision that hangs on rounding."""
 LIKE = ("scores", "striker", "ball_on", "in_hand", "free_ball", "respotted_black", "phase", "winner", "break_points", "miss_called",
-        "failures", "warned")  # fmt: skip
+        "failures", "warned", "misses", "clock", "anywhere")  # fmt: skip
 
 
 @dataclass
@@ -66,6 +67,7 @@ def state_of(saved: dict) -> State:
         frame["miss_called"], frame["failures"], frame["warned"],
     )  # fmt: skip
     state.saved = last
+    state.misses, state.clock, state.anywhere = frame["misses"], frame["clock"], frame["anywhere"]
     return state
 
 
@@ -76,11 +78,15 @@ def stroke_of(shot, nominated=None) -> Stroke:
     impacts = own[own["kind"] == sn.EventKind.BALL_BALL]
     t = impacts["time"][0] if len(impacts) else np.inf
     first = sorted({int(j) for j in impacts["j"][impacts["time"] == t]})
-    rails = own["time"][np.isin(own["kind"], [sn.EventKind.CUSHION, sn.EventKind.JAW])]
+    rails = own["time"][(own["kind"] == sn.EventKind.CUSHION) | (own["kind"] == sn.EventKind.JAW)]
     leaving = [(int(e["j"]), float(e["time"])) for e in impacts if e["time"] < rails.min(initial=np.inf)]
     potted = [int(i) for i in np.flatnonzero(np.asarray(shot.potted) >= 0)]
     at, velocities, _ = shot.at(0.0)
-    return Stroke(at[0], first, potted, np.array(shot.positions), leaving, velocities[0], nominated=nominated)
+    cushion = bool(((events["kind"] == sn.EventKind.CUSHION) | (events["kind"] == sn.EventKind.JAW)).any())
+    return Stroke(
+        at[0], first, potted, np.array(shot.positions), leaving, velocities[0], nominated=nominated, cushion=cushion,
+        duration=round(1000 * shot.duration),
+    )  # fmt: skip
 
 
 def path_of(shot) -> np.ndarray:
@@ -99,7 +105,7 @@ def differences(expected: State, found: State, unsure=(), skip=()) -> list[str]:
         return []
     excused = set(skip) | {name for reason in unsure for name in FOLLOWS[reason]}
     if expected.phase == "over":
-        excused |= {"striker", "in_hand", "failures", "warned"}  # nobody is to play
+        excused |= {"striker", "in_hand", "failures", "warned", "misses", "anywhere"}  # nobody is to play
     if expected.phase == "drawn":
         excused |= {"striker", "phase"}
     names = [name for name in LIKE if getattr(expected, name) != getattr(found, name) and name not in excused]
@@ -144,9 +150,13 @@ class Checker:
     def __init__(self, kind: Kind, record: bool = False):
         self.kind, self.tally = kind, Tally()
         self.cases: list[Case] | None = [] if record else None
+        self._last: dict = {}
+        self._seed = 0
         self.env = sn.match_env(**{"aim": "target", "max_strokes": None, **kind.options})
         self.env.keep_history = True
-        given = {name: kind.options[name] for name in ("miss", "nominate", "concede", "claim", "lot") if name in kind.options}
+        given = {name: kind.options[name] for name in ("miss", "nominate", "concede", "claim", "lot", "game") if name in kind.options}
+        if "time_to_play" in kind.options:
+            given["time_to_play"] = round(1000 * kind.options["time_to_play"])
         self.rules = Rules(**given)
         names = ["speed", "side", "top", "aim", "across", "back"] + ["nominate"] * self.rules.nominate + ["decision"]
         names += ["declaration"] * (self.rules.concede or self.rules.claim or self.rules.lot)
@@ -157,11 +167,13 @@ class Checker:
         """Play and check one frame."""
         env, rng = self.env, np.random.default_rng(seed)
         env.reset(seed=seed)
+        self._seed = seed
         if self.kind.tables:
             env.set_state(table(env.get_state(), rng))
-            state, most = state_of(env.get_state()), 8
-        else:
-            state = state_of(env.get_state())
+            most = 8
+        self._last = env.get_state()
+        state = state_of(self._last)
+        if not self.kind.tables:
             self._begins(state)
         for _ in range(most):
             if state.phase == "over":
@@ -173,7 +185,7 @@ class Checker:
 
     def _next_frame(self, expected, found, before):
         """A match: the frame counts, and the next begins at once, with the other player's break, or the match is decided."""
-        after = self.env.get_state()
+        after = self._last
         won = list(before["frames"])
         won[expected.winner] += 1
         self.tally.seen[f"frame won, {min(won)} to {max(won)}"] += 1
@@ -191,7 +203,9 @@ class Checker:
         return found
 
     def _begins(self, state):
-        racked = state.scores == [0, 0] and state.ball_on == 1 and state.in_hand and state.on_table.all() and state.phase == "stroke"
+        there = [i for i in range(22) if not (self.rules.game == "six_red" and 6 < i < 16)]
+        racked = state.scores == [0, 0] and state.ball_on == 1 and state.in_hand and state.phase == "stroke"
+        racked = racked and [*np.flatnonzero(state.on_table)] == there
         spots = all(np.allclose(state.positions[i], at, atol=1e-12) for i, at in geometry.SPOTS.items())
         if not (racked and spots):
             self._disagree("start", ["start"], state, state, None)
@@ -199,14 +213,23 @@ class Checker:
     def _turn(self, state, rng):
         env = self.env
         action = self._action(state, rng)
-        before = env.get_state()
+        before = self._last
         env.keep_history = False  # forget the strokes so far
         env.keep_history = True
         env.step(action)
-        found = state_of(env.get_state())
+        self._last = env.get_state()
+        found = state_of(self._last)
         shot = env.last_shot
         player = self._decide(state, action)
-        if shot is None:
+        in_time = oracle.late(player, self.rules) if player.phase == "stroke" and self.rules.game == "shoot_out" else None
+        if in_time is not None:
+            verdict, expected = in_time
+            names, unsure = differences(expected, found, verdict.unsure), verdict.unsure
+            info = env.infos["player_0"]
+            if info["fouls"] != 65536 or info["penalty"] != verdict.penalty:
+                names.append(f"late: {info['fouls']} {info['penalty']}, oracle {verdict.penalty}")
+            self.count(player, Stroke(found.positions[0], [], [], found.positions), verdict, expected)
+        elif shot is None:
             names, expected, unsure = differences(player, found), player, set()
         else:
             expected, names, unsure = self._stroke(player, action, shot, found)
@@ -237,6 +260,10 @@ class Checker:
         if decision < -1 / 3:
             self.tally.seen["played again as left"] += 1
             return decisions.play_again(state)
+        if decision > 1 / 3 and self.rules.game == "six_red" and state.misses == 5:
+            after = decisions.anywhere(state)
+            self.tally.seen["placed anywhere" if after else "not anywhere: snookers required"] += 1
+            return after or decisions.play_on(state)
         if decision > 1 / 3 and state.miss_called:
             self.tally.seen["replaced"] += 1
             return decisions.replace(state)
@@ -247,7 +274,9 @@ class Checker:
         stroke = stroke_of(shot, said)
         if self.rules.miss == "attempt":
             stroke.path = path_of(shot)
-        if state.in_hand:
+        if state.in_hand and state.anywhere:
+            self._anywhere(state, action, stroke.cue)
+        elif state.in_hand:
             x = float(action[self.at["across"]]) * geometry.D_RADIUS
             y = geometry.BAULK - np.sqrt(max(0.0, geometry.D_RADIUS**2 - x * x)) * (float(action[self.at["back"]]) + 1) / 2
             wish = geometry.nearest_in_d((x, y), state.positions[state.balls])
@@ -261,6 +290,20 @@ class Checker:
         verdict, expected, names = case.compare()
         self.count(state, stroke, verdict, expected)
         return expected, names, verdict.unsure
+
+    def _anywhere(self, state, action, cue):
+        """Where a cue ball that may stand anywhere was placed: where the player wished it, or no farther away than need be."""
+        self.tally.seen["stroke from anywhere"] += 1
+        wish = np.array([geometry.HALF_WIDTH * float(action[self.at["across"]]), geometry.HALF_LENGTH * float(action[self.at["back"]])])
+        bed = np.array([geometry.HALF_WIDTH, geometry.HALF_LENGTH]) - geometry.R
+        wish = np.clip(wish, -bed, bed)
+        others = state.positions[state.balls]
+        far = float(np.hypot(*(wish - cue)))
+        turns = np.linspace(0, 2 * np.pi, 180, endpoint=False)
+        nearer = wish + max(0.0, far - 2e-4) * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+        wrong = not geometry.free_anywhere(cue, others, -60e-6)
+        if wrong or (far > 2e-4 and any(geometry.free_anywhere(at, others, 0.0) for at in nearer)):
+            self._disagree("placed", ["anywhere"], state, state, (wish, cue))
 
     def count(self, state, stroke, verdict, expected):
         """Add one stroke to the tally."""
@@ -290,7 +333,7 @@ class Checker:
         return expected
 
     def _disagree(self, what, names, expected, found, data):
-        self.tally.disagreements.append((what, names, expected, found, data))
+        self.tally.disagreements.append((what, names, expected, found, (self._seed, *(data or ()))))
 
     def _action(self, state, rng):
         """An action of a player who pots now and then, so that frames come to their end."""

@@ -20,6 +20,7 @@ from . import frame_oracle_geometry as geometry
 REDS, COLOURS = range(1, 16), range(16, 22)
 ANY, RED, YELLOW, PINK, BLACK = 0, 1, 2, 6, 7
 NO_CONTACT, WRONG_FIRST, WRONG_POT, CUE_POTTED, PUSH, BEHIND = "no contact", "wrong first", "wrong pot", "cue potted", "push", "behind"
+NO_CUSHION, LATE = "no cushion", "late"
 TOUCH = 50e-6
 """A referee sees no gap below this [m]."""
 
@@ -52,6 +53,12 @@ class State:
     failures: int = 0
     warned: bool = False
     saved: State | None = None
+    misses: int = 0
+    """Calls of a miss in succession, in six-red snooker."""
+    clock: int = 0
+    """Time played, in the Shoot Out [ms]."""
+    anywhere: bool = False
+    """Whether the cue ball in hand may stand anywhere, not in the D alone."""
 
     @property
     def balls(self) -> list[int]:
@@ -102,6 +109,10 @@ class Stroke:
     """Of the cue ball's centre up to its first impact with a ball, or to rest, at close points [m]; only for ``miss="attempt"``."""
     nominated: int | None = None
     """The colour named; None where players name none and the one struck first counts."""
+    cushion: bool = True
+    """Whether any ball met a cushion or a jaw; only for the Shoot Out."""
+    duration: int = 0
+    """How long the balls ran; only for the Shoot Out [ms]."""
 
 
 @dataclass
@@ -127,6 +138,9 @@ class Rules:
     concede: bool = False
     claim: bool = False
     lot: bool = False
+    game: str = "snooker"
+    time_to_play: int = 9000
+    """Of the Shoot Out [ms]."""
 
 
 def touching(state: State, cue: np.ndarray) -> list[int]:
@@ -144,6 +158,7 @@ def _into(ball: np.ndarray, stroke: Stroke, time: float) -> bool:
 def judge(state: State, stroke: Stroke, rules: Rules) -> tuple[Verdict, State]:
     """The verdict on a stroke, and the frame after it."""
     verdict, after = Verdict(), deepcopy(state)
+    after.anywhere = False
     after.positions = stroke.rest.copy()
     for i in stroke.potted:
         after.on_table[i] = False
@@ -181,6 +196,9 @@ def judge(state: State, stroke: Stroke, rules: Rules) -> tuple[Verdict, State]:
     if bad:
         verdict.fouls.add(WRONG_POT)
         costs += [base, *(value(i) for i in bad)]
+    if rules.game == "shoot_out" and not stroke.potted and not stroke.cushion:
+        verdict.fouls.add(NO_CUSHION)
+        costs.append(base)
     if 0 in stroke.potted:
         verdict.fouls.add(CUE_POTTED)
         costs.append(base)
@@ -197,8 +215,9 @@ def judge(state: State, stroke: Stroke, rules: Rules) -> tuple[Verdict, State]:
         stays |= set(real)
     _spot([i for i in stroke.potted if i in COLOURS and i not in stays], after, verdict)
     after.free_ball = False
-    if nominee and not costs and not worth:
-        _behind(state, after, nominee[0], verdict)
+    hiding = target if state.ball_on == ANY and rules.game == "six_red" else nominee
+    if hiding and not costs and not worth:
+        _behind(state, after, hiding[0], verdict, rules)
         if verdict.fouls:
             costs.append(base)
     if costs:
@@ -207,6 +226,8 @@ def judge(state: State, stroke: Stroke, rules: Rules) -> tuple[Verdict, State]:
     else:
         verdict.points = worth
         _fair(state, after, stroke, verdict, real)
+    if rules.game == "shoot_out":
+        _shoot_out(state, after, stroke, verdict, rules)
     return verdict, after
 
 
@@ -274,11 +295,11 @@ def _snookered(after: State, verdict: Verdict) -> bool:
     return bool(answer)
 
 
-def _behind(state: State, after: State, nominee: int, verdict: Verdict) -> None:
+def _behind(state: State, after: State, nominee: int, verdict: Verdict, rules: Rules) -> None:
     """Section 3 Rule 12(b)(ii): the next player snookered behind the free ball; not with only pink and black left."""
     after = deepcopy(after)
     after.ball_on = after.next_on()
-    if set(after.balls) == {20, 21}:
+    if set(after.balls) == {20, 21} and rules.game != "six_red":
         return
     cue, on, others, ids = _seen(after)
 
@@ -297,6 +318,7 @@ def _behind(state: State, after: State, nominee: int, verdict: Verdict) -> None:
 def _fair(state: State, after: State, stroke: Stroke, verdict: Verdict, real: list[int]) -> None:
     other = 1 - state.striker
     after.phase, after.miss_called, after.failures, after.warned, after.saved = "stroke", False, 0, False, None
+    after.misses = 0
     after.scores[state.striker] += verdict.points
     after.break_points = state.break_points + verdict.points if verdict.points else 0
     if not verdict.points:
@@ -327,6 +349,32 @@ def over(after: State, winner: int) -> None:
     after.miss_called, after.saved = False, None
 
 
+def _shoot_out(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules) -> None:
+    """The Shoot Out: in hand anywhere after a foul; the clock, which begins with the first stroke and stops for a re-spotted black."""
+    if verdict.fouls and after.phase == "stroke":
+        after.in_hand = after.anywhere = after.on_table[0] = True
+    if state.respotted_black:
+        return
+    after.clock = state.clock + stroke.duration + (rules.time_to_play if state.clock else 0)
+    if after.phase == "stroke" and after.clock + rules.time_to_play > 600_000:
+        verdict.notes.add("time is up")
+        after.anywhere = False
+        _last_black(after, verdict)
+
+
+def late(state: State, rules: Rules) -> tuple[Verdict, State] | None:
+    """The Shoot Out: the verdict on a stroke that was not begun in time, and the frame after it; None if it is in time."""
+    limit = 15_000 if state.clock < 300_000 else 10_000
+    if rules.game != "shoot_out" or state.respotted_black or not state.clock or rules.time_to_play <= limit:
+        return None
+    verdict, after = Verdict(fouls={LATE}), deepcopy(state)
+    verdict.penalty = max(5, state.ball_on)  # after a red no colour has been nominated
+    nothing = Stroke(state.positions[0], [], [], state.positions, duration=limit - rules.time_to_play)
+    _foul(state, after, nothing, verdict, rules, [])
+    _shoot_out(state, after, nothing, verdict, rules)
+    return verdict, after
+
+
 def _foul(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules, legal: list[int]) -> None:
     other = 1 - state.striker
     after.scores[other] += verdict.penalty
@@ -341,12 +389,15 @@ def _foul(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
         after.failures, after.warned = 0, False
         return
     after.ball_on, after.phase = after.next_on(), "choice"
+    if rules.game == "shoot_out":
+        after.phase = "stroke"
+        return
     after.free_ball = _snookered(after, verdict)
     missed = bool(verdict.fouls & {NO_CONTACT, WRONG_FIRST})
     if rules.miss != "off" and missed:
         _miss(state, after, stroke, verdict, rules)
     else:
-        after.failures, after.warned = 0, False
+        after.failures, after.warned, after.misses = 0, False, 0
 
 
 def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules) -> None:
@@ -372,13 +423,19 @@ def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
         poor = gap > ATTEMPT
         verdict.notes.add("a poor attempt at an escape" if poor else "a good attempt at an escape")
     called = poor and (again or not needed)
+    if called and state.misses == 5:
+        verdict.notes.add("no sixth miss in succession")
+        called = False
     if poor and needed:
         verdict.notes.add("no miss: penalty points needed" if not again else "miss although penalty points are needed")
     if not called:
-        after.failures, after.warned = 0, False
+        after.failures, after.warned, after.misses = 0, False, 0
         return
     verdict.notes.add("miss" if full else "miss, part of a ball visible")
     after.failures = state.failures + 1 if full else 0
+    after.misses = state.misses + 1 if rules.game == "six_red" else 0
+    if after.misses == 5:
+        verdict.notes.add("fifth miss in succession")
     if state.warned and full:
         verdict.notes.add("third miss")
         over(after, 1 - state.striker)

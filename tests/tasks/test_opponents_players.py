@@ -13,8 +13,10 @@ import snooker_env as sn
 from snooker_env.benchmark import AtFrames
 from snooker_env.envs.at_frames import swapped
 from snooker_env.game.balls import BLACK, CUE, GREEN, SPOTS, BallOn
-from snooker_env.game.frame_columns import BREAKER, COLUMNS, SCORE_0, SCORE_1, STRIKER, WINNER
-from snooker_env.geometry import BAULK_Y
+from snooker_env.game.frame_columns import ANYWHERE, BREAKER, COLUMNS, IN_HAND, SCORE_0, SCORE_1, STRIKER, WINNER
+from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
+from snooker_env.tasks import OpponentPool
+from snooker_env.tasks.stroke import ShotBuffers
 from tests.tables import PLACES, frame_env, frame_state
 
 MISS = [-0.9, 0, 0, 1.0, 0, 0, 0]
@@ -131,8 +133,6 @@ def test_with_a_free_ball_any_colour_is_on_for_him():
     actions = env.options.rules.opponent.ask(tables, np.zeros(1, np.int64), [None])
     seat, seen, _ = player.calls[-1]
     assert seat.tables.game[0, 0] == BallOn.ANY_COLOUR and seen[0, 110 + 1] == 1.0
-    from snooker_env.tasks.stroke import ShotBuffers
-
     buffers = ShotBuffers(1)
     env.options.rules.opponent.prepare(tables, np.zeros(1, np.int64), actions, buffers)
     assert env.frame.free_ball and env.ball_on == BallOn.RED  # the frame itself is as it was
@@ -205,6 +205,122 @@ def test_what_a_player_answers_is_checked_and_he_is_named(answer, says):
     env = frame_env(opponent=Wrong())
     with pytest.raises(ValueError, match=f"^{says}"):
         [env.reset(seed=seed) for seed in range(10)]
+
+
+@pytest.mark.parametrize(
+    ("error", "kind"),
+    [
+        (ValueError("mine"), ValueError),
+        (TypeError("mine"), TypeError),
+        (ZeroDivisionError("mine"), RuntimeError),
+        (KeyError("mine"), RuntimeError),
+    ],
+)
+@pytest.mark.parametrize("method", ["act", "begin"])
+def test_an_error_of_a_player_names_him(error, kind, method):
+    class Failing(Drawing):
+        pass
+
+    def fail(self, *args):
+        raise error
+
+    setattr(Failing, method, fail)
+    env = frame_env(opponent=Failing())
+    with pytest.raises(kind) as info:
+        [env.reset(seed=seed) for seed in range(10)]
+    assert str(info.value) == f"opponent Failing raised {type(error).__name__}: {error}" and info.value.__cause__ is error
+
+
+def test_the_end_of_a_program_is_no_error_of_a_player():
+    class Stopped(Watcher):
+        def act(self, tables, observations, going):
+            raise KeyboardInterrupt
+
+    env = frame_env(opponent=Stopped())
+    with pytest.raises(KeyboardInterrupt):
+        [env.reset(seed=seed) for seed in range(10)]
+
+
+def after_a_foul(opponent, **options):
+    """A frame of the Shoot Out in which the opponent has the cue ball in hand, anywhere: one red, and three colours."""
+    env = frame_env(opponent=opponent, game="shoot_out", **options)
+    places = {CUE: (0.0, BAULK_Y - 0.1), 1: (0.4, 1.0), 21: SPOTS[21], 20: SPOTS[20], 17: SPOTS[17]}
+    frame = {"striker": 0, "in_hand": True, "anywhere": True, "rules": "shoot_out", "miss": "off"}
+    env = frame_state(env, places, frame)
+    env.tables.game[0, STRIKER] = 1
+    return env
+
+
+@pytest.mark.parametrize("options", [{}, {"placement": True}, {"action": "discrete"}])
+def test_a_player_of_visits_has_his_cue_ball_anywhere_placed_for_him(options):
+    """He knew the places in the D only, and with ``placement`` his D was read as the whole table."""
+    player = Watcher(**options)
+    if "action" in options:
+        player.act = lambda tables, observations, going: player.calls.append((tables, observations, going)) or np.zeros(1, np.int64)
+    env = after_a_foul(player)
+    tables, opponent, one = env.tables, env.options.rules.opponent, np.zeros(1, np.int64)
+    buffers = ShotBuffers(1)
+    opponent.prepare(tables, one, opponent.ask(tables, one, [None]), buffers)
+    seen = player.calls[-1][0].tables
+    assert not seen.game[0, IN_HAND] and env.frame.in_hand and env.frame.anywhere  # the frame itself is as it was
+    assert np.array_equal(buffers.r[0, CUE], seen.positions[0, CUE])
+    assert np.hypot(*(buffers.r[0, CUE] - (0.4, 1.0))) == pytest.approx(0.3 + 2 * BALL_RADIUS)
+
+
+def test_a_player_of_frames_places_it_himself():
+    player = OfFrames(placement=True, decision=True)
+    env = after_a_foul(player)
+    opponent, one, buffers = env.options.rules.opponent, np.zeros(1, np.int64), ShotBuffers(1)
+    opponent.prepare(env.tables, one, np.array([[-0.7, 0.0, 0.0, 0.0, 0.5, -0.5, 0.0]]), buffers)
+    assert buffers.r[0, CUE] == pytest.approx((0.5 * HALF_WIDTH, -0.5 * HALF_LENGTH))
+
+
+def test_the_agent_s_cue_ball_anywhere_is_placed_for_a_player_of_visits_too():
+    agent, tables = Watcher(placement=True), sn.SnookerVectorEnv(2, threads=1, task="frame", game="shoot_out", aim="target", placement=True)
+    observations, _ = tables.reset(seed=0)
+    player = AtFrames(agent)
+    for _ in range(30):
+        waiting = tables.tables.game[:, ANYWHERE] != 0
+        actions = player.act(tables, observations, np.ones(2, bool))
+        if waiting.any():
+            break
+        observations, *_ = tables.step(np.tile([-1.0, 0, 0, 1.0, 0, 0], (2, 1)))
+    seen = agent.calls[-1][0].tables
+    assert waiting.any() and actions[waiting, 4:6] * (HALF_WIDTH, HALF_LENGTH) == pytest.approx(seen.positions[waiting, CUE])
+    assert not seen.game[waiting, IN_HAND].any()
+
+
+@pytest.mark.parametrize("name", ["geometric", "ppo_mask", "lookahead", "player", "pool"])
+def test_any_opponent_plays_matches_and_stable_baselines_tables(name):
+    pytest.importorskip("stable_baselines3")
+    from snooker_env.sb3 import SnookerVecEnv
+
+    opponent = {"player": Watcher(), "pool": OpponentPool(["ghost_ball", Watcher(), "geometric"])}.get(name, name)
+    options = {
+        "task": "match",
+        "frames": 3,
+        "opponent": opponent,
+        "layout": "pots:easy",
+        "aim": "target",
+        "max_strokes": 20,
+        "noise": "none",
+    }
+    env = sn.SnookerEnv(**options)
+    env.reset(seed=1)
+    over = strokes = steps = 0
+    while not over and steps < 100:
+        _, _, terminated, truncated, info = env.step(MISS[:4])
+        over, strokes, steps = terminated or truncated, strokes + info["opponent_strokes"], steps + 1
+    assert over and strokes > 0 and (truncated or max(info["frames_won"], info["opponent_frames"]) == 2)
+    tables = SnookerVecEnv(3, threads=1, info_keys=["opponent_strokes"], **options)
+    tables.seed(1)
+    tables.reset()
+    ended = strokes = 0
+    for _ in range(12):
+        _, _, dones, infos = tables.step(np.tile(np.array(MISS[:4], np.float32), (3, 1)))
+        ended, strokes = ended + dones.sum(), strokes + sum(info["opponent_strokes"] for info in infos)
+    tables.close()
+    assert ended > 0 and strokes > 0
 
 
 @pytest.mark.parametrize(
