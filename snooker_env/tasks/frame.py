@@ -23,8 +23,9 @@ import numpy as np
 from .._check import refuse
 from .._types import Bools, Floats, Ints, Singles
 from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
-from ..game.frame import Frame
+from ..game.frame import MISS_RULES, Frame
 from ..game.frame_columns import (
+    ATTEMPTS,
     BALL_ON,
     COLUMNS,
     FIRST_BREAK,
@@ -45,6 +46,7 @@ from ..game.frame_columns import (
 from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
 from . import frame_kernels
+from .attempts import judge_attempts
 from .frame_kernels import AGENT
 from .observations import FRAME_SIZE, REPLACED_SIZE
 from .opponents import asked
@@ -58,9 +60,9 @@ from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 class Frames(Tables):
     """n tables, each in the middle of its own frame."""
 
-    REALS: tuple[str, ...] = (*REALS, "score", "opponent_score")
-    COUNTS: tuple[str, ...] = (*COUNTS, "strokes", "opponent_strokes", "winner", "choice", "free_ball", "needs_snookers")
-    FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers")
+    REALS: tuple[str, ...] = (*REALS, "score", "opponent_score", "clock")
+    FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers", "anywhere", "warned")
+    COUNTS: tuple[str, ...] = (*COUNTS, "strokes", "opponent_strokes", "winner", *FLAGS, "misses", "failures")
     SIZE = FRAME_SIZE
     COLUMNS = COLUMNS
 
@@ -81,11 +83,12 @@ class Frames(Tables):
         self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
         self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
         self._limits = np.array([rules.max_strokes, rules.frames // 2 + 1, rules.rule_set.clock])
-        self._kind = MATCH_REWARDS.index(rules.reward)
+        self._kind, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
             write_frame(Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.saved, 0)
             self.game[:] = self.game[0]
+            self.on_table[:, 1:] = [rules.rule_set.on_table >> i & 1 for i in range(1, N_BALLS)]
         self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
 
     @property
@@ -172,10 +175,12 @@ class Frames(Tables):
         crew.saw(which, buffers, own)
 
     def _conclude(self, which, b, out, own, alone):
+        if self._miss == ATTEMPTS:
+            judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
         frame_kernels.conclude(
             which, self.positions, self.on_table, self.game, self.streams, self.nominated, b.r, b.potted, b.status, b.duration,
             b.event_time, b.event_what, b.n_events, b.shots, b.seen, self._jaws, self.packed[0], self.rules.rule_set.code,
-            self.rules.time_to_play, self.rules.misses, own, alone, self._played if own else self._replies, out.reals, out.counts,
+            self.rules.time_to_play, self._miss, own, alone, self._played if own else self._replies, out.reals, out.counts,
         )  # fmt: skip
 
     def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:
@@ -214,6 +219,7 @@ class Frames(Tables):
             self.complete(self.prepare(acting, actions, buffers), out, buffers, crew, own=True, alone=alone)
             self.go_on(acting)
             if alone:
+                self.game[acting, STRIKER] = AGENT  # also after a decision or lot of a state in which there were two players
                 self._finish(which, out)
 
         crew(playing, play)
@@ -273,7 +279,7 @@ class Frames(Tables):
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         breakers = np.full(self.n, -1) if breakers is None else breakers
         frame_kernels.begin(which, drawn, breakers, plan.in_hand, self.on_table, self.game, self.streams)
-        self.begun[which], self.due[which] = True, False
+        self.begun[which], self.due[which], self.nominated[which] = True, False, AUTO
 
     def _show(self, which, out, *, fresh):
         frame_kernels.show(
@@ -348,7 +354,7 @@ class Frames(Tables):
         self.game[k, FIRST_BREAK] = state.frame.breaker
         self.game[k, PAID] = self._worth(k) - state.unpaid
         self.streams[k] = np.array(state.stream, np.uint64)
-        self._replies[k], self.begun[k], self.due[k] = 0, True, state.due
+        self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
 
     def standing(self, k: int) -> dict[str, Any]:
         """The fields of ``Played`` that the frame on table k determines."""
@@ -370,7 +376,7 @@ class Frames(Tables):
         )  # fmt: skip
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)
-        self._replies[k], self.begun[k], self.due[k] = 0, True, False
+        self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, False, AUTO
 
     def text(self, k: int) -> str:
         """One line of text for pictures."""

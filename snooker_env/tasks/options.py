@@ -125,12 +125,16 @@ class Options:
     opponent : str, Path or callable, optional
         In a frame: "none" (default), "random", "ghost_ball", the name of a player, a model's ``.zip``, ``opponent(observation, rng) ->
         action``, a player object, or an ``OpponentPool`` of these (docs/environment/opponents.md).
-    miss : {"off", "clear_path"}, optional
-        In a frame: the rule for a foul and a miss (``snooker_env.game.frame``). Default "off".
+    miss : {"off", "clear_path", "attempt"}, optional
+        In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
     decision : bool, optional
         In a frame: whether a box action holds the decision after a foul of the opponent; default False.
     max_strokes : int or None, optional
         In a frame: number of strokes of both players after which the referee stops it; default 1000, None for never. A match stops with it.
+    one_stroke : bool, optional
+        In a visit: whether it ends after its first stroke; default False.
+    trust : bool, optional
+        In a frame: whether code in an opponent's ``.zip`` may run; default False.
     nominate : bool, optional
         In a frame: whether an action names the colour after a red, and a free ball. Default False: the colour struck first is taken as the
         one nominated.
@@ -144,10 +148,6 @@ class Options:
         In a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s]; default 9.
     frames : int, optional
         In a match: the most frames that it can have, an odd number; default 7.
-    one_stroke : bool, optional
-        In a visit: whether it ends after its first stroke; default False.
-    trust : bool, optional
-        In a frame: whether code in an opponent's ``.zip`` may run; default False.
 
     Attributes
     ----------
@@ -214,7 +214,7 @@ class Options:
         limit, opponent = NEVER, None
         frames = self._frames()
         if frame:
-            choice("miss", self.miss, MISS_RULES[:2])
+            choice("miss", self.miss, MISS_RULES)
             choice("game", self.game, RULES)
             if rule_set(self.game).anywhere and self.miss != "off":
                 raise refuse("miss", self.miss, f'must be "off" with game="{self.game}", in which no miss is called')
