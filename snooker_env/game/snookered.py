@@ -137,10 +137,10 @@ def snookered_in_hand(positions, on_table, on, jaws, radius):
             x = half * k / places if places else 0.0
             if _open_at(positions, on_table, on, x, BAULK_Y - depth, jaws, radius):
                 return False
+    beside = False
     for i in range(1, N_BALLS):
-        if on_table[i] and _open_beside(positions, on_table, on, i, jaws, radius):
-            return False
-    return True
+        beside = beside or (on_table[i] and _open_beside(positions, on_table, on, i, jaws, radius))
+    return not beside
 
 
 @kernel
