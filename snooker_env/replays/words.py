@@ -12,7 +12,7 @@ FOUL_WORDS = {
     Foul.PUSH: "push stroke", Foul.DOUBLE_HIT: "double hit", Foul.OUTSIDE_D: "played from outside the D",
     Foul.FEET: "both feet off the floor",
     Foul.OUT_OF_TURN: "played out of turn", Foul.BEHIND_FREE_BALL: "snooker behind the free ball", Foul.NO_NOMINATION: "no ball nominated",
-    Foul.SEVEN: "foul of seven",
+    Foul.SEVEN: "foul of seven", Foul.NO_CUSHION: "no ball reached a cushion", Foul.LATE: "not played in time",
 }  # fmt: skip
 
 

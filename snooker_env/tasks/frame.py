@@ -86,6 +86,7 @@ class Frames(Tables):
         if n:
             write_frame(Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.saved, 0)
             self.game[:] = self.game[0]
+            self.on_table[:, 1:] = [rules.rule_set.on_table >> i & 1 for i in range(1, N_BALLS)]
         self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
 
     @property
@@ -214,6 +215,7 @@ class Frames(Tables):
             self.complete(self.prepare(acting, actions, buffers), out, buffers, crew, own=True, alone=alone)
             self.go_on(acting)
             if alone:
+                self.game[acting, STRIKER] = AGENT  # also after a decision or lot of a state in which there were two players
                 self._finish(which, out)
 
         crew(playing, play)
@@ -273,7 +275,7 @@ class Frames(Tables):
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         breakers = np.full(self.n, -1) if breakers is None else breakers
         frame_kernels.begin(which, drawn, breakers, plan.in_hand, self.on_table, self.game, self.streams)
-        self.begun[which], self.due[which] = True, False
+        self.begun[which], self.due[which], self.nominated[which] = True, False, AUTO
 
     def _show(self, which, out, *, fresh):
         frame_kernels.show(
@@ -348,7 +350,7 @@ class Frames(Tables):
         self.game[k, FIRST_BREAK] = state.frame.breaker
         self.game[k, PAID] = self._worth(k) - state.unpaid
         self.streams[k] = np.array(state.stream, np.uint64)
-        self._replies[k], self.begun[k], self.due[k] = 0, True, state.due
+        self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
 
     def standing(self, k: int) -> dict[str, Any]:
         """The fields of ``Played`` that the frame on table k determines."""
@@ -370,7 +372,7 @@ class Frames(Tables):
         )  # fmt: skip
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)
-        self._replies[k], self.begun[k], self.due[k] = 0, True, False
+        self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, False, AUTO
 
     def text(self, k: int) -> str:
         """One line of text for pictures."""

@@ -267,8 +267,8 @@ def observe_frame_into(out, k, positions, on_table, row, saved, limits, player):
         return
     for i in range(N_BALLS):
         at, there = FRAME_SIZE + 3 * i, row[MISS_CALLED] and saved.on_table[k, i]
-        out[at] = saved.positions[k, i, 0] / HALF_WIDTH if there else 0.0
-        out[at + 1] = saved.positions[k, i, 1] / HALF_LENGTH if there else 0.0
+        out[at] = min(1.0, max(-1.0, saved.positions[k, i, 0] / HALF_WIDTH)) if there else 0.0  # clipped in the mouths of pockets
+        out[at + 1] = min(1.0, max(-1.0, saved.positions[k, i, 1] / HALF_LENGTH)) if there else 0.0
         out[at + 2] = 1.0 if there else 0.0
 
 
