@@ -17,7 +17,8 @@ def match_env(options: Options | None = None, *, render_mode: RenderMode | None 
     Parameters
     ----------
     options : Options, optional
-        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the keywords.
+        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the keywords, with the task
+        "match" if ``frames`` is among them, else "frame".
     render_mode : {"human", "rgb_array", "ansi"}, optional
         How ``render`` shows the table; default None: not at all.
     **given

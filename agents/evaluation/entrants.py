@@ -28,9 +28,11 @@ class Entrant:
     """May code in its files run? Models of Stable-Baselines3 that train.py did not make need it."""
     options: tuple = ()
     """How the actions of such models are read: (key, value) of ``hyperparameters.ACTION_OPTIONS``."""
+    frames: bool = False
+    """Do they play frames, and not visits?"""
 
     @classmethod
-    def of(cls, text, trust=False, options=()):
+    def of(cls, text, trust=False, options=(), frames=False):
         """From NAME, PATH or LABEL=PATH,PATH,... Raises ValueError."""
         label, equals, paths = text.partition("=") if not Path(text).exists() else ("", "", "")
         if not equals:
@@ -50,9 +52,9 @@ class Entrant:
         if any(map(is_player, runs)) and not all(map(is_player, runs)):
             raise refuse("agent", text, "must be players or trained models, not both under one label")
         if is_player(runs[0]):
-            return cls(label or runs[0].rpartition(":")[2], tuple(runs))
+            return cls(label or runs[0].rpartition(":")[2], tuple(runs), frames=frames)
         path = Path(runs[0])
-        return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs), trust, options)
+        return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs), trust, options, frames)
 
     def trained(self):
         """How each run was trained, as far as its files say: a dict a run, {} for a player that was not trained."""
@@ -66,11 +68,11 @@ class Entrant:
     def player(self, k, budget):
         """A fresh player of its run k, or its model, read once. ``budget``: of a search; its seed is k."""
         run = self.runs[k]
-        return player_of(run, budget=budget, seed=k) if is_player(run) else _model(run, self.trust, self.options)
+        return player_of(run, budget=budget, seed=k, frames=self.frames) if is_player(run) else _model(run, self.trust, self.options)
 
     def _training(self, run):
         if is_player(run):
-            player_of(run)  # one's own may not be there
+            player_of(run, frames=self.frames)  # one's own may not be there
             return {}
         model, path = _model(run, self.trust, self.options).model, Path(run)
         card, results = path.with_suffix(".json"), (path if path.is_dir() else path.parent) / "results.json"

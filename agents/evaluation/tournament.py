@@ -114,7 +114,7 @@ def checked(args):
     tuple
     """
     options = options_of(args.options)
-    entrants = [Entrant.of(text, args.trust, options) for text in args.players]
+    entrants = [Entrant.of(text, args.trust, options, frames=True) for text in args.players]
     labels = [entrant.label for entrant in entrants]
     if len(labels) < 2:
         raise refuse("players", " ".join(args.players), "must be two or more")
@@ -180,7 +180,7 @@ def player_for(entrant, other, first, budget):
     """
     run = entrant.runs[0]
     if is_player(run):
-        return player_of(run, budget=budget, seed=zlib.crc32(f"{entrant.label}\n{other}\n{first}".encode()))
+        return player_of(run, budget=budget, seed=zlib.crc32(f"{entrant.label}\n{other}\n{first}".encode()), frames=True)
     return entrant.player(0, budget)
 
 

@@ -1,15 +1,15 @@
 """Which player does a name stand for? A built-in player, a pre-trained model, a model's file or run folder, or MODULE:CLASS.
 
 MODULE:CLASS is a class of your own whose constructor takes no arguments (``built_in`` defines the interface); its module is imported.
-Such a player chooses how its actions are read (``hyperparameters.ACTION_OPTIONS``); the evaluation sets all other options. The code that
-reads models is imported only when it is needed.
+Such a player chooses how its actions are read (``hyperparameters.ACTION_OPTIONS``); the evaluation sets all other options. To play frames
+its options may hold whatever those of an opponent may. The code that reads models is imported only when it is needed.
 """
 
 import importlib
 import re
 from pathlib import Path
 
-from snooker_env import SnookerVectorEnv
+from snooker_env import Options, SnookerVectorEnv
 from snooker_env.checks import choice, refuse
 
 from .built_in import ABSOLUTE, Geometric, GhostBall, Lookahead, Random
@@ -24,16 +24,20 @@ def is_player(name):
     return name in NAMES or bool(own)
 
 
-def _own(name):
-    """The player MODULE:CLASS."""
+def _own(name, frames):
+    """The player MODULE:CLASS, who can play visits, or frames."""
     from ..learning.hyperparameters import ACTION_OPTIONS
 
     module, _, maker = name.partition(":")
     try:
         player = getattr(importlib.import_module(module), maker)()
-        for key in player.options:
-            choice("key of options", key, ACTION_OPTIONS)
-        SnookerVectorEnv(1, **player.options).close()
+        if frames:
+            Options(task="frame", opponent=player)  # checks which options there are
+            Options(task="frame", **player.options)
+        else:
+            for key in player.options:
+                choice("key of options", key, ACTION_OPTIONS)
+            SnookerVectorEnv(1, **player.options).close()
         if not callable(player.act):
             raise TypeError("act cannot be called")
     except Exception as error:  # it is the user's code
@@ -41,8 +45,11 @@ def _own(name):
     return player
 
 
-def player_of(name, *, budget=2000, seed=0):
-    """The player or pre-trained model of that name, the model in that file or run folder, or MODULE:CLASS. ValueError if there is none."""
+def player_of(name, *, budget=2000, seed=0, frames=False):
+    """The player or pre-trained model of that name, the model in that file or run folder, or MODULE:CLASS. ValueError if there is none.
+
+    ``frames``: one's own player is to play frames; otherwise visits.
+    """
     makers = {
         "random": lambda: Random(seed=seed),
         "random_absolute": lambda: Random(ABSOLUTE, seed),
@@ -54,7 +61,7 @@ def player_of(name, *, budget=2000, seed=0):
     if name in makers:
         return makers[name]()
     if is_player(name):
-        return _own(name)
+        return _own(name, frames)
     from ..learning.models import PRETRAINED, pretrained
     from .trained import load_player
 

@@ -89,7 +89,8 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
     render_size : (int, int), optional
         Width and height of pictures [pixels], each in [100, 8192]; default (1920, 1080).
     **given
-        The keywords of ``Options``, in place of ``options``. Box actions hold placement and decision by default.
+        The keywords of ``Options``, in place of ``options``. Box actions hold placement and decision by default, and with ``frames`` the
+        task is "match".
 
     Raises
     ------
@@ -131,7 +132,8 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
         super().__init__()
         if options is None:
             box = given.get("action", "box") == "box"
-            given = {"task": "frame", "placement": box, "decision": box, **given}
+            task = "match" if "frames" in given else "frame"  # only a match has a length
+            given = {"task": task, "placement": box, "decision": box, **given}
         self.options = options_of(options, given)
         if self.options.task == "visit" or self.options.opponent != "none" or self.options.trust:
             what = f"task={self.options.task!r}, opponent={self.options.opponent!r}, trust={self.options.trust!r}"

@@ -98,7 +98,7 @@ class OneTable(ShowsBalls):
         dict
             JSON types. In a visit: "positions" (22, 2) [m], "on_table" (22,), "ball_on", "in_hand", "points", "over", "stream", "rng". In a
             frame: "positions", "on_table", "frame" (``Frame.to_dict``), "strokes", "unpaid", "due", "stream", "rng"; in a match also
-            "frames" and "first_break".
+            "frames", "first_break" and "best_of".
 
         Examples
         --------

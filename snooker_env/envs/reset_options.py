@@ -15,6 +15,7 @@ from ..tasks.options import Options
 from ..tasks.tables import Tables
 
 ONE, MANY = ("state", "position", "breaker"), ("reset_mask", "state", "states", "position", "positions", "breaker")
+STARTS = ("state", "states", "position", "positions")
 """Allowed keys of the reset options for one table and for many."""
 
 
@@ -78,6 +79,8 @@ def breakers_of(options: dict[str, Any], n: int, game: Options, *, two_players: 
     if "breaker" not in options:
         return {}
     given, field = options["breaker"], 'options["breaker"]'
+    for start in _starts(options):
+        raise refuse(field, given, f'must be left out with "{start}": it says who breaks where balls are dealt')
     if game.task == "visit" or (game.opponent == "none" and not two_players):
         raise refuse(field, given, "must be left out: there is no opponent, and nothing is drawn")
     if isinstance(given, list | tuple | np.ndarray) and np.ndim(given) > 0:
@@ -87,10 +90,14 @@ def breakers_of(options: dict[str, Any], n: int, game: Options, *, two_players: 
     return {"breakers": np.full(n, integer(field, given, 0, 1), np.int64)}
 
 
+def _starts(options):
+    """The keys that say where an episode starts that is not dealt."""
+    return [key for key in STARTS if key in options]
+
+
 def _one_start(options):
-    starts = [key for key in MANY[1:] if key in options]
-    if len(starts) > 1:
-        raise refuse("keys of options", starts, "must be one of them: each says where to start")
+    if len(starts := _starts(options)) > 1:
+        raise refuse("keys of options", starts, "must be only one of them: each says where to start")
 
 
 def start_of(options: dict[str, Any], tables: Tables, check: Check) -> Start | None:

@@ -45,7 +45,7 @@ class Matches(Frames):
     def get_state(self, k: int) -> dict[str, Any]:
         """Table k as JSON types: the fields of a ``states.FrameState`` except "rng"."""
         won = self.game[k, [FRAMES_0, FRAMES_1]].tolist()
-        return super().get_state(k) | {"frames": won, "first_break": int(self.game[k, FIRST_BREAK])}
+        return super().get_state(k) | {"frames": won, "first_break": int(self.game[k, FIRST_BREAK]), "best_of": self.rules.frames}
 
     def set_state(self, k: int, state: FrameState) -> None:
         """Restore a valid ``states.FrameState`` on table k."""

@@ -28,6 +28,8 @@ from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
 from .table_fit import fitted, table_of
 
 TASKS = ("visit", "frame", "match")
+MOST_TIME = 15.0
+"""The most time to play [s]: the longest shot clock. With more no stroke would ever be in time, and the frame's clock would not start."""
 TIME_TO_PLAY = 9.0
 """Default time [s] from the rest of the balls to the next stroke, in a game with a clock. With the strokes' own duration some 14 s a
 stroke, as in the Shoot Out of professionals."""
@@ -145,7 +147,7 @@ class Options:
     game : {"snooker", "six_red", "shoot_out"}, optional
         In a frame: the rules of the game (``snooker_env.game.rule_sets``). Default "snooker".
     time_to_play : float, optional
-        In a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s]; default 9.
+        In a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s], at most 15; default 9.
     frames : int, optional
         In a match: the most frames that it can have, an odd number; default 7.
 
@@ -229,7 +231,7 @@ class Options:
             self._check_visit()
         read = Rules(
             actions, noise, physics, table, fidelity, plan, self.reward, self.observation, self.miss, limit, opponent, one_stroke, frames,
-            self.game, round(1000 * number("time_to_play", self.time_to_play, 0.001, 3600)),
+            self.game, round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME)),
         )  # fmt: skip
         object.__setattr__(self, "rules", read)
 

@@ -56,10 +56,12 @@ class FrameState(NamedTuple):
     frames: tuple[int, int] | None = None
     first_break: int | None = None
     """Of a match: the frames that each player has won, and who broke in the first one."""
+    best_of: int | None = None
+    """Of a match: of how many frames at most."""
 
 
 FRAME_KEYS = ("frame", "positions", "on_table", "strokes", "opponent", "unpaid", "due", "stream", "rng")
-MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break")
+MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break", "best_of")
 """Keys of the saved state of a frame, and of a match."""
 
 
@@ -184,13 +186,15 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
     found = FrameState(frame, positions, on_table, strokes, opponent, unpaid, due, stream, state["rng"])
     if not rules.frames:
         return found
-    frames, first_break = _checked_match(state, frame, rules.frames // 2 + 1)
-    return found._replace(frames=frames, first_break=first_break)
+    frames, first_break = _checked_match(state, frame, rules.frames)
+    return found._replace(frames=frames, first_break=first_break, best_of=rules.frames)
 
 
-def _checked_match(state, frame, needed):
-    """The frames won and who broke first, of a match that is won with ``needed`` frames."""
-    won = state["frames"]
+def _checked_match(state, frame, best_of):
+    """The frames won and who broke first, of a match of ``best_of`` frames."""
+    if integer("state.best_of", state["best_of"], 1, MOST) != best_of:
+        raise refuse("state.best_of", state["best_of"], f"must be {best_of}, as this environment plays")
+    won, needed = state["frames"], best_of // 2 + 1
     if not isinstance(won, list | tuple) or len(won) != 2:
         raise refuse("state.frames", won, "must be two integers, the frames that each player has won")
     won = integer("state.frames[0]", won[0], 0, needed), integer("state.frames[1]", won[1], 0, needed)

@@ -142,6 +142,11 @@ def test_a_match_goes_on_from_its_state_bit_for_bit():
             assert json.dumps(other.get_state()) == json.dumps(env.get_state()) and other.rewards == env.rewards
             assert other.observe("player_1").tobytes() == env.observe("player_1").tobytes()
     assert state is not None and sum(state["frames"]) == 1 and max(env.get_state()["frames"]) == 3
-    for change, field in (({"frames": [3, 0]}, "state.frames"), ({"first_break": 2}, "state.first_break"), ({"frames": 1}, "state.frames")):
+    for change, field in (
+        ({"frames": [3, 0]}, "state.frames"),
+        ({"first_break": 2}, "state.first_break"),
+        ({"frames": 1}, "state.frames"),
+        ({"best_of": 3}, "state.best_of"),
+    ):
         with pytest.raises(ValueError, match=field.replace(".", r"\.")):
             other.reset(options={"state": state | change})

@@ -33,7 +33,7 @@ def test_a_visit_starts_where_the_position_says(position, plain):
     observation, info = env.reset(seed=1, **start(plain(position)))
     assert is_there(env, position) and info["break"] == position.points and info["points"] == 0.0
     assert np.array_equal(observation, Positions.of(position).observations()[0])
-    with pytest.raises(ValueError, match=r"keys of options = \['state', 'position'\]: must be one of them"):
+    with pytest.raises(ValueError, match=r"keys of options = \['state', 'position'\]: must be only one of them"):
         env.reset(options={"state": env.get_state(), "position": position})
 
 
@@ -194,6 +194,19 @@ def test_other_mistakes_are_named():
     refused(lambda: many.reset(options={"positions": MID_BREAK}), 'options["positions"]', "Position", "must be a list of 2 positions")
     refused(lambda: many.reset(options={"positions": [MID_BREAK]}), 'options["positions"]', "list of 1", "must be a list of 2 positions")
     refused(lambda: env.reset(options={"positions": [MID_BREAK]}), "options", "'positions'", "must be one of 'state', 'position'")
+
+
+def test_who_breaks_is_said_only_where_balls_are_dealt():
+    position = sn.Position(cue=(0.0, 0.0), reds=[(0.5, 1.0)])
+    single, match = sn.SnookerEnv(task="frame", opponent="random"), sn.match_env()
+    many = sn.SnookerVectorEnv(2, threads=1, task="frame", opponent="random")
+    single.reset(seed=1)
+    for env, key, given in (
+        (single, "position", position), (match, "position", position), (many, "positions", [position] * 2),
+        (single, "state", single.get_state()),
+    ):  # fmt: skip
+        field, allowed = 'options["breaker"]', f'must be left out with "{key}": it says who breaks where balls are dealt'
+        refused(lambda env=env, key=key, given=given: env.reset(options={key: given, "breaker": 1}), field, "1", allowed)
 
 
 def test_the_position_is_checked_on_the_table_that_is_played_on():

@@ -82,6 +82,22 @@ def test_wrong_lengths_are_refused(frames, allowed):
     refused(lambda: SnookerEnv(task="frame", reward="frames"), "reward", "'frames'", "must be one of 'points', 'win'")
 
 
+def test_a_state_belongs_to_matches_of_its_length():
+    short, long = (SnookerEnv(task="match", frames=n) for n in (3, 5))
+    short.reset(seed=1)
+    long.reset(seed=2)
+    before = long.get_state()
+    refused(lambda: long.reset(options={"state": short.get_state()}), "state.best_of", "3", "must be 5, as this environment plays")
+    assert long.get_state() == before
+
+
+def test_the_length_of_a_match_says_that_it_is_one():
+    pytest.importorskip("pettingzoo")
+    env = sn.match_env(frames=3)
+    assert env.options.task == "match" and env.options.rules.frames == 3 and sn.match_env().options.task == "frame"
+    refused(lambda: sn.match_env(task="frame", frames=3), "frames", "3", 'must be 7 with task="frame"')
+
+
 def test_pettingzoo_checks_a_match(capsys):
     pytest.importorskip("pettingzoo")
     from pettingzoo.test import api_test, seed_test

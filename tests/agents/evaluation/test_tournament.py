@@ -13,6 +13,7 @@ from tests.processes import ROOT
 
 OWN = """
 import numpy as np
+from snooker_env.tasks.observations import FRAME_ENTRIES
 
 class Softly:
     options = {"aim": "target"}
@@ -20,6 +21,20 @@ class Softly:
         actions = np.zeros((len(going), 4), np.float32)
         actions[:, 0] = -0.4
         return actions
+
+class Decides(Softly):
+    options = {"aim": "target", "decision": True}
+    def act(self, tables, observations, going):
+        return np.tile(np.array([-0.4, 0, 0, 0, -1], np.float32), (len(going), 1))
+
+class Names(Softly):
+    frames, options = True, {"aim": "target", "decision": True, "nominate": True, "concede": True, "lot": True}
+    def act(self, tables, observations, going):
+        assert observations.shape == (len(going), 121 + len(FRAME_ENTRIES))
+        return np.tile(np.array([-0.4, 0, 0, 0, 0.9, -1, 0], np.float32), (len(going), 1))
+
+class Loud(Softly):
+    options = {"noise": "none"}
 
 class Mute:
     options, act = {}, None
@@ -71,6 +86,15 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
     assert capsys.readouterr().out == f"{tmp_path / 't.json'}: complete, 3 players, 10 frames\n"
     assert tournament.main(["--show", str(tmp_path / "t.json"), "--markdown", str(tmp_path / "again.md")]) == 0
     assert (tmp_path / "again.md").read_text() == text
+
+
+def test_a_player_of_frames_says_all_that_an_opponent_may(tmp_path):
+    """Which keys its options may hold are those of an opponent: in visits there is no decision, and nothing to nominate."""
+    found = played(tmp_path, "--frames", "2", players=("mine:Decides", "mine:Names"))
+    assert [p["options"].get("nominate") for p in found["players"]] == [None, True] and all(p["decisions"] for p in found["players"])
+    for name in ("Decides", "Names"):
+        with pytest.raises(ValueError, match="key of options = 'decision': must be one of 'action'"):
+            tournament.Entrant.of(f"mine:{name}").trained()
 
 
 def test_a_match_is_the_unit(tmp_path, capsys):
@@ -141,6 +165,7 @@ def test_frames_do_not_depend_on_the_company(tmp_path):
         (["ghost_ball", "ghost_ball"], "player = 'ghost_ball': must be another"),
         (["ghost_ball", "x=ghost_ball,random"], "player = 'x=ghost_ball,random': must be one player"),
         (["ghost_ball", "mine:Mute"], "agent = 'mine:Mute': must be MODULE:CLASS"),
+        (["ghost_ball", "mine:Loud"], "agent = 'mine:Loud': must be MODULE:CLASS .*key of the options of opponent Loud = 'noise'"),
         (["ghost_ball", "random", "--frames", "7"], "frames = 7: must be even"),
         (["ghost_ball", "random", "--frames", "0"], "frames = 0: must be an integer in \\[2"),
         (["ghost_ball", "random", "--match", "4"], "match = 4: must be odd"),
