@@ -1,6 +1,6 @@
 """Do whole frames end by the rules, and is every point and ball accounted for? Random and ghost-ball players, each stroke checked.
 
-    python -m benchmarks.frames [--frames 2000] [--nomination] [--jobs N] [--seed 0] [--json FILE] [--out FOLDER]
+    python -m benchmarks.frames [--frames 2000] [--nomination | --attempt] [--jobs N] [--seed 0] [--json FILE] [--out FOLDER]
 
 Checked at every stroke: the scores against a count of its own of what was potted and given, no visit above 155, no ball lost, doubled,
 overlapping or off the table; and once a frame, that the state written as JSON and read again plays on identically, bit for bit.
@@ -9,6 +9,9 @@ players nominate and declare ("said"), by a claim.
 
 ``--nomination``: instead, how many strokes at a colour after a red are judged otherwise where the player must name it. Each of ghost_ball's
 strokes at a club player's errors is judged twice, with the colour that it aims at and with the one that it strikes first.
+
+``--attempt``: instead, what miss="attempt" decides: of the failures of snookered strikers, the share that was no attempt, and the share
+called a miss (the scores keep the others from being called). Nobody has the balls replaced, so that each position counts once.
 """
 
 import json
@@ -26,11 +29,12 @@ import numpy as np
 
 from snooker_env.game.balls import COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of, mask_of_present
 from snooker_env.game.frame import Frame
+from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.frame import Frames
 from snooker_env.tasks.opponents import GhostBallOpponent, UniformOpponent
 from snooker_env.tasks.options import Options
-from snooker_env.tasks.stroke import DOWN, ShotBuffers
+from snooker_env.tasks.stroke import ATTEMPT, CLEAR_PATH, DOWN, FOULS, ShotBuffers
 from snooker_env.tasks.tables import I_BALL_ON, I_FOULS, I_PENALTY, I_POINTS, Crew
 
 from ._common.command import Command, at_least, run, save_json
@@ -243,6 +247,35 @@ def judged_otherwise(seed):
     return strokes, other
 
 
+def escapes(seed, kind, noise):
+    """One frame with miss="attempt": failures of snookered strikers, those that were no attempt, and those called a miss."""
+    player, table = PLAYERS[kind], FrameTable("attempt", noise=noise, decision=False)
+    table.start(seed)
+    failed = poor = called = 0
+    while not table.over:
+        if table.turn(player) is None:
+            continue
+        seen = table.buffers.enlarged.get(0, table.buffers).seen[0]
+        if seen[FOULS] & (Foul.NO_CONTACT | Foul.WRONG_FIRST) and not seen[CLEAR_PATH]:
+            failed += 1
+            poor += not seen[ATTEMPT]
+            called += table.frame.miss_called
+    return failed, poor, called
+
+
+def print_escapes(frames, seed):
+    """The table of ``escapes``; its rows."""
+    rows = []
+    print("players    noise          frames  failures of snookered strikers   no attempt   called a miss")
+    for kind in PLAYERS:
+        for noise in ("club", "professional"):
+            failed, poor, called = np.sum([escapes(seed + k, kind, noise) for k in range(frames)], axis=0).tolist()
+            rows.append({"player": kind, "noise": noise, "frames": frames, "failures": failed, "no_attempt": poor, "misses": called})
+            shares = [f"{100 * part / max(failed, 1):>11.0f} %" for part in (poor, called)]
+            print(f"{kind:<11}{noise:<13}{frames:>8}{failed:>32}{shares[0]}{shares[1]:>16}", flush=True)
+    return rows
+
+
 def figures_of(kind, miss, tallies, seconds):
     """A row of the table."""
     strokes, breaks = [t.strokes for t in tallies], [b for t in tallies for b in t.breaks]
@@ -266,9 +299,14 @@ def main():
     parser = Command("frames", __doc__, seed=0)
     parser.add_argument("--frames", type=at_least(1), default=2000, help="of each kind")
     parser.add_argument("--jobs", type=at_least(1), default=os.cpu_count() or 1, help="processes")
-    parser.add_argument("--nomination", action="store_true", help="measure what nomination changes")
+    other_figures = parser.add_mutually_exclusive_group()
+    other_figures.add_argument("--nomination", action="store_true", help="measure what nomination changes")
+    other_figures.add_argument("--attempt", action="store_true", help='measure what miss="attempt" decides')
     args = parser.options()
     rows = []
+    if args.attempt:
+        save_json(args.json, {"seed": args.seed, "escapes": print_escapes(args.frames, args.seed)})
+        return
     if args.nomination:
         strokes, other = np.sum([judged_otherwise(seed) for seed in range(args.seed, args.seed + args.frames)], axis=0).tolist()
         print(f"{other} of {strokes} strokes at a colour after a red ({100 * other / strokes:.2f} %) are judged otherwise by nomination")

@@ -45,7 +45,7 @@ def warmup() -> None:
     from .game.referee import Situation, Stroke, judge
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
-    from .planning import Planner, Positions, clear_paths, obstructions, prospects_of
+    from .planning import Planner, Position, Positions, clear_paths, obstructions, prospects_of
     from .planning import pots as direct_pots
     from .tasks.box_actions import Actions, line
 
@@ -58,11 +58,17 @@ def warmup() -> None:
         env.reset(seed=0)
         env.action_masks()
         env.step(0)
-        frames = {"task": "frame", "placement": True, "decision": True, "miss": "clear_path", "opponent": "ghost_ball"}
+        frames = {"task": "frame", "placement": True, "decision": True, "miss": "attempt", "opponent": "ghost_ball"}
         env = SnookerEnv(**frames)
         for seed in range(3):  # in one of them the opponent breaks off
             env.reset(seed=seed)
             env.step([0.0] * 7)
+        snookered = Position(cue=(0.0, 0.0), pink=(0.0, 1.0), black=(0.0, 0.5), on="pink")
+        env.reset(seed=0, options={"position": snookered})
+        env.step([0.0] * 7)
+        env = SnookerEnv(task="frame", game="shoot_out")
+        env.reset(seed=0)
+        env.step([0.0] * 4)
         opponents: list[tuple[Any, Any]] = [(lambda observation, rng: [0.0] * 4, [0.0] * 4), (_Still(), [0.0] * 4)]
         for opponent, action in (*opponents, ("random", 0), ("random", [0.0] * 4)):
             env = SnookerEnv(task="frame", opponent=opponent, action="discrete" if action == 0 else "box")

@@ -63,7 +63,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     ball leaves without noise: squirt is compensated. The best potting line is that of the widest direct pot or, without one, the line to
     the nearest ball on. The place counts only when the cue ball is in hand; without it, the cue ball stands at its usual place for the
     break-off, or near it. The decision counts only in a frame when the opponent has just fouled. Between -1/3 and 1/3 the agent plays, with
-    this same action; above 1/3 it does so, too, unless a miss was called (``miss="clear_path"``).
+    this same action; above 1/3 it does so, too, unless a miss was called (``miss``).
 
     ``action="discrete"``: ``Discrete(540)``. A choice is one of 4 pots, 9 speeds, 3 sides and 5 tops, and the aim is solved for it
     (``snooker_env.tasks.choice_of``). ``action_masks()`` returns the available choices. ``nominate=True`` makes them 7 x 540, 540 n + the
@@ -150,7 +150,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | table | "match" | "tight", or a ``Table`` whose noses are where snooker's are |
     | fidelity | "standard" | "fast", "reference", "euler:N" |
     | opponent, trust | "none", False | frame only; see Description; whether the code in an opponent's ``.zip`` may run |
-    | miss | "off" | frame only; "clear_path": the rule for a foul and a miss (``snooker_env.game.frame``) |
+    | miss | "off" | frame only; "clear_path", "attempt": the rule for a foul and a miss (``snooker_env.game.frame``) |
     | max_strokes | 1000 | frame only; None for no limit |
     | decision, nominate, concede, claim, lot | False | frame only; see Action space |
     | game | "snooker" | frame only; "six_red", "shoot_out": another game (``snooker_env.game.rule_sets``) |
@@ -174,15 +174,15 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | ball_on | int | what was on, a ``BallOn`` |
     | events | int | number of events in the shot |
 
-    In a frame these are about the agent's own stroke, and there are more keys: ``score``, ``opponent_score`` (float), ``strokes`` (of both
-    players so far), ``opponent_strokes`` (in this step), ``winner`` (-1 for none, 0 the agent, 1 the opponent), ``choice``, ``free_ball``,
-    ``needs_snookers`` (bool). They are of the frame in progress; a match adds ``frames_won``, ``opponent_frames`` and ``frame`` (from 0).
+    In a frame these are about the agent's own stroke, and there are more keys: ``score``, ``opponent_score``, ``clock`` (float; the last:
+    time played by a clock [s]), ``strokes`` (of both players so far), ``opponent_strokes`` (in this step), ``winner`` (-1 for none, 0 the
+    agent, 1 the opponent), ``misses``, ``failures`` (int), ``choice``, ``free_ball``, ``needs_snookers``, ``anywhere``, ``warned`` (bool).
+    They are of the frame in progress; a match adds ``frames_won``, ``opponent_frames`` and ``frame`` (from 0).
 
     ## States
     ``env.unwrapped.get_state()`` returns everything between two shots as JSON types, and ``reset(options={"state": state})``
     starts from it. A state holds the random stream: the same actions then meet the same execution errors (and the same opponent). With a
-    seed as well, ``reset(seed=..., options={"state": state})``, table and game are those of the state and the random numbers those of the
-    seed. An invalid state is refused, and then nothing has changed.
+    seed as well, table and game are those of the state, the random numbers those of the seed. An invalid state is refused; nothing changes.
 
     ``reset(options={"position": position})`` starts from a ``snooker_env.Position``, validated on this environment's table. Balls, ball on,
     in hand and points are the position's; the random stream goes on, or is that of the seed. In a frame it is the agent's turn, with a

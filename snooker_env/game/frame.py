@@ -230,7 +230,7 @@ class Frame:
         """One stroke: the next frame and the referee's ``Verdict``.
 
         ``clear_path``, ``full_ball_path``: whether before the stroke a straight path was clear to any part, and to the full face, of a
-        ball on (``paths.paths``); ``attempt``: whether the cue ball came near one (``attempt.is_attempt``). They matter with a miss rule
+        ball on (``paths.paths``); ``attempt``: whether the cue ball came near one (``attempt.ATTEMPT_GAP``). They matter with a miss rule
         only. ``layout``: see ``Saved``.
 
         ``time_to_play``, ``duration``: the time [ms] from the rest of the balls to this stroke, and to the next rest; they matter with a

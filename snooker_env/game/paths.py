@@ -203,5 +203,8 @@ def paths(
         raise refuse("on_table[0]", False, "must be True: the cue ball must be on the table")
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on", on, "must name object balls only")
-    any_part, full = _paths(placed, present, on, array("noses", noses, (-1, 5)), array("jaws", jaws, (-1, 6)), float(radius))
+    cushions = array("noses", noses, (-1, 5)), array("jaws", jaws, (-1, 6))
+    for part in cushions:
+        part.setflags(write=False)  # as those of a Table: numba compiles for each kind
+    any_part, full = _paths(placed, present, on, *cushions, float(radius))
     return bool(any_part), bool(full)

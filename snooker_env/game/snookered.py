@@ -6,8 +6,8 @@ struck in this way at both edges (or touches it). Other balls on never hide a ba
 a jaw obstructs an edge and is nearer to the cue ball than any ball not on that does, the cue ball counts as not snookered.
 
 In hand all of the D is tested: three points of the baulk line (the ends of its part in the D, the brown spot), then a grid of ``D_STEP``
-with the arc. A place counts only if a ball can stand there. An opening narrower than the step may be missed; no player places a ball more
-exactly.
+with the arc, then places right beside each ball, where most narrow openings are. A place counts only if a ball can stand there. An opening
+narrower than the step and away from every ball may be missed; no player places a ball more exactly.
 """
 
 import numpy as np
@@ -21,6 +21,8 @@ from .spotting import touches
 
 D_STEP = 0.005
 """Distance between neighbouring places that are tested in the D [m]."""
+BESIDE = 360
+"""Number of directions in which places beside a ball are tested."""
 SLACK = 1e-9
 """A ball obstructs only if it is nearer than 2 R by more than this [m]; touching the path is no obstruction."""
 NO_JAWS = np.empty((0, 3))
@@ -102,6 +104,25 @@ def _open_at(positions, on_table, on, x, y, jaws, radius):
 
 
 @kernel
+def _open_beside(positions, on_table, on, i, jaws, radius):
+    """Whether the cue ball is not snookered from some place in the D right beside ball i: all round it, and on the baulk line."""
+    gap = 2.0 * radius + 2.0 * REFEREE_TOUCH
+    x, y = positions[i, 0], positions[i, 1]
+    if np.hypot(x, y - BAULK_Y) > D_RADIUS + gap:
+        return False
+    for k in range(BESIDE + 2):
+        turn = 2.0 * np.pi * k / BESIDE
+        px, py = x + gap * np.cos(turn), y + gap * np.sin(turn)
+        if k >= BESIDE:
+            if abs(BAULK_Y - y) > gap:
+                break
+            px, py = x + (2 * (k - BESIDE) - 1) * np.sqrt(gap * gap - (BAULK_Y - y) ** 2), BAULK_Y
+        if py <= BAULK_Y and np.hypot(px, py - BAULK_Y) <= D_RADIUS and _open_at(positions, on_table, on, px, py, jaws, radius):
+            return True
+    return False
+
+
+@kernel
 def snookered_in_hand(positions, on_table, on, jaws, radius):
     """Whether the cue ball in hand is snookered from every place in the D. The cue ball's entry in ``on_table`` must be False."""
     for k in range(3):
@@ -116,7 +137,10 @@ def snookered_in_hand(positions, on_table, on, jaws, radius):
             x = half * k / places if places else 0.0
             if _open_at(positions, on_table, on, x, BAULK_Y - depth, jaws, radius):
                 return False
-    return True
+    beside = False
+    for i in range(1, N_BALLS):
+        beside = beside or (on_table[i] and _open_beside(positions, on_table, on, i, jaws, radius))
+    return not beside
 
 
 @kernel

@@ -23,8 +23,9 @@ import numpy as np
 from .._check import refuse
 from .._types import Bools, Floats, Ints, Singles
 from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
-from ..game.frame import Frame
+from ..game.frame import MISS_RULES, Frame
 from ..game.frame_columns import (
+    ATTEMPTS,
     BALL_ON,
     COLUMNS,
     FIRST_BREAK,
@@ -45,6 +46,7 @@ from ..game.frame_columns import (
 from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
 from . import frame_kernels
+from .attempts import judge_attempts
 from .frame_kernels import AGENT
 from .observations import FRAME_SIZE, REPLACED_SIZE
 from .opponents import asked
@@ -58,9 +60,9 @@ from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 class Frames(Tables):
     """n tables, each in the middle of its own frame."""
 
-    REALS: tuple[str, ...] = (*REALS, "score", "opponent_score")
-    COUNTS: tuple[str, ...] = (*COUNTS, "strokes", "opponent_strokes", "winner", "choice", "free_ball", "needs_snookers")
-    FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers")
+    REALS: tuple[str, ...] = (*REALS, "score", "opponent_score", "clock")
+    FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers", "anywhere", "warned")
+    COUNTS: tuple[str, ...] = (*COUNTS, "strokes", "opponent_strokes", "winner", *FLAGS, "misses", "failures")
     SIZE = FRAME_SIZE
     COLUMNS = COLUMNS
 
@@ -81,7 +83,7 @@ class Frames(Tables):
         self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
         self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
         self._limits = np.array([rules.max_strokes, rules.frames // 2 + 1, rules.rule_set.clock])
-        self._kind = MATCH_REWARDS.index(rules.reward)
+        self._kind, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
             write_frame(Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.saved, 0)
@@ -173,10 +175,12 @@ class Frames(Tables):
         crew.saw(which, buffers, own)
 
     def _conclude(self, which, b, out, own, alone):
+        if self._miss == ATTEMPTS:
+            judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
         frame_kernels.conclude(
             which, self.positions, self.on_table, self.game, self.streams, self.nominated, b.r, b.potted, b.status, b.duration,
             b.event_time, b.event_what, b.n_events, b.shots, b.seen, self._jaws, self.packed[0], self.rules.rule_set.code,
-            self.rules.time_to_play, self.rules.misses, own, alone, self._played if own else self._replies, out.reals, out.counts,
+            self.rules.time_to_play, self._miss, own, alone, self._played if own else self._replies, out.reals, out.counts,
         )  # fmt: skip
 
     def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:

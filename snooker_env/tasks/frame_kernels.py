@@ -21,6 +21,7 @@ from ..game.frame_columns import (
     LOT,
     MISS_CALLED,
     MISSES,
+    NO_MISSES,
     ON_TABLE,
     OVER,
     PAID,
@@ -71,6 +72,7 @@ from .declarations import (
 from .observations import FRAME_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, earned, frame_reward_of
 from .stroke import (
+    ATTEMPT,
     CLEAR_PATH,
     DOWN,
     FIRST,
@@ -92,9 +94,11 @@ from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_s
 
 AGENT = 0
 _OK = int(Status.OK)
-(I_SCORE, I_OPPONENT_SCORE) = range(len(REALS), len(REALS) + 2)
-(I_STROKES, I_REPLIES, I_WINNER, I_CHOICE, I_FREE_BALL, I_NEEDS_SNOOKERS) = range(len(COUNTS), len(COUNTS) + 6)
-(I_FRAMES_WON, I_OPPONENT_FRAMES, I_FRAME) = range(len(COUNTS) + 6, len(COUNTS) + 9)
+(I_SCORE, I_OPPONENT_SCORE, I_CLOCK) = range(len(REALS), len(REALS) + 3)
+(I_STROKES, I_REPLIES, I_WINNER) = range(len(COUNTS), len(COUNTS) + 3)
+(I_CHOICE, I_FREE_BALL, I_NEEDS_SNOOKERS, I_ANYWHERE, I_WARNED) = range(len(COUNTS) + 3, len(COUNTS) + 8)
+(I_MISSES, I_FAILURES) = range(len(COUNTS) + 8, len(COUNTS) + 10)
+(I_FRAMES_WON, I_OPPONENT_FRAMES, I_FRAME) = range(len(COUNTS) + 10, len(COUNTS) + 13)
 """Entries of a match only."""
 
 (L_STROKES, L_FRAMES, L_CLOCK) = range(3)
@@ -189,7 +193,7 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
     """Judge the shots that came to rest and update tables and frames. ``own``: infos report the strokes; ``played`` counts them.
 
     ``nominated`` (n,): the colour that each striker has nominated, 0 for none, or AUTO: the one first struck. It is AUTO afterwards.
-    ``rules``: the code of the rule set; ``time_to_play`` [ms]: of each stroke, in a game with a clock.
+    ``rules``, ``miss``: codes of the rule set and the miss rule; ``time_to_play`` [ms]: of each stroke, in a game with a clock.
     """
     for j in range(which.shape[0]):
         if status[j] != _OK:
@@ -215,7 +219,8 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
         nominated[k] = AUTO
         write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result, seen)
         lasted = int(1000.0 * duration[j] + 0.5)
-        after_stroke(row, result, rules, miss, seen[j, CLEAR_PATH], seen[j, FULL_PATH], True, miss, time_to_play, lasted)
+        clear, full, attempt, stored = seen[j, CLEAR_PATH], seen[j, FULL_PATH], seen[j, ATTEMPT], miss != NO_MISSES
+        after_stroke(row, result, rules, miss, clear, full, attempt, stored, time_to_play, lasted)
         row[STROKES] += 1
         if row[PHASE] == LOT:
             _leave_the_black(p, on)
@@ -288,6 +293,9 @@ def _write_frame_info(k, row, player, replies, reals, counts):
     counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies, row[WINNER]
     counts[k, I_CHOICE], counts[k, I_FREE_BALL] = row[PHASE] == CHOICE, row[FREE_BALL]
     counts[k, I_NEEDS_SNOOKERS] = other - mine > available(row[ON_TABLE], row[BALL_ON])
+    reals[k, I_CLOCK] = row[CLOCK] / 1000.0
+    counts[k, I_ANYWHERE], counts[k, I_WARNED] = row[ANYWHERE], row[WARNED]
+    counts[k, I_MISSES], counts[k, I_FAILURES] = row[MISSES], row[FAILURES]
     if counts.shape[1] > I_FRAME:
         counts[k, I_FRAMES_WON], counts[k, I_OPPONENT_FRAMES] = row[FRAMES_0 + player], row[FRAMES_1 - player]
         counts[k, I_FRAME] = row[FRAMES_0] + row[FRAMES_1] - row[OVER]  # from 0: the last one of a match that is over, too

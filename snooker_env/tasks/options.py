@@ -28,6 +28,8 @@ from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
 from .table_fit import fitted, table_of
 
 TASKS = ("visit", "frame", "match")
+MOST_TIME = 15.0
+"""The most time to play [s]: the longest shot clock. With more no stroke would ever be in time, and the frame's clock would not start."""
 TIME_TO_PLAY = 9.0
 """Default time [s] from the rest of the balls to the next stroke, in a game with a clock. With the strokes' own duration some 14 s a
 stroke, as in the Shoot Out of professionals."""
@@ -125,12 +127,16 @@ class Options:
     opponent : str, Path or callable, optional
         In a frame: "none" (default), "random", "ghost_ball", the name of a player, a model's ``.zip``, ``opponent(observation, rng) ->
         action``, a player object, or an ``OpponentPool`` of these (docs/environment/opponents.md).
-    miss : {"off", "clear_path"}, optional
-        In a frame: the rule for a foul and a miss (``snooker_env.game.frame``). Default "off".
+    miss : {"off", "clear_path", "attempt"}, optional
+        In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
     decision : bool, optional
         In a frame: whether a box action holds the decision after a foul of the opponent; default False.
     max_strokes : int or None, optional
         In a frame: number of strokes of both players after which the referee stops it; default 1000, None for never. A match stops with it.
+    one_stroke : bool, optional
+        In a visit: whether it ends after its first stroke; default False.
+    trust : bool, optional
+        In a frame: whether code in an opponent's ``.zip`` may run; default False.
     nominate : bool, optional
         In a frame: whether an action names the colour after a red, and a free ball. Default False: the colour struck first is taken as the
         one nominated.
@@ -141,13 +147,9 @@ class Options:
     game : {"snooker", "six_red", "shoot_out"}, optional
         In a frame: the rules of the game (``snooker_env.game.rule_sets``). Default "snooker".
     time_to_play : float, optional
-        In a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s]; default 9.
+        In a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s], at most 15; default 9.
     frames : int, optional
         In a match: the most frames that it can have, an odd number; default 7.
-    one_stroke : bool, optional
-        In a visit: whether it ends after its first stroke; default False.
-    trust : bool, optional
-        In a frame: whether code in an opponent's ``.zip`` may run; default False.
 
     Attributes
     ----------
@@ -214,7 +216,7 @@ class Options:
         limit, opponent = NEVER, None
         frames = self._frames()
         if frame:
-            choice("miss", self.miss, MISS_RULES[:2])
+            choice("miss", self.miss, MISS_RULES)
             choice("game", self.game, RULES)
             if rule_set(self.game).anywhere and self.miss != "off":
                 raise refuse("miss", self.miss, f'must be "off" with game="{self.game}", in which no miss is called')
@@ -229,7 +231,7 @@ class Options:
             self._check_visit()
         read = Rules(
             actions, noise, physics, table, fidelity, plan, self.reward, self.observation, self.miss, limit, opponent, one_stroke, frames,
-            self.game, round(1000 * number("time_to_play", self.time_to_play, 0.001, 3600)),
+            self.game, round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME)),
         )  # fmt: skip
         object.__setattr__(self, "rules", read)
 

@@ -38,10 +38,11 @@ AT_ONCE = 1e-9
 (VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
 STRIKE_COLUMNS = 11
 
-# Columns of the referee's facts of a stroke: masks of balls, then the clear paths before it (only where misses are called); and of his
-# decision: the player, the ball on (a ``BallOn``), whether he had a free ball, his break with it, points, penalty, fouls.
-(FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS) = range(13)
-SEEN_COLUMNS = 13
+# Columns of the referee's facts of a stroke: masks of balls, then the clear paths before it (only where misses are called) and whether it
+# was an attempt (only with miss="attempt"); and of his decision: the player, the ball on (a ``BallOn``), whether he had a free ball, his
+# break with it, points, penalty, fouls.
+(FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, ATTEMPT, PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS) = range(14)
+SEEN_COLUMNS = 14
 
 _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
 _WHY = {
@@ -232,9 +233,12 @@ class ShotBuffers:
     def __len__(self) -> int:
         return len(self.duration)
 
-    def again(self, j: int, log: int) -> "ShotBuffers":
-        """Work space for shot j alone with a log of that length: struck as before, ``r`` and ``here`` still to be filled."""
-        one = ShotBuffers(1, log, path=self.segments.shape[1] > 0)
+    def again(self, j: int, log: int, *, path: bool = False) -> "ShotBuffers":
+        """Work space for shot j alone with a log of that length: struck as before, ``r`` and ``here`` still to be filled.
+
+        ``path``: record its path in any case.
+        """
+        one = ShotBuffers(1, log, path=path or self.segments.shape[1] > 0)
         one.shots[0], one.seen[0] = shot, _ = self.shots[j], self.seen[j]
         one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
         return one
@@ -282,4 +286,12 @@ def run_again(buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table:
     if status != Status.OK:
         raise SimulationError(f"the shot on table {k} {_WHY[Status(status)]}")
     buffers.enlarged[j] = one
+    return one
+
+
+def with_path(buffers: ShotBuffers, j: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats) -> ShotBuffers:
+    """Play shot j, which came to rest, once more from the same table, with its path. Returns its own buffers; it is not counted."""
+    one = buffers.again(j, buffers.log, path=True)
+    one.r[0], one.here[0] = positions, on_table
+    _simulated(one, 1, rules, phys)
     return one

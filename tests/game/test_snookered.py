@@ -116,6 +116,14 @@ def test_in_hand_finds_a_narrow_view(spare, expected):
     assert snookered(None, [(x, red)], [(x - half, gate), (x + half, gate)])[0] == expected
 
 
+def test_in_hand_finds_a_narrow_view_right_beside_a_ball():
+    # Both edges of the green are in view from the baulk line 0.1 to 0.6 mm beside it, which no grid of places meets.
+    green, brown = (-0.292, BAULK_Y), (-0.27029115608194443, -1.0993258680927571)
+    others = [(0.687739087233893, -0.6279441785695304), (-0.6521780571937696, -0.4790269154178912), (0.0, 0.0), brown]
+    assert not snookered((-0.2392, BAULK_Y), [green], others)[0]
+    assert not snookered(None, [green], others)[0]
+
+
 def test_in_hand_a_place_on_a_ball_is_no_place():
     red = np.array([0.0, -1.19])
     ring = [red + 2.001 * R * np.array([np.cos(a), np.sin(a)]) for a in np.radians(range(0, 360, 60))]

@@ -296,7 +296,7 @@ def spotted_place(ball, others, slack=0.0):
 def nearest_in_d(wish, others):
     """The nearest place to ``wish`` where the cue ball may stand in the D without touching a ball: one of finitely many candidates."""
     wish, others = np.asarray(wish, float), np.asarray(others, float).reshape(-1, 2)
-    if free(wish, others):
+    if free(wish, others, 25 * CLEARANCE):  # not within what a referee sees as a touch
         return wish
     centre = np.array([0.0, BAULK])
     circles = [(o, D2 + 50 * CLEARANCE) for o in others if np.hypot(*(o - centre)) < D_RADIUS + D2]

@@ -337,7 +337,7 @@ def _last_black(after: State, verdict: Verdict) -> None:
     if after.scores[0] == after.scores[1]:
         verdict.notes.add("black re-spotted")
         after.respotted_black, after.ball_on, after.in_hand, after.free_ball, after.phase = True, BLACK, True, False, "drawn"
-        after.on_table[[0, 21]] = True
+        after.on_table[1:21], after.on_table[[0, 21]] = False, True
         after.positions[21] = geometry.SPOTS[21]
         after.break_points = 0
     else:
@@ -350,13 +350,11 @@ def over(after: State, winner: int) -> None:
 
 
 def _shoot_out(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules) -> None:
-    """The Shoot Out: in hand anywhere after a foul; the clock, which begins with the first stroke and stops for a re-spotted black."""
+    """The Shoot Out: in hand anywhere after a foul; the clock, from the first stroke on, which does not end a re-spotted black."""
     if verdict.fouls and after.phase == "stroke":
         after.in_hand = after.anywhere = after.on_table[0] = True
-    if state.respotted_black:
-        return
     after.clock = state.clock + stroke.duration + (rules.time_to_play if state.clock else 0)
-    if after.phase == "stroke" and after.clock + rules.time_to_play > 600_000:
+    if after.phase == "stroke" and not state.respotted_black and after.clock + rules.time_to_play > 600_000:
         verdict.notes.add("time is up")
         after.anywhere = False
         _last_black(after, verdict)
@@ -365,7 +363,7 @@ def _shoot_out(state: State, after: State, stroke: Stroke, verdict: Verdict, rul
 def late(state: State, rules: Rules) -> tuple[Verdict, State] | None:
     """The Shoot Out: the verdict on a stroke that was not begun in time, and the frame after it; None if it is in time."""
     limit = 15_000 if state.clock < 300_000 else 10_000
-    if rules.game != "shoot_out" or state.respotted_black or not state.clock or rules.time_to_play <= limit:
+    if rules.game != "shoot_out" or not state.clock or rules.time_to_play <= limit:
         return None
     verdict, after = Verdict(fouls={LATE}), deepcopy(state)
     verdict.penalty = max(5, state.ball_on)  # after a red no colour has been nominated

@@ -68,7 +68,20 @@ def test_infos_have_the_same_keys_and_types_at_all_times():
     env = frame_env(opponent="random", layout="random:4")
     infos = [out[-1] for out in play(env, 3, 150)]
     assert len({tuple(sorted((k, type(v).__name__) for k, v in info.items())) for info in infos}) == 1
-    assert {"score", "opponent_score", "opponent_strokes", "winner", "choice", "free_ball", "needs_snookers"} <= set(infos[0])
+    assert {
+        "score",
+        "opponent_score",
+        "opponent_strokes",
+        "winner",
+        "choice",
+        "free_ball",
+        "needs_snookers",
+        "clock",
+        "misses",
+        "failures",
+        "anywhere",
+        "warned",
+    } <= set(infos[0])
     assert {info["winner"] for info in infos} > {-1} and {info["choice"] for info in infos} == {True, False}
 
 

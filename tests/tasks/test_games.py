@@ -60,6 +60,7 @@ def test_the_place_anywhere_is_a_share_of_the_table():
         ({"game": "shoot_out", "miss": "clear_path"}, "miss"),
         ({"game": "six_red", "time_to_play": 5.0}, "time_to_play"),
         ({"game": "shoot_out", "time_to_play": 0.0}, "time_to_play"),
+        ({"game": "shoot_out", "time_to_play": 15.001}, "time_to_play"),  # no stroke would ever be in time
         ({"task": "visit", "game": "six_red"}, "game"),
     ],
 )

@@ -5,7 +5,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, YELLOW
-from snooker_env.game.frame_columns import ANYWHERE, CHOICE, FAILURES, IN_HAND, MISS_CALLED, MISSES, PHASE, SAVED
+from snooker_env.game.frame_columns import ANYWHERE, CHOICE, CLOCK, FAILURES, IN_HAND, MISS_CALLED, MISSES, PHASE, SAVED
 from snooker_env.game.pots import pots
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_WIDTH
@@ -174,8 +174,9 @@ def test_after_the_last_miss_of_six_reds_it_places_the_cue_ball_anywhere():
 @pytest.mark.parametrize("opponent", ["ghost_ball", "random"])
 def test_the_shot_clock_holds_for_every_opponent(opponent):
     """ "ghost_ball" struck whatever the time was."""
-    env = sn.SnookerEnv(task="frame", game="shoot_out", time_to_play=16.0, opponent=opponent)
+    env = sn.SnookerEnv(task="frame", game="shoot_out", time_to_play=12.0, opponent=opponent)
     env.reset(seed=1, options={"breaker": 0})
+    env.tables.game[0, CLOCK] = 400_000  # the second half: 10 s a stroke
     before = env.positions.copy()
     env.step([-1.0, 0.0, 0.0, -0.5])
     assert env.frame.scores != (0, 0) and np.array_equal(env.positions[1:], before[1:])  # nobody has struck anything

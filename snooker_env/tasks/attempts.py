@@ -1,0 +1,69 @@
+"""Did a snookered striker who failed make an attempt? The rule ``miss="attempt"``, on shots just played, before the referee rules.
+
+Only the strokes in question are played once more, with the path of the cue ball: those without a clear path to a ball on that struck no
+ball on first. The second time costs as much as the first; it is no shot of an agent and is not counted. All other strokes cost nothing.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._jit import entry
+from .._types import Bools, Floats, Ints
+from ..game.attempt import ATTEMPT_GAP, closest_approach
+from ..game.balls import CUE, bits
+from ..game.frame_columns import strikeable
+from ..geometry import BALL_RADIUS
+from ..physics.engine import EventKind, Status
+from .stroke import ATTEMPT, CLEAR_PATH, FIRST, FULL_PATH, ShotBuffers, see, with_path
+
+if TYPE_CHECKING:
+    from .options import Rules
+
+_BALL_BALL, _OK = int(EventKind.BALL_BALL), int(Status.OK)
+
+
+@entry(what="the strokes of snookered strikers", seconds=1)
+def question(which, positions, on_table, game, potted, status, event_time, event_what, n_events, shots, seen, asked):
+    """Find the shots whose attempt must be judged: ``asked[j]``. All others count as attempts."""
+    for j in range(which.shape[0]):
+        k = which[j]
+        asked[j] = False
+        seen[j, ATTEMPT] = True
+        if status[j] == _OK and not (seen[j, CLEAR_PATH] or seen[j, FULL_PATH]):
+            see(j, event_time, event_what, n_events, potted, positions[k], on_table[k], shots, seen)
+            asked[j] = seen[j, FIRST] & strikeable(game[k], bits(on_table[k]) & ~1) == 0
+
+
+@entry(what="the attempts of snookered strikers", seconds=1)
+def gap_of(positions, on_table, row, event_time, event_what, n_events, segments, n_segments, duration):
+    """How near the cue ball came to a ball on, before it struck another or came to rest [m]; ``row``: of the frame before the stroke."""
+    until = duration
+    for e in range(n_events):
+        if event_what[e, 0] == _BALL_BALL and event_what[e, 1] == CUE:
+            until = event_time[e]
+            break
+    return closest_approach(segments, n_segments, until, positions, on_table, strikeable(row, bits(on_table) & ~1), BALL_RADIUS)
+
+
+def judge_attempts(
+    which: Ints, buffers: ShotBuffers, positions: Floats, on_table: Bools, game: Ints, rules: "Rules", phys: Floats
+) -> dict[int, float]:
+    """Write into ``buffers.seen`` whether the shots just played on the tables ``which`` were attempts.
+
+    Returns the gap [m] of each shot in question by its row.
+    """
+    b, asked = buffers, np.empty(len(which), np.bool_)
+    question(
+        which, positions, on_table, game, b.potted, b.status, b.event_time, b.event_what, b.n_events, b.shots, b.seen, asked
+    )  # fmt: skip
+    gaps = {}
+    for j in np.flatnonzero(asked).tolist():
+        k = which[j]
+        one, at = (b, j) if b.segments.shape[1] else (with_path(b, j, positions[k], on_table[k], rules, phys), 0)
+        gaps[j] = gap_of(
+            positions[k], on_table[k], game[k], one.event_time[at], one.event_what[at], one.n_events[at], one.segments[at],
+            one.n_segments[at], one.duration[at],
+        )  # fmt: skip
+        b.seen[j, ATTEMPT] = gaps[j] <= ATTEMPT_GAP
+    return gaps
