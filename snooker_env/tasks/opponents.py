@@ -4,7 +4,6 @@ For all tables at which it is the opponent's turn, ``ask(frames, which, generato
 None. Then ``prepare(frames, which, actions, buffers)``, on several threads, carries them out up to the strike.
 """
 
-import inspect
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -194,7 +193,7 @@ def opponent_of(
     truth("trust", trust)
     if isinstance(opponent, OpponentPool):
         return PoolOpponent(opponent, partial(opponent_of, kind=kind, actions=actions, trust=trust, shared=shared, replaced=replaced))
-    if inspect.isclass(opponent):
+    if isinstance(opponent, type):
         raise refuse("opponent", opponent, f"must be an instance and not the class: {opponent.__name__}(...)")
     if not isinstance(opponent, str | Path):
         if is_player(opponent):
