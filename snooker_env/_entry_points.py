@@ -5,6 +5,8 @@ from typing import Any
 
 PLAYER = "snooker_env.advice.players:playing"
 """The player that a name stands for: ``playing(name, trust=...)``."""
+NAMES = "snooker_env.advice.players:names"
+"""The names of players: ``names()``."""
 SEAT = "snooker_env.envs.at_frames:Seat"
 """A player's own tables, which show those of frames: ``Seat(player, n, game)``."""
 

@@ -38,7 +38,7 @@ class OpponentPool:
     Raises
     ------
     ValueError
-        If there is not one weight for each member, or a weight is wrong.
+        If ``members`` are given and empty, there is not one weight for each, or a weight is wrong or none is above 0.
 
     Examples
     --------
@@ -51,15 +51,19 @@ class OpponentPool:
     (1.0, 3.0, 1.0)
     """
 
-    def __init__(self, members: Iterable[Any] = (), weights: Iterable[float] | None = None):
+    def __init__(self, members: Iterable[Any] | None = None, weights: Iterable[float] | None = None):
         self._members: list[Any] = []
         self._weights: list[float] = []
-        given = list(members)
+        given = [] if members is None else list(members)
+        if members is not None and not given:
+            raise refuse("members", given, "must hold one member at least; leave them out where add(...) follows")
         each = [1.0] * len(given) if weights is None else list(weights)
         if len(each) != len(given):
             raise refuse("weights", each, f"must be {len(given)} numbers, one for each member")
         for member, weight in zip(given, each, strict=True):
             self.add(member, weight)
+        if given and not any(self._weights):
+            raise refuse("weights", each, "must hold a number above 0: nobody could be drawn")
 
     @property
     def members(self) -> tuple[Any, ...]:
@@ -135,7 +139,11 @@ class PoolOpponent:
         self._complete()
 
     def _complete(self):
-        self._ready += [self._opponent_of(member) for member in self.pool.members[len(self._ready) :]]
+        for k, member in enumerate(self.pool.members[len(self._ready) :], len(self._ready)):
+            try:
+                self._ready.append(self._opponent_of(member))
+            except ValueError as error:
+                raise ValueError(f"members[{k}] of the OpponentPool: {error}") from error
 
     def asked(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> list[tuple[Any, Ints, Any]]:
         """As ``opponents.asked``: one entry for each member that plays on some of the tables ``which``."""

@@ -7,12 +7,12 @@ None. Then ``prepare(frames, which, actions, buffers)``, on several threads, car
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, cast
 
 import numpy as np
 
 from .. import _entry_points
-from .._check import refuse, truth
+from .._check import refuse, refuse_what, truth
 from .._types import Action, Bools, Floats, Ints, Observation, ObservationKind
 from . import observations
 from .box_actions import Actions
@@ -193,12 +193,14 @@ def opponent_of(
     truth("trust", trust)
     if isinstance(opponent, OpponentPool):
         return PoolOpponent(opponent, partial(opponent_of, kind=kind, actions=actions, trust=trust, shared=shared, replaced=replaced))
+    if isinstance(opponent, type):
+        raise refuse("opponent", opponent, f"must be an instance and not the class: {opponent.__name__}(...)")
     if not isinstance(opponent, str | Path):
         if is_player(opponent):
             return PlayerOpponent(opponent, actions.physics, shared)
         if not (callable(opponent) or callable(getattr(opponent, "many", None))):
-            raise refuse("opponent", opponent, ALLOWED)
-        return AskedOpponent(opponent)
+            raise _no_opponent(opponent)
+        return AskedOpponent(cast(Policy, opponent))
     name = str(opponent)
     if name in OPPONENTS:
         return {"none": lambda: None, "random": UniformOpponent, "ghost_ball": GhostBallOpponent}[name]()
@@ -211,8 +213,18 @@ def opponent_of(
     except ValueError as error:
         if Path(name).exists() or ":" in name:
             raise ValueError(f"opponent = {name!r}: {error}") from error
-        raise refuse("opponent", opponent, ALLOWED) from error
+        names = dict.fromkeys((*OPPONENTS, *_entry_points.load(_entry_points.NAMES)()))
+        known = "must be one of " + ", ".join(map(repr, names)) + ", MODULE:CLASS, a model (.zip) or the folder of a training run"
+        raise refuse("opponent", opponent, known) from error
     return PlayerOpponent(player, actions.physics, shared, name)
+
+
+def _no_opponent(thing: Any) -> ValueError:
+    """The error for what is no opponent."""
+    if not callable(getattr(thing, "act", None)):
+        return refuse("opponent", thing, ALLOWED)
+    what = f"a {type(thing).__name__} with act(...)" + (" and options that are no mapping" if hasattr(thing, "options") else " alone")
+    return refuse_what("opponent", what, "must also have options, a mapping that says how its actions are read: {} for the default options")
 
 
 def _of_train(name: str) -> bool:

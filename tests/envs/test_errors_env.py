@@ -46,7 +46,7 @@ ENV = [
         )
     ],
     *[
-        case(make(task="frame", opponent=wrong), "opponent", repr(wrong), "'none', 'random', 'ghost_ball', a path to a model (.zip)")
+        case(make(task="frame", opponent=wrong), "opponent", repr(wrong), "'none', 'random', 'ghost_ball', ")
         for wrong in ("", "Random", "model", 3, None, True, ["random"])
     ],
     *[case(make(task="frame", trust=w), "trust", repr(w), "must be True or False", f"frame-trust={w!r}") for w in (1, None, "yes")],

@@ -344,6 +344,32 @@ def test_a_name_that_nobody_has_is_refused():
             frame_env(opponent=name)
 
 
+def test_a_misspelt_name_is_answered_with_the_names():
+    with pytest.raises(
+        ValueError, match=r"opponent = 'lookahed': must be one of 'none', 'random', 'ghost_ball', 'lookahead', .*MODULE:CLASS"
+    ):
+        frame_env(opponent="lookahed")
+
+
+def test_what_an_object_lacks_to_be_a_player_is_named():
+    class ActsOnly:
+        def act(self, tables, observations, going):
+            return np.zeros((len(going), 4))
+
+    listed = ActsOnly()
+    listed.options = ["aim"]
+    for wrong, says in (
+        (ActsOnly(), r"opponent = a ActsOnly with act\(...\) alone: must also have options, a mapping"),
+        (listed, r"opponent = a ActsOnly with act\(...\) and options that are no mapping: must also have options, a mapping"),
+        (Watcher, r"opponent = <class '.*Watcher'>: must be an instance and not the class: Watcher\(...\)"),
+        (ActsOnly, r"opponent = <class '.*ActsOnly'>: must be an instance"),
+        (OpponentPool, r"opponent = <class '.*OpponentPool'>: must be an instance"),
+        (7, "opponent = 7: must be one of 'none'"),
+    ):
+        with pytest.raises(ValueError, match=f"^{says}"):
+            frame_env(opponent=wrong)
+
+
 def test_copies_of_an_environment_play_on_alike():
     env = frame_env(opponent=Watcher(), layout="random:2", noise="club")
     env.reset(seed=2)

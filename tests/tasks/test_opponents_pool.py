@@ -97,6 +97,27 @@ def test_members_may_be_added_while_frames_go_on():
     assert set(seen) == {"new"} and copy.deepcopy(pool).weights == (0.0, 1.0)
 
 
+def test_of_whom_nobody_could_be_drawn_is_refused_at_once():
+    for wrong, says in (
+        (lambda: OpponentPool([]), r"members = \[\]: must hold one"),
+        (lambda: OpponentPool(["random"], weights=[0]), r"weights = \[0\]: must hold a number above 0"),
+    ):
+        with pytest.raises(ValueError, match=f"^{says}"):
+            wrong()
+    assert OpponentPool().members == () and OpponentPool(["random", "ghost_ball"], weights=[0, 1]).weights == (0.0, 1.0)
+
+
+def test_a_wrong_member_is_named():
+    with pytest.raises(
+        ValueError, match=r"^members\[1\] of the OpponentPool: opponent = 'foo': must be one of 'none', 'random', 'ghost_ball', "
+    ):
+        frames(OpponentPool(["random", "foo"]))
+    tables = frames(pool := OpponentPool(["random"]), 2)
+    pool.add("foo")
+    with pytest.raises(ValueError, match=r"^members\[1\] of the OpponentPool: "):
+        [(tables.reset(seed=seed), tables.step(np.tile(SOFT, (2, 1)))) for seed in range(5)]
+
+
 def test_what_is_no_pool_is_refused():
     for wrong in (lambda: OpponentPool(["random"], weights=[]), lambda: OpponentPool(["random"], weights=[-1.0])):
         with pytest.raises(ValueError, match="weight"):
