@@ -22,7 +22,7 @@ ENV = [
             ("observation", "must be one of 'flat', 'balls'", ("pixels", "Flat", ["flat"], {})),
             ("reward", "must be one of 'points', 'points_and_fouls', 'pots', 'legal'", ("score", "Points", ["points"], {})),
             ("layout", "must be one of 'opened', 'held_out', 'break_off', 'line_up', 'colours', 'snookered', "
-             '"pots:easy", "pots:medium", "pots:hard" or "random:N" with N from 0 to 15',
+             '"pots:easy", "pots:medium", "pots:hard", "random:N" or "break_off:N" with N from 0 to 15',
              ("Opened", "Default", "pots", "pots:", "pots:Easy", "random", "random:", "random:-1", "random:3.0", "random: 3", "random:x")),
             ("noise", "must be one of 'none', 'professional', 'amateur', 'club', 'robot', 'olympiad' or a dict of ['aim_deg'", ("pro",)),
         ]
@@ -42,7 +42,7 @@ ENV = [
         for field, wrong, plain in (
             ("opponent", "random", "none"), ("miss", "clear_path", "off"), ("decision", True, False), ("trust", True, False),
             ("nominate", True, False), ("concede", True, False), ("claim", True, False), ("lot", True, False), ("frames", 5, 7),
-            ("game", "six_red", "snooker"),
+            ("game", "six_red", "snooker"), ("time_to_play", 5.0, 9.0),
         )
     ],
     *[
