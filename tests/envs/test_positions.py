@@ -147,7 +147,7 @@ def test_vectors_of_sb3_take_positions():
     env.reset()
     assert list(Positions.of(env)) == [MID_BREAK, IN_HAND]
     env.set_options([{"position": MID_BREAK}, {"state": {}}])
-    with pytest.raises(ValueError, match=r"keys of options\[1\] = \['state'\]: must be \"state\" alone or \"position\" alone"):
+    with pytest.raises(ValueError, match=r"keys of options\[1\] = \['state'\]: must be \"state\", \"position\" or \"breaker\" alone"):
         env.reset()
 
 
