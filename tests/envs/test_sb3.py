@@ -114,7 +114,8 @@ def test_states_are_saved_and_restored():
     assert all(map(np.array_equal, want, env.step(a)[:3]))
     assert env.env_method("get_state", indices=[1])[0]["stream"] == env.env_method("get_state")[1]["stream"]
     env.set_options([{"state": states[0]}, {}, {"state": states[2]}])
-    with pytest.raises(ValueError, match=r"^keys of options\[1\] = \[\]: must be \"state\", \"position\" or \"breaker\" alone"):  # not the whole of another's state
+    # not the whole of another's state
+    with pytest.raises(ValueError, match=r"^keys of options\[1\] = \[\]: must be \"state\", \"position\" or \"breaker\" alone"):
         env.reset()
     env.set_options({"layout": 1})
     with pytest.raises(ValueError, match="options"):
