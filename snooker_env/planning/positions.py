@@ -11,7 +11,7 @@ from .._jit import entry
 from .._types import Batches, Environment, FlagRows, Integers
 from ..game.balls import CUE, N_BALLS, BallOn, balls_on_kernel, bits, mask_of_present
 from ..game.frame import MOST_BREAK
-from ..game.frame_columns import BALL_ON, FREE_BALL, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
+from ..game.frame_columns import ANYWHERE, BALL_ON, FREE_BALL, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
 from ..physics.table import Table
 from ..tasks.observations import SIZE
 from ..tasks.tables import Tables
@@ -228,12 +228,17 @@ def bare(env: Any) -> Any:
 
 
 def _of_tables(tables: Tables) -> Positions:
-    """The positions of an environment's tables; in a frame the next stroke is treated as one of a visit."""
+    """The positions of an environment's tables; in a frame the next stroke is treated as one of a visit.
+
+    A cue ball that may be placed anywhere on the table is played from where it lies: a visit has no ball in hand outside the D.
+    """
     game = tables.game[:, :VISIT_COLUMNS].copy()
     game[:, STEPS] = 0
-    if tables.game.shape[1] > FREE_BALL and (free := tables.game[:, FREE_BALL] != 0).any():
-        field = f"free ball on table {int(np.argmax(free))}"
-        raise refuse(field, True, "must be False: a planned stroke is judged as one of a visit, which has no free ball")
+    if tables.game.shape[1] > FREE_BALL:
+        if (free := tables.game[:, FREE_BALL] != 0).any():
+            field = f"free ball on table {int(np.argmax(free))}"
+            raise refuse(field, True, "must be False: a planned stroke is judged as one of a visit, which has no free ball")
+        game[tables.game[:, ANYWHERE] != 0, IN_HAND] = 0
     return Positions(tables.positions.copy(), tables.on_table.copy(), game)
 
 

@@ -16,6 +16,7 @@ KINDS = {
         Kind("match", "steady", {"task": "match", "frames": 3, "nominate": True, "concede": True}),
         Kind("ghost_ball", "ghost_ball", {"miss": "clear_path", "noise": "club"}),
         Kind("against_ghost_ball", "steady", {"miss": "clear_path", "opponent": "ghost_ball"}),
+        Kind("attempt", "steady", {"miss": "attempt"}),
         Kind("six_red", "steady", {"game": "six_red", "miss": "clear_path", "nominate": True}),
         Kind("six_red_tables", "steady", {"game": "six_red", "miss": "clear_path"}, tables=True),
         Kind("shoot_out", "steady", {"game": "shoot_out"}),

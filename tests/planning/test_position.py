@@ -132,3 +132,16 @@ def test_a_free_ball_is_refused():
     env.tables.game[1, FREE_BALL] = True
     with pytest.raises(ValueError, match="free ball on table 1 = True: must be False: a planned stroke is judged as one of a visit"):
         Positions.of(env)
+
+
+def test_a_cue_ball_that_may_stand_anywhere_is_played_from_where_it_lies():
+    """It raised: a position in hand must lie in the D."""
+    env = sn.match_env(game="shoot_out")
+    env.reset(seed=0)
+    env.step(np.array([-0.3, 0, 0, -0.4, 0, -1, 0], np.float32))  # away from every ball: a foul
+    state = env.get_state()
+    assert state["frame"]["anywhere"] and state["frame"]["in_hand"]
+    (position,) = Positions.of(env)
+    assert not position.in_hand and position.cue == pytest.approx(state["positions"][0])
+    env.reset(options={"position": position})
+    assert np.array_equal(env.positions[1:], np.array(state["positions"])[1:]) and not env.frame.in_hand
