@@ -78,7 +78,12 @@ def blockers(cue, ball, others, slack=0.0):
 
 
 def snookered_on(cue, ball, others, slack=0.0):
-    """Whether an extreme edge of one ball on is hidden by a ball not on."""
+    """Whether an extreme edge of one ball on is hidden by a ball not on.
+
+    A ball on that the cue ball touches is hit by playing away from it (Section 3 Rule 8), so nothing can hide it.
+    """
+    if np.hypot(*(np.asarray(ball) - cue)) <= D2 + 50e-6:
+        return False
     to = np.asarray(others).reshape(-1, 2)
     for direction, length in edges(cue, ball):
         along = np.clip((to - cue) @ direction, 0.0, length)
