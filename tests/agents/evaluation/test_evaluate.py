@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import sys
 import zipfile
 from pathlib import Path
 
@@ -144,6 +145,7 @@ silent = 3
 
 def test_a_player_of_ones_own_is_compared(tmp_path, monkeypatch):
     (tmp_path / "mine.py").write_text(OWN)
+    monkeypatch.delitem(sys.modules, "mine", raising=False)  # another test's
     monkeypatch.syspath_prepend(tmp_path)
     assert protocol.main(["--agent", "mine:Soft", "me=mine:Soft", *QUICK, "--json", str(tmp_path / "r.json")]) == 0
     found = json.loads((tmp_path / "r.json").read_text())

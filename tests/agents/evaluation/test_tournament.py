@@ -3,6 +3,7 @@
 import copy
 import json
 import re
+import sys
 
 import pytest
 
@@ -47,6 +48,9 @@ QUICK = ("--frames", "6", "--resamples", "100", "--max-strokes", "120", "--threa
 def own(tmp_path, monkeypatch):
     (tmp_path / "mine.py").write_text(OWN)
     monkeypatch.syspath_prepend(tmp_path)
+    sys.modules.pop("mine", None)  # another test's
+    yield
+    sys.modules.pop("mine", None)
 
 
 @pytest.fixture
