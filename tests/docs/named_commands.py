@@ -26,6 +26,7 @@ SHORT = {
     "agents.watch": ["--agent", "ghost_ball", "--out", "{tmp}/visit.html"],
     "agents.report": ["--show", "agents/results/147.json"],
     "tests.rules_cases": ["tests/data/rules_cases.json"],
+    "tests.oracles.frame_oracle": ["--frames", "2", "--kind", "tables"],
     "docs/pictures/make.py": ["--out", "{tmp}"],
     "docs/films/make.py": ["--only", "pot_easy", "--out", "{tmp}"],
 }  # fmt: skip
