@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from copy import deepcopy
 
-from .frame_oracle_rules import ANY, Rules, State, over
+from .frame_oracle_rules import ANY, Rules, State, available, over
 
 
 def named(state: State, x: float) -> int:
@@ -45,7 +45,7 @@ def play_again(state: State) -> State:
 
 def anywhere(state: State) -> State | None:
     """Six-red snooker, after the fifth miss: the player places the cue ball anywhere; None where snookers are required."""
-    if state.misses < 5 or abs(state.scores[0] - state.scores[1]) > state.available():
+    if state.misses < 5 or abs(state.scores[0] - state.scores[1]) > available(state):
         return None
     after = play_on(state)
     after.in_hand, after.anywhere, after.free_ball, after.on_table[0] = True, True, False, True

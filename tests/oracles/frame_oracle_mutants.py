@@ -42,12 +42,12 @@ RULES = {
     "behind the free ball after a scoring stroke too": ("and not costs and not worth", "and not costs"),
     "a miss whatever the score": ("poor and (again or not needed)", "poor"),
     "no miss when level with what is left": (
-        "before >= state.available() or later >= after",
-        "before > state.available() or later > after",
+        "before >= available(state) or later >= available(after)",
+        "before > available(state) or later > available(after)",
     ),
     "a miss for a wrong pot": ("{NO_CONTACT, WRONG_FIRST})", "{NO_CONTACT, WRONG_FIRST, WRONG_POT})"),
     "a part of a ball is enough for the third miss": ("if full else 0\n", "\n"),
-    "points available without the colour after a red": ("seven = 7 if self.ball_on == ANY else 0", "seven = 0"),
+    "points available without the colour after a red": ("seven = 7 if state.ball_on == ANY else 0", "seven = 0"),
 }
 """Errors in ``frame_oracle_rules``: what is replaced, and by what."""
 GEOMETRY = {
