@@ -41,6 +41,7 @@ with needs("train.py"):
     from agents.evaluation.training_summary import conclusion, evaluate, show
     from agents.features.views import training_tables
     from agents.learning.callback import RunCallback, Stop, goal_of, imitate, rollout_of
+    from agents.learning.expert_iteration import ExpertIteration, judge_rewards
     from agents.learning.hyperparameters import Recipe, names
     from agents.learning.imitation import Imitation
     from agents.learning.models import load_weights, zipped
@@ -209,9 +210,10 @@ def train(out, settings, recipe, state, tables, model, progress):
     model.tensorboard_log = str(out / "tb")
     with Stop() as stop:
         if begun or (recipe.imitation and not state):
-            imitated = Imitation(model, tables, recipe.imitation, settings.seed, threads, begun)
+            teacher = ExpertIteration if recipe.expert else Imitation
+            imitated = teacher(model, tables, recipe.imitation, settings.seed, threads, begun)
             of_all = f"{imitated.done:,} of {imitated.states:,} positions"
-            print(f"{settings.agent} in {out}: imitating the search, {of_all}", flush=True)
+            print(f"{settings.agent} in {out}: {imitated.doing}, {of_all}", flush=True)
             if not imitate(imitated, out, settings, model, stop, progress):
                 print(f"Saved at {imitated.done:,} of {imitated.states:,} positions. {go_on(out)}")
                 return None, imitated.curve, stop.signal
@@ -221,6 +223,8 @@ def train(out, settings, recipe, state, tables, model, progress):
             seconds, curve, running = (state[name] for name in ("seconds", "curve", "running"))
         else:
             seconds, curve, running = time.perf_counter() - began, [], None
+        if recipe.expert:
+            judge_rewards(tables, model.policy, threads)
         stop.running = f"this rollout of {rollout_of(model):,} shots"
         callback = RunCallback(out, settings, seconds, curve, imitation, running, stop, progress)
         goal, asked = goal_of(model, settings.steps), settings.steps

@@ -3,6 +3,7 @@
 import numpy as np
 
 from snooker_env.checks import choice
+from snooker_env.planning import Positions
 
 from .lookahead_features import ForesightView
 from .pot_features import SHOWN, PotsView, with_pots
@@ -26,11 +27,17 @@ def training_tables(n, threads=None, view="pots", **options):
     class Viewed(VecEnvWrapper):
         """All tables at once. A terminal observation holds the pots only: nothing is learned from the state after it."""
 
+        judge = None
+        """Values [points] of n ``Positions``, added to the rewards of strokes after which the visit goes on; None: points alone."""
+
         def reset(self):
             return shown(base.tables, self.venv.reset())
 
         def step_wait(self):
             observations, rewards, done, infos = self.venv.step_wait()
+            if self.judge is not None:
+                rewards, on = rewards.copy(), np.flatnonzero(~done)
+                rewards[on] += self.judge(Positions.of(base.tables)[on])
             ended = [info for info in infos if "terminal_observation" in info]
             if ended:
                 last = np.zeros((len(ended), *shown.space.shape), np.float32)

@@ -114,7 +114,7 @@ and 170 MB for ``imitation.KEPT`` positions, the most.
 def imitate(imitation, out, settings, model, stop, progress):
     """Pre-train by imitation, with checkpoints in between. Returns whether it was completed."""
     bar = rich.progress.Progress(disable=not progress)
-    task = bar.add_task(f"{settings.agent}: imitating the search", total=imitation.states, completed=imitation.done)
+    task = bar.add_task(f"{settings.agent}: {imitation.doing}", total=imitation.states, completed=imitation.done)
     last, cost = time.perf_counter(), 0.0
     with bar:
         while imitation.done < imitation.states:

@@ -1,8 +1,8 @@
 """How is an agent defined? By its hyperparameters (``hyperparams/NAME.yml``, in the format of RL Baselines3 Zoo), with Stable-Baselines3.
 
 Additional keys: ``algo`` (the algorithm; the file is named after the agent), ``view`` (the observation: pots or foresight), ``imitation``
-(positions of pre-training by imitation) and ``first_aim_std`` (exploration of the aim at the start). ``learning_rate: lin_X`` falls
-linearly from X to nearly 0.
+(positions of pre-training by imitation), ``expert`` (true: expert iteration in its place) and ``first_aim_std`` (exploration of the aim at
+the start). ``learning_rate: lin_X`` falls linearly from X to nearly 0.
 """
 
 import ast
@@ -64,6 +64,7 @@ class Recipe:
     first_aim_std: float | None
     view: str
     imitation: int
+    expert: bool
     settings: dict
 
     @classmethod
@@ -73,7 +74,7 @@ class Recipe:
         Algorithm, policy, network, view and action belong together: a change of them needs a recipe of its own.
         """
         found = yaml.safe_load((FOLDER / f"{choice('agent', name, names())}.yml").read_text(encoding="utf-8"))[ENV_ID]
-        found = {"view": "pots", "imitation": 0, "first_aim_std": None} | found
+        found = {"view": "pots", "imitation": 0, "expert": False, "first_aim_std": None} | found
         changed = _changes(changes, [key for key, value in found.items() if key == "env_kwargs" or (key in KINDS and value is not None)])
         usual = found["env_kwargs"]
         found |= changed | given
@@ -81,7 +82,7 @@ class Recipe:
             if found.get(key) is not None:
                 found[key] = check(key, found[key], low, high)
         found["env_kwargs"] = _options(found["env_kwargs"], env_kwargs or {}, usual, found["policy"])
-        own = ("algo", "policy", "n_timesteps", "n_envs", "env_kwargs", "first_aim_std", "view", "imitation")
+        own = ("algo", "policy", "n_timesteps", "n_envs", "env_kwargs", "first_aim_std", "view", "imitation", "expert")
         return cls(name, **{key: found.pop(key) for key in own}, settings=found)
 
     def new_model(self, tables, seed):

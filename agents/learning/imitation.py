@@ -65,6 +65,8 @@ class Imitation:
     ``before``: of ``get_state``, with the model and its tables restored: the result equals that of an uninterrupted run, bit for bit.
     """
 
+    doing = "imitating the search"
+
     def __init__(self, model, venv, states, seed, threads, before=None):
         self._model, self._venv, self.states, self._rng = model, venv, states, np.random.default_rng(seed)
         self._expert = Expert(venv.unwrapped.tables, threads, self._rng, ahead=model.gamma > 0)
@@ -105,7 +107,8 @@ class Imitation:
         del self._kept[: -max(1, KEPT // n)]
         for _ in range(max(1, n // PER_UPDATE)):
             rounds = self._rng.integers(len(self._kept), size=max(1, BATCH // n))
-            self._losses.append(_fit(policy, self._optimizer, [self._kept[i] for i in rounds]))
+            batch = (np.concatenate(column) for column in zip(*(self._kept[i] for i in rounds), strict=True))
+            self._losses.append(fit_values(policy, self._optimizer, *batch))
         self._seen, _, _, _ = self._venv.step(np.where(masks, scores, -np.inf).argmax(1))
         self.done += n
         if self.done * 20 // self.states > len(self.curve):
@@ -113,9 +116,8 @@ class Imitation:
             self.curve.append({"states": self.done, "seconds": round(self.seconds, 1), "loss": round(loss, 3)})
 
 
-def _fit(policy, optimizer, rounds):
-    """One gradient step. Returns the mean square error [points^2]."""
-    seen, masks, picks, there, worths = (np.concatenate(column) for column in zip(*rounds, strict=True))
+def fit_values(policy, optimizer, seen, masks, picks, there, worths):
+    """One gradient step towards the values ``worths`` of choices (n, k). Returns the mean square error [points^2]."""
     features = policy.extract_features(torch.as_tensor(seen))
     distribution = policy._get_action_dist_from_latent(features)
     distribution.apply_masking(masks)

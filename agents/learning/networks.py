@@ -19,6 +19,7 @@ from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, SPEEDS, STROKES, TO
 
 from ..features.lookahead_features import CUE_X, ENTRIES, PICKS, POTS_SEEN, STROKES_SEEN
 from ..features.pot_features import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
+from .value_network import ValueNetwork
 
 BALL, CONTEXT, POT = 64, 128, 128
 """Widths of the codes."""
@@ -155,6 +156,16 @@ class TablePolicy(_Policy):
     """Observes the table and its pots, scores all strokes."""
 
     reader, head = TableReader, StrokeHead
+
+
+class JudgedPolicy(TablePolicy):
+    """``TablePolicy`` with the value of positions that judges it; saved together, learned apart (``expert_iteration``)."""
+
+    def _build(self, lr_schedule):
+        super()._build(lr_schedule)
+        own = list(self.parameters())  # those that PPO learns
+        self.position_value = ValueNetwork()
+        self.optimizer = self.optimizer_class(own, **{**self.optimizer_kwargs, "lr": lr_schedule(1)})
 
 
 class ForesightPolicy(_Policy):

@@ -26,9 +26,10 @@ from .position import Position
 from .positions import Positions
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .stops import Stops
+from .stroke_search import Ranked, StrokeSearch
 from .strokes import action_masks, actions_of, as_actions, pot_aim
 
 __all__ = [
-    "RULE_OF_THUMB", "SURE", "Outcomes", "Paths", "Planner", "Position", "Positions", "Pots", "Stops", "action_masks", "actions_of",
-    "as_actions", "clear_paths", "obstructions", "pot_aim", "pots", "processors", "prospects_of", "spread_of",
+    "RULE_OF_THUMB", "SURE", "Outcomes", "Paths", "Planner", "Position", "Positions", "Pots", "Ranked", "Stops", "StrokeSearch",
+    "action_masks", "actions_of", "as_actions", "clear_paths", "obstructions", "pot_aim", "pots", "processors", "prospects_of", "spread_of",
 ]  # fmt: skip

@@ -94,7 +94,7 @@ class Planner:
     def __init__(
         self, env_or_options: Environment | Options | Mapping[str, Any], *, noise: NoiseLike | None = None, threads: int | None = None
     ):
-        rules = _rules_of(env_or_options)
+        rules = options_in(env_or_options).rules
         errors = rules.noise if noise is None else Noise.of(noise)
         self._rules = replace(rules, noise=errors, reward=REWARDS[0], opponent=None, one_stroke=False)
         self._threads = Threads(min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024))
@@ -111,6 +111,11 @@ class Planner:
     def threads(self) -> int:
         """Number of threads that play strokes, an int."""
         return self._threads.threads
+
+    @property
+    def rules(self) -> Rules:
+        """What decides a stroke's outcome, a ``Rules``."""
+        return self._rules
 
     @property
     def noise(self) -> Noise:
@@ -330,15 +335,15 @@ class Planner:
         self.__dict__.update(state, _lock=threading.Lock())  # a lock belongs to one process
 
 
-def _rules_of(source: Any) -> Rules:
-    """The ``Rules`` of an environment or of its options."""
+def options_in(source: Any) -> Options:
+    """The ``Options`` of an environment, or those given as such or as a dict; ValueError for anything else."""
     if isinstance(source, Mapping):
         source = options_of(None, source)
     options = source if isinstance(source, Options) else getattr(bare(source), "options", None)
     if not isinstance(options, Options):
         allowed = "must be an environment of snooker_env, an Options, or a dict of its fields"
         raise refuse_what("env_or_options", f"a {type(source).__name__}", allowed)
-    return options.rules
+    return options
 
 
 def _streams(keys: Integers | Sequence[Integers] | None, n: int, silent: bool) -> NDArray[np.uint64]:

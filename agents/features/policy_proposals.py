@@ -1,0 +1,62 @@
+"""Which strokes does a policy propose? Strokes near the choices that it likes, drawn evenly from its probabilities.
+
+The policy scores the 540 discrete choices. A softmax with ``TEMPERATURE`` makes them probabilities, which are sampled systematically: a
+choice with a share of 10 % gets 10 % of the strokes. Each stroke is moved within the choice's cell of speed, side and top by a Sobol point,
+so that the grid does not limit the search.
+"""
+
+import numpy as np
+import torch
+
+from snooker_env.planning import action_masks
+from snooker_env.planning.proposals import FASTEST, RIM, SLOWEST, strokes_at
+from snooker_env.planning.sobol import sobol_points
+from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS
+
+from .pot_features import with_pots
+
+TEMPERATURE = 2.0
+"""Of the policy's scores. 0.5 to 4 hardly differ by the value of the strokes found; admixed even proposals made it worse."""
+_SPEEDS, _SIDES, _TOPS = np.array(SPEEDS), np.array(SIDES), np.array(TOPS)
+_STEP = np.gradient(np.log(_SPEEDS))
+"""Width of a cell in the logarithm of the speed."""
+_SIDE_STEP, _TOP_STEP = _SIDES[1] - _SIDES[0], _TOPS[1] - _TOPS[0]
+
+
+class PolicyProposals:
+    """The proposals of a ``StrokeSearch`` by a masked policy over the discrete choices.
+
+    Parameters
+    ----------
+    policy : MaskableActorCriticPolicy
+        It observes ``with_pots``.
+    """
+
+    def __init__(self, policy):
+        self.policy = policy
+
+    def scores(self, at):
+        """Log-probabilities of all choices in n ``Positions``: float32 (n, CHOICES), and which are available."""
+        masks = action_masks(at)
+        with torch.no_grad():
+            seen = torch.as_tensor(with_pots(at.observations()))
+            return self.policy.get_distribution(seen, masks).distribution.logits.numpy(), masks
+
+    def __call__(self, search, at, m, seeds):
+        """m strokes for each position, as ``StrokeSearch`` wants them."""
+        scores, masks = self.scores(at)
+        likely = np.where(masks, np.exp((scores - scores.max(axis=1, keepdims=True)) / TEMPERATURE), 0.0)
+        sums = np.cumsum(likely, axis=1)
+        points = np.stack([sobol_points(m, 4, seed ^ 0xBEEF) for seed in seeds.tolist()])
+        levels = (np.arange(m) + points[:, :1, 3]) / m  # systematic sampling: one random start a position
+        picks = np.stack([np.searchsorted(row, level * row[-1], side="right") for row, level in zip(sums, levels, strict=True)])
+        picks = np.minimum(picks, CHOICES - 1)
+        stroke = picks % STROKES
+        speed, side, top = stroke // (len(SIDES) * len(TOPS)), stroke // len(TOPS) % len(SIDES), stroke % len(TOPS)
+        given = np.empty((*picks.shape, 3))
+        given[..., 0] = np.clip(_SPEEDS[speed] * np.exp(_STEP[speed] * (points[..., 0] - 0.5)), SLOWEST, FASTEST)
+        plain = (side == SIDES.index(0.0)) & (points[..., 3] < 0.5)
+        given[..., 1] = np.where(plain, 0.0, _SIDES[side] + _SIDE_STEP * (points[..., 1] - 0.5))
+        given[..., 2] = _TOPS[top] + _TOP_STEP * (points[..., 2] - 0.5)
+        given[..., 1:] /= np.maximum(1.0, np.hypot(given[..., 1], given[..., 2]) / RIM)[..., None]
+        return strokes_at(at, picks // STROKES, given, seeds, search.spread, search.dynamics)

@@ -1,0 +1,148 @@
+"""How do a value, a policy and a planner make each other stronger? By expert iteration (Anthony, Tian & Barber 2017).
+
+Visits are played by the planner, which judges strokes by the value and takes its proposals from the policy. From every position the value
+learns by a backup (``value_learning``), and the policy learns the values of choices, each simulated once under execution noise and judged
+by the value (``judged_choices``). So the planner grows stronger, and with it the value and the policy. The first rounds judge by the rule
+of thumb.
+
+PPO then improves the policy further, with the value as reward-to-go: ``judge_rewards``.
+"""
+
+import time
+
+import numpy as np
+
+from snooker_env import SnookerVectorEnv
+from snooker_env.planning import Positions, StrokeSearch
+
+from ..features.policy_proposals import PolicyProposals
+from ..features.value_features import SIZE, value_features
+from .judged_choices import JudgedChoices
+from .value_learning import ValueLearning
+from .value_network import Value
+
+BUDGET = 60
+"""Simulated shots of a decision in training."""
+FRESH = 6
+"""Fresh noise samples of the best stroke for a target."""
+EXPLORED, AMONG = 0.2, 12
+"""Share of exploratory strokes, each one of the best ``AMONG``."""
+STARTS = (("", 0.6), ("random:12", 0.06), ("random:9", 0.06), ("random:6", 0.06), ("random:3", 0.06), ("line_up", 0.06), ("colours", 0.1))
+"""Layouts in which visits begin, and their shares; "" is the layout of the training tables."""
+POOL = 4096
+"""Positions in which visits begin, of all layouts."""
+HAND, EVEN = 6_144, 30_720
+"""Positions judged by the rule of thumb, and positions with even proposals; at most an eighth and a fifth of all."""
+
+
+class Starts:
+    """Positions in which visits begin, drawn from several layouts."""
+
+    def __init__(self, seed, layout, options):
+        self._pools = []
+        for k, (name, share) in enumerate(STARTS):
+            n = int(POOL * share)
+            tables = SnookerVectorEnv(n, layout=name or layout, **options)
+            tables.reset(seed=np.random.SeedSequence([seed, k]).generate_state(n).tolist())
+            self._pools.append(Positions.of(tables))
+            tables.close()
+
+    def draw(self, n, rng):
+        """n positions."""
+        which = rng.choice(len(STARTS), n, p=[share for _, share in STARTS])
+        rows = (rng.random(n) * [len(self._pools[k]) for k in which]).astype(np.int64)
+        parts = [self._pools[k][row : row + 1] for k, row in zip(which.tolist(), rows.tolist(), strict=True)]
+        return Positions(*(np.concatenate([getattr(one, name) for one in parts]) for name in ("positions", "on_table", "game")))
+
+
+class ExpertIteration:
+    """Expert iteration in ``states`` positions; it has the interface of ``imitation.Imitation``.
+
+    ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit for bit.
+    """
+
+    doing = "learning a value and a policy from the planner"
+
+    def __init__(self, model, venv, states, seed, threads, before=None):
+        tables = venv.unwrapped.tables
+        options = {name: getattr(tables.options, name) for name in ("noise", "physics", "table", "fidelity")}
+        self.states, self._n, self._rng = states, venv.num_envs, np.random.default_rng((seed, 19))
+        self._search = StrokeSearch(options, BUDGET, threads=threads)
+        self._starts = Starts(seed, tables.options.layout, options)
+        self._value = ValueLearning(model.policy.position_value, self._search.spread, self._n, self._rng)
+        self._choices = JudgedChoices(model.policy, options, threads, self._n, self._rng)
+        self._propose = PolicyProposals(model.policy)
+        self.done, self.curve, self._seconds = 0, [], 0.0
+        if before is None:
+            self._at = self._starts.draw(self._n, self._rng)
+        else:
+            self._rng.bit_generator.state = before["rng"]
+            self._at = Positions(*before["at"])
+            self._value.set_state(before["value"])
+            self._choices.set_state(before["choices"])
+            self.done, self.curve, self._seconds = (before[name] for name in ("done", "curve", "seconds"))
+        self._began = time.perf_counter()
+
+    @property
+    def seconds(self):
+        """Duration so far [s]."""
+        return self._seconds + time.perf_counter() - self._began
+
+    def get_state(self):
+        """The state, beside the model and the random generators of the process; most of it are the positions that are kept."""
+        return {
+            "done": self.done, "curve": self.curve, "seconds": self.seconds, "rng": self._rng.bit_generator.state,
+            "at": (self._at.positions, self._at.on_table, self._at.game), "value": self._value.get_state(),
+            "choices": self._choices.get_state(),
+        }  # fmt: skip
+
+    def round(self):
+        """Play a stroke from every position and learn. Every twentieth of all positions gives an entry of ``curve``."""
+        hand, even, remaining = min(HAND, self.states // 8), min(EVEN, self.states // 5), 1.0 - self.done / self.states
+        learned = self.done > hand
+        if learned:
+            self._search.value = self._value.value()
+            self._choices.round(self._at, self._search.value, remaining)
+        if self.done >= even:
+            self._search.propose = self._propose
+        self._play()
+        self.done += self._n
+        if self.done > hand:
+            self._value.fit(remaining)
+        if self.done * 20 // self.states > len(self.curve):
+            losses = [round(float(np.mean(one)), 3) if one else None for one in (self._choices.losses, self._value.losses)]
+            value = self._value.mean_target
+            entry = {"states": self.done, "seconds": round(self.seconds, 1), "loss": losses[0], "value_loss": losses[1]}
+            self.curve.append(entry | {"value": None if value is None else round(value, 2)})
+
+    def _features(self, at):
+        return value_features(at, self._search.spread, self._search.planner.threads)
+
+    def _play(self):
+        """Choose a stroke for each position, keep what its samples lead to, and go on with one of them."""
+        n, rng, at = self._n, self._rng, self._at
+        ranked = self._search.rank(at, rng.integers(2**32, size=n))
+        explored = rng.random(n) < EXPLORED
+        pick = rng.integers(min(AMONG, ranked.strokes.shape[1]), size=n)
+        rows = np.concatenate([np.repeat(np.arange(n), FRESH), np.arange(n)])
+        strokes = np.concatenate([np.repeat(ranked.strokes[:, 0], FRESH, axis=0), ranked.strokes[np.arange(n), pick]])
+        out = self._search.outcomes(at, rows, strokes, rng.standard_normal((len(rows), 5)))
+        goes_on = out.goes_on[: n * FRESH]
+        after = np.zeros((n * FRESH, SIZE), np.float16)
+        after[goes_on] = self._features(out.afterstates[np.flatnonzero(goes_on)])
+        played = np.where(explored, n * FRESH + np.arange(n), FRESH * np.arange(n))
+        follows, points = out.goes_on[played], out.points[: n * FRESH].reshape(n, FRESH)
+        self._value.add(self._features(at), after.reshape(n, FRESH, SIZE), points, goes_on.reshape(n, FRESH), follows & ~explored)
+        self._at = out.afterstates[played]
+        ended = np.flatnonzero(~follows)
+        if len(ended):
+            fresh = self._starts.draw(len(ended), rng)
+            for name in ("positions", "on_table", "game"):
+                getattr(self._at, name)[ended] = getattr(fresh, name)
+        self._at.game[:, 2] = 0  # points of the visit so far: no break may exceed what a table allows
+
+
+def judge_rewards(venv, policy, threads):
+    """Let the training tables add the learned value of the afterstate to each reward: the reward-to-go of PPO with gamma = 0."""
+    search = StrokeSearch(venv.unwrapped.tables)
+    venv.judge = Value(policy.position_value, search.spread, threads)

@@ -1,0 +1,67 @@
+"""How does a policy learn the values of choices from a judge? As in ``imitation``, on positions that the caller plays."""
+
+from collections import deque
+
+import numpy as np
+import torch
+
+from snooker_env.planning import Planner, action_masks
+
+from ..features.pot_features import with_pots
+from .imitation import fit_values, to_try
+
+KEPT = 50_000
+"""Positions that gradient steps are drawn from."""
+BATCH, EACH, RATE = 512, 32, 2e-3
+"""Positions in the batch of a gradient step, new positions for each step, and the first learning rate."""
+_PARTS = 4
+"""Rounds that a batch is drawn from."""
+
+
+class JudgedChoices:
+    """Fits ``policy`` to the values of choices in rounds of n positions; each choice is simulated once under execution noise."""
+
+    def __init__(self, policy, options, threads, n, rng):
+        self._policy, self._rng, self._n = policy, rng, n
+        self._planner = Planner({"action": "discrete", **options}, threads=threads)
+        learned = [p for name, p in policy.named_parameters() if not name.startswith("position_value.")]
+        self._optimizer, self._rounds = torch.optim.Adam(learned, RATE), []
+        self.losses = deque(maxlen=100)
+
+    def round(self, at, value, remaining):
+        """Try choices in n ``Positions``, judge what they leave by ``value``, and learn; ``remaining``: share of the training left."""
+        seen, masks = with_pots(at.observations()), action_masks(at)
+        with torch.no_grad():
+            scores = self._policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
+        picks, there = to_try(scores, masks, self._rng)
+        row, column = np.nonzero(there)
+        played = self._planner.play(at, row, picks[row, column], self._rng.integers(0, 2**63, len(row), dtype=np.uint64))
+        gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
+        gains[on] += value(played.afterstates[on])
+        worths = np.zeros(picks.shape, np.float32)
+        worths[row, column] = gains
+        self._rounds.append((seen, np.packbits(masks, axis=1), picks.astype(np.int16), there, worths))
+        del self._rounds[: -max(1, KEPT // self._n)]
+        for group in self._optimizer.param_groups:
+            group["lr"] = RATE * max(0.02, remaining)
+        for _ in range(max(1, self._n // EACH)):
+            self.losses.append(fit_values(self._policy, self._optimizer, *self._batch(masks.shape[1])))
+
+    def _batch(self, choices):
+        """Positions of several rounds: seen, masks, picks, there, worths."""
+        size = min(self._n, BATCH // _PARTS)
+        parts = [
+            (self._rounds[k], self._rng.choice(self._n, size, replace=False)) for k in self._rng.integers(len(self._rounds), size=_PARTS)
+        ]
+        seen, masks, picks, there, worths = (np.concatenate([one[c][rows] for one, rows in parts]) for c in range(5))
+        return seen, np.unpackbits(masks, axis=1, count=choices).astype(bool), picks.astype(np.int64), there, worths
+
+    def get_state(self):
+        """Everything but the policy."""
+        return {"rounds": self._rounds, "losses": list(self.losses), "optimizer": self._optimizer.state_dict()}
+
+    def set_state(self, state):
+        """Go on from a state of ``get_state``."""
+        self._rounds = list(state["rounds"])
+        self.losses.extend(state["losses"])
+        self._optimizer.load_state_dict(state["optimizer"])

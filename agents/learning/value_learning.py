@@ -1,0 +1,102 @@
+"""How is the value of a position learned? By backups over noise samples, corrected by what really followed.
+
+The target of a position is the mean of points plus the value of the afterstate, over fresh noise samples of the best stroke. (The samples
+that chose the stroke would flatter it.) What really followed corrects it with weight ``LAMBDA``, not beyond an exploratory stroke (Watkins'
+Q(lambda)). Features of afterstates are kept, so that targets follow the network. The returns of single visits are no use as targets: a
+visit's luck drowns what a position is worth.
+"""
+
+from collections import deque
+
+import numpy as np
+import torch
+
+from ..features.value_features import SIZE
+from .value_network import Value
+
+LAMBDA = 0.7
+KEPT = 40_960
+"""Positions that gradient steps are drawn from."""
+REFRESH = 8
+"""Rounds between two computations of the targets."""
+BATCH, EACH, RATE = 1024, 16, 2e-3
+"""Positions in the batch of a gradient step, new positions for each step, and the first learning rate."""
+FIRST_STEPS, FIRST_GUESS = 25, 25.0
+"""The first time, so many times the steps; and the points that follow a visit's last known stroke in its first targets."""
+
+
+class ValueLearning:
+    """Fits a ``ValueNetwork`` to rounds of n positions."""
+
+    def __init__(self, network, spread, n, rng):
+        self._network, self._spread, self._n, self._rng = network, spread, n, rng
+        self._optimizer = torch.optim.Adam(network.parameters(), RATE)
+        self._rounds, self._age = [], 0
+        self._fitted = ()
+        """Of the rounds at the last refresh: features, targets, shares of samples that scored."""
+        self.losses = deque(maxlen=100)
+
+    def add(self, seen, after, points, goes_on, follows):
+        """Keep a round: features (n, SIZE) of the positions and (n, s, SIZE) of what s samples left, their points and whether the visit
+        went on (n, s), and whether the first sample was really played on (n,)."""
+        self._rounds.append((seen.astype(np.float16), after, points.astype(np.float32), goes_on, follows))
+        del self._rounds[: -max(1, KEPT // self._n)]
+
+    def value(self):
+        """The value as it is now."""
+        return Value(self._network, self._spread)
+
+    def fit(self, remaining):
+        """Gradient steps for one round; ``remaining``: share of the training that is left."""
+        first = not self._fitted
+        if first or self._age % REFRESH == 0:
+            targets = self._returns() if first else self._targets()
+            made = np.concatenate([(points > 0).mean(axis=1) for _, _, points, _, _ in self._rounds])
+            self._fitted = np.concatenate([one[0] for one in self._rounds]), targets, made.astype(np.float32)
+        self._age += 1
+        for group in self._optimizer.param_groups:
+            group["lr"] = RATE * max(0.02, remaining)
+        for _ in range(max(1, self._n // EACH) * (FIRST_STEPS if first else 1)):
+            rows = self._rng.integers(len(self._fitted[0]), size=BATCH)
+            seen, target, made = (torch.from_numpy(one[rows].astype(np.float32)) for one in self._fitted)
+            logit, follows = self._network(seen)
+            error = (torch.sigmoid(logit) * follows - target) / 20.0  # points a typical target errs by
+            loss = error.square().mean() + 0.3 * torch.nn.functional.binary_cross_entropy_with_logits(logit, made)
+            self._optimizer.zero_grad()
+            loss.backward()
+            torch.nn.utils.clip_grad_norm_(self._network.parameters(), 1.0)
+            self._optimizer.step()
+            self.losses.append(loss.item())
+
+    @property
+    def mean_target(self):
+        """Mean target of the last round that was fitted [points]; None before."""
+        return float(self._fitted[1][-self._n :].mean()) if self._fitted else None
+
+    def _returns(self):
+        """First targets: points of the samples, and what really followed as far as it is known."""
+        later, targets = np.full(self._n, FIRST_GUESS, np.float32), []
+        for _, _, points, goes_on, follows in reversed(self._rounds):
+            targets.append(points.mean(axis=1) + goes_on.mean(axis=1) * np.where(follows, later, FIRST_GUESS))
+            later = targets[-1]
+        return np.concatenate(targets[::-1]).astype(np.float32)
+
+    def _targets(self):
+        """Targets of all rounds that are kept, by the present network."""
+        value, correction, targets = self.value(), np.zeros(self._n, np.float32), []
+        for seen, after, points, goes_on, follows in reversed(self._rounds):
+            left = value.of(after.reshape(-1, SIZE).astype(np.float32)).reshape(goes_on.shape)
+            targets.append((points + goes_on * left).mean(axis=1) + LAMBDA * follows * correction)
+            correction = targets[-1] - value.of(seen.astype(np.float32))
+        return np.concatenate(targets[::-1]).astype(np.float32)
+
+    def get_state(self):
+        """Everything but the network."""
+        state = {"rounds": self._rounds, "age": self._age, "fitted": self._fitted, "losses": list(self.losses)}
+        return state | {"optimizer": self._optimizer.state_dict()}
+
+    def set_state(self, state):
+        """Go on from a state of ``get_state``."""
+        self._rounds, self._age, self._fitted = list(state["rounds"]), state["age"], state["fitted"]
+        self.losses.extend(state["losses"])
+        self._optimizer.load_state_dict(state["optimizer"])

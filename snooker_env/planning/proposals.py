@@ -1,0 +1,181 @@
+"""Which strokes are worth a look? Continuous strokes at the direct pots, spread evenly over speed and tip, or at given pots and tips.
+
+A pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth. The strokes at a pot are consecutive points of
+one scrambled Sobol sequence over the logarithm of the speed, the height of the tip and its side; half of them have no side. Where there is
+no direct pot, the strokes are contacts with the balls on, from thin to full on both sides.
+"""
+
+from math import asin, atan2, erf, exp, hypot, log, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from .._jit import entry, kernel
+from .._types import Floats, Ints
+from ..game.balls import N_BALLS, VALUES, balls_on_kernel, bits
+from ..game.frame_columns import BALL_ON
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
+from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
+from ..physics.cloth import COLUMNS
+from ..physics.impact.polynomial import WORK
+from ..tasks.pot_aim import solved_aim
+from .positions import Positions
+from .prospects import FAR, FOLLOWS
+from .sobol import sobol
+from .strokes import Dynamics
+
+SLOWEST, FASTEST = 0.8, 6.5
+"""Cue speeds of the proposals [m/s]."""
+HIGHEST, WIDEST = 0.45, 0.35
+"""Largest tip offsets over R, up or down and to a side; a corner is drawn in to the disc of radius ``RIM``."""
+PLAIN = 0.5
+"""Share of the strokes without side."""
+RIM = 0.49
+POWER = 4.0
+"""Power of the chance in a pot's share of the strokes. 2 to 16 gave the same points (600 visits, professional and club errors)."""
+MOST_POTS = 16
+"""Number of pots that strokes are shared among, the widest ones."""
+SPEED, SIDE, TOP, AIM = range(4)
+"""Columns of a stroke."""
+
+
+class Proposals(NamedTuple):
+    """m strokes for each of n positions."""
+
+    strokes: Floats
+    """float64 (n, m, 4): cue speed [m/s], side and top (tip offset over R), direction of the cue ball [rad]."""
+    chances: Floats
+    """float64 (n, m). Chance of each stroke's pot by its width; 1 for a contact without a pot."""
+
+
+@kernel
+def pot_chance(positions, found, spread):
+    """Chance of a pot by its width, as in ``prospects``: the aim's error stays within the tolerance; less for long paths."""
+    ball, pocket = int(found[POT_BALL]), int(found[POT_POCKET])
+    path = hypot(found[GHOST_X] - positions[0, 0], found[GHOST_Y] - positions[0, 1])
+    run = hypot(POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1])
+    return erf(found[TOLERANCE] / (spread * sqrt(2.0))) * exp(-FAR * (path + run))
+
+
+@kernel
+def _tip_on_rim(stroke):
+    far = hypot(stroke[TOP], stroke[SIDE])
+    if far > RIM:
+        stroke[TOP] *= RIM / far
+        stroke[SIDE] *= RIM / far
+
+
+@kernel
+def _spread_stroke(i, seed, stroke):
+    """Stroke i of a pot: speed, side and top from a Sobol point."""
+    stroke[SPEED] = SLOWEST * exp(log(FASTEST / SLOWEST) * sobol(i, 0, seed))
+    stroke[TOP] = HIGHEST * (2.0 * sobol(i, 1, seed) - 1.0)
+    u = (sobol(i, 2, seed) - PLAIN) / (1.0 - PLAIN)
+    stroke[SIDE] = 0.0 if u < 0.0 else WIDEST * (2.0 * u - 1.0)
+    _tip_on_rim(stroke)
+
+
+@kernel
+def _contacts(positions, on_table, on, seed, strokes, chances):
+    """Fill the strokes (m, 4) with contacts at the balls on, from thin to full."""
+    count = 0
+    for ball in range(1, N_BALLS):
+        count += on_table[ball] and (on >> ball) & 1
+    for i in range(len(strokes)):
+        _spread_stroke(i, seed, strokes[i])
+        which, ball = min(count - 1, int(sobol(i, 3, seed) * count)), 0
+        for b in range(1, N_BALLS):
+            if on_table[b] and (on >> b) & 1:
+                if which == 0:
+                    ball = b
+                which -= 1
+        x, y = positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]
+        reach = asin(min(1.0, 2.0 * BALL_RADIUS / hypot(x, y)))
+        strokes[i, AIM] = atan2(y, x) + reach * (2.0 * sobol(i, 4, seed) - 1.0)
+        chances[i] = 1.0
+
+
+@kernel
+def _aim(stroke, positions, found, phys, end_mass_ratio, fidelity, n_steps, motion, phase, work):
+    """Solve the aim of a stroke at the pot ``found``."""
+    ball, pocket = int(found[POT_BALL]), int(found[POT_POCKET])
+    stroke[AIM] = solved_aim(
+        positions, ball, POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y], found[GHOST_X], found[GHOST_Y], stroke[SPEED],
+        stroke[SIDE], stroke[TOP], 0.0, phys, end_mass_ratio, fidelity, n_steps, motion, phase, work,
+    )  # fmt: skip
+
+
+@entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
+def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_ratio, fidelity, n_steps, strokes, chances):
+    """Fill strokes (n, m, 4) and chances (n, m) of n positions.
+
+    ``which`` (n, m): at which pot each stroke is, widest first, its speed and tip being given; without rows, all are spread.
+    """
+    found, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
+    motion, phase, work = np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    m = strokes.shape[1]
+    for k in range(len(strokes)):
+        p, here, seed = positions[k], on_table[k], seeds[k]
+        on = balls_on_kernel(game[k, BALL_ON], bits(here))
+        many = find_pots(p, here, on, BALL_RADIUS, found)
+        if many == 0:
+            _contacts(p, here, on, seed, strokes[k], chances[k])
+            continue
+        total = 0.0
+        for j in range(many):
+            weights[j] = pot_chance(p, found[j], spread) ** POWER * (VALUES[int(found[j, POT_BALL])] + FOLLOWS) + 1e-12
+            total += weights[j]
+        j, reached = 0, weights[0] / total
+        for i in range(m):
+            if which.shape[0]:
+                j = min(which[k, i], many - 1)
+            else:
+                while j < many - 1 and i >= int(m * reached + 0.5):
+                    j += 1
+                    reached += weights[j] / total
+                _spread_stroke(i, seed, strokes[k, i])
+            _aim(strokes[k, i], p, found[j], phys, end_mass_ratio, fidelity, n_steps, motion, phase, work)
+            chances[k, i] = pot_chance(p, found[j], spread)
+
+
+_NOT_GIVEN = np.empty((0, 0), np.int64)
+
+
+def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: Dynamics) -> Proposals:
+    """m strokes for each of n positions, spread over all direct pots, speeds and tips.
+
+    Parameters
+    ----------
+    at : Positions
+        The n positions.
+    m : int
+        Number of strokes for each.
+    seeds : numpy.ndarray
+        int64 (n,), in [0, 2**32): of the Sobol scrambles.
+    spread : float
+        Standard deviation of the cue ball's direction [rad], as returned by ``spread_of``.
+    dynamics : Dynamics
+        Physics and fidelity with which the aims are solved.
+    """
+    return _proposed(at, np.empty((len(at), m, 4)), seeds, _NOT_GIVEN, spread, dynamics)
+
+
+def strokes_at(at: Positions, which: Ints, speeds_and_tips: Floats, seeds: Ints, spread: float, dynamics: Dynamics) -> Proposals:
+    """Strokes at given pots: ``which`` (n, m), widest first; ``speeds_and_tips`` (n, m, 3) in the columns ``SPEED`` to ``TOP``.
+
+    Where there is no direct pot: the contacts of ``spread_strokes``.
+    """
+    n, m = which.shape
+    strokes = np.empty((n, m, 4))
+    strokes[..., :AIM] = speeds_and_tips
+    return _proposed(at, strokes, seeds, np.ascontiguousarray(which, np.int64), spread, dynamics)
+
+
+def _proposed(at, strokes, seeds, which, spread, dynamics):
+    physics, (code, n_steps) = dynamics
+    chances = np.empty(strokes.shape[:2])
+    keys = np.asarray(seeds, np.int64)
+    _propose(
+        at.positions, at.on_table, at.game, keys, which, spread, physics.pack(), physics.end_mass_ratio, code, n_steps, strokes, chances
+    )  # fmt: skip
+    return Proposals(strokes, chances)

@@ -1,0 +1,232 @@
+"""Which stroke is best? A search over continuous strokes at all pots, one shot deep, with a value of what each stroke leaves.
+
+1. Strokes are proposed (``proposals``) and each is played once without error. Its score is the chance of its pot by the pot's width, times
+   its points plus the value of the afterstate.
+2. The best meet noise samples, the better ones more of them (sequential halving, Karnin, Koren & Somekh 2013). The samples are scrambled
+   Sobol points, common to all strokes of a position. The score is the mean over the samples, with the first look as ``PRIOR`` of them.
+
+Without execution errors the first look is the whole truth and takes the whole budget.
+"""
+
+from collections.abc import Callable
+from math import hypot, pi, sqrt
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._check import integer, refuse_what
+from .._jit import entry
+from .._types import Environment, Floats, Integers, Ints
+from ..physics.cue import MAX_ELEVATION, squirt
+from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
+from ..tasks.noise import N_AIM, N_ELEVATION, N_SPEED, N_SPEED_REL, N_TIP, NoiseLike
+from ..tasks.options import Options
+from .planner import Outcomes, Planner, options_in
+from .positions import Positions, PositionsLike
+from .proposals import AIM, SIDE, SPEED, TOP, Proposals, spread_strokes
+from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
+from .sobol import DIMENSIONS, normal_points
+
+PRIOR = 2.0
+"""Number of samples that the look without error counts as."""
+FEWEST = 8
+"""Least budget of a decision."""
+SCHEDULES = (
+    (30, 16, ((4, 2), (2, 3))),
+    (60, 32, ((6, 2), (3, 5))),
+    (120, 60, ((10, 3), (4, 7))),
+    (500, 220, ((20, 4), (8, 12), (4, 25))),
+    (2000, 800, ((40, 8), (16, 25), (5, 95))),
+)
+"""Budget, number of looks, and for each round the number of strokes and their further samples. Around that of 120, neighbours were no
+better by the value of the strokes that they chose (268 positions)."""
+
+Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
+"""Values [points] of n positions that strokes have left: (n,)."""
+Propose: TypeAlias = Callable[["StrokeSearch", Positions, int, Ints], Proposals]
+"""Proposals of m strokes for each position: called with the search, the n positions, m and the seeds (n,)."""
+
+
+class Ranked(NamedTuple):
+    """The strokes tried in each of n positions, best first, as returned by ``StrokeSearch.rank``.
+
+    Attributes
+    ----------
+    strokes : numpy.ndarray
+        float64 (n, m, 4). Cue speed [m/s], side and top (tip offset over R), direction of the cue ball [rad].
+    scores : numpy.ndarray
+        float64 (n, m). Expected points of the stroke and of what follows.
+    samples : numpy.ndarray
+        int64 (n, m). Noise samples that each stroke met; 0 if it had only the look without error.
+    """
+
+    strokes: Floats
+    scores: Floats
+    samples: Ints
+
+
+def schedule(budget: int) -> tuple[int, tuple[tuple[int, int], ...]]:
+    """Number of looks, and (strokes, further samples) of each round, for a budget of simulated shots; together at most the budget.
+
+    Examples
+    --------
+    >>> from snooker_env.planning.stroke_search import schedule
+    >>> schedule(120)
+    (60, ((10, 3), (4, 7)))
+    """
+    for least, looks, rounds in reversed(SCHEDULES):
+        if budget >= least:
+            grown = tuple((many, each * budget // least) for many, each in rounds)
+            return looks * budget // least, grown
+    return budget, ()
+
+
+@entry(what="the strokes under errors", seconds=1)
+def _under_errors(strokes, errors, noise, end_mass_ratio, max_offset, actions):
+    """Actions (n, 5) of strokes (n, 4) with standard normal errors (n, 5): speed, side, top, aim, elevation, as ``tasks.noise.executed``.
+
+    The cue's direction has been corrected for the squirt of the intended side. A tip error adds its own, so the direction that the action
+    names, which is that of the ball, is turned by the difference.
+    """
+    for i in range(len(strokes)):
+        speed, side, top, e = strokes[i, SPEED], strokes[i, SIDE], strokes[i, TOP], errors[i]
+        struck = speed + e[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)
+        b, t = side + e[1] * noise[N_TIP], top + e[2] * noise[N_TIP]
+        inside = min(1.0, max_offset / max(1e-12, hypot(b, t)))
+        b, t = b * inside, t * inside
+        turned = (strokes[i, AIM] - squirt(side, end_mass_ratio) + e[3] * noise[N_AIM] + squirt(b, end_mass_ratio)) / pi
+        raised = min(MAX_ELEVATION, max(0.0, e[4] * noise[N_ELEVATION]))
+        a = actions[i]
+        a[0] = min(1.0, max(-1.0, 2.0 * (struck - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0))
+        a[1], a[2], a[3] = 2.0 * b, 2.0 * t, turned - 2.0 * round(0.5 * turned)
+        a[4] = 2.0 * raised / MAX_ELEVATION - 1.0
+
+
+class StrokeSearch:
+    """Searches for the best stroke with a number of simulated shots.
+
+    Parameters
+    ----------
+    env_or_options : Env, VectorEnv, AECEnv, Options or dict
+        Where strokes are played, see ``Planner``: physics, table, fidelity and execution noise count.
+    budget : int, optional
+        Largest number of simulated shots for a decision, at least 8; default 120.
+    value : callable, optional
+        Values [points] of n ``Positions``: (n,). Default: the rule of thumb ``prospects_of``.
+    propose : callable, optional
+        Which strokes are looked at, ``propose(search, at, m, seeds)`` -> ``Proposals``. Default: evenly spread over the pots.
+    pots_only : bool, optional
+        Score by the chance of the pot alone, without points and what follows; default False.
+    noise : str, dict or Noise, optional
+        Execution noise in place of the environment's own.
+    threads : int, optional
+        Number of threads, see ``Planner``. Results do not depend on it.
+
+    Raises
+    ------
+    ValueError
+        If an argument has the wrong type or is out of range.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, StrokeSearch
+    >>> search = StrokeSearch({"noise": "club"}, budget=30)
+    >>> ranked = search.rank(Position(cue=(0.0, 0.9), reds=[(0.4, 1.3)], black=(0.0, 1.4605), on="red"), seeds=[7])
+    >>> ranked.strokes.shape, bool(ranked.scores[0, 0] >= ranked.scores[0, 1]), search.shots
+    ((1, 16, 4), True, 30)
+    """
+
+    def __init__(
+        self, env_or_options: Environment | Options | dict[str, Any], budget: int = 120, *, value: Value | None = None,
+        propose: Propose | None = None, pots_only: bool = False, noise: NoiseLike | None = None, threads: int | None = None,
+    ):  # fmt: skip
+        self.budget = integer("budget", budget, FEWEST, 10**7)
+        options = options_in(env_or_options)
+        rules = Planner(options, noise=noise).rules
+        self.noise = rules.noise
+        # the errors are drawn here, not by the table: Sobol points instead of a random stream
+        where: Any = {name: getattr(options, name) for name in ("physics", "table", "fidelity")}
+        self.planner = Planner(Options(elevation=True, noise="none", **where), threads=threads)
+        self.spread = spread_of(self.noise, rules.physics)
+        self.dynamics = rules.physics, rules.fidelity
+        self.value: Value = self.by_rule if value is None else value
+        self.propose: Propose = evenly if propose is None else propose
+        self.pots_only = pots_only
+        self._deviations = self.noise.pack(rules.physics.R)
+
+    @property
+    def shots(self) -> int:
+        """Number of strokes simulated so far, an int."""
+        return self.planner.shots
+
+    def by_rule(self, at: Positions) -> Floats:
+        """Values of positions by the rule of thumb [points]: float64 (n,)."""
+        return prospects_of(at, self.spread, SURE if self.noise.silent else RULE_OF_THUMB, threads=self.planner.threads)[0]
+
+    def rank(self, positions: PositionsLike, seeds: Integers) -> Ranked:
+        """Try strokes in n positions and rank them.
+
+        Parameters
+        ----------
+        positions : PositionsLike
+            The n positions: anything that ``Positions.of`` accepts. A cue ball in hand is played from where it lies.
+        seeds : array_like
+            int (n,), of the proposals and noise samples of each position. Equal seeds give equal decisions.
+
+        Returns
+        -------
+        Ranked
+            ``strokes``, ``scores`` and ``samples`` with n rows each, best first.
+
+        Raises
+        ------
+        ValueError
+            If a position is invalid or has no stroke left to play, or ``seeds`` has the wrong shape.
+        """
+        at = Positions.of(positions)
+        n, own = len(at), np.asarray(seeds)
+        if own.shape != (n,) or own.dtype.kind not in "iu":
+            raise refuse_what("seeds", f"{own.dtype} array of shape {own.shape}", f"must be {n} integers, one for each position")
+        keys = (own.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
+        looks, rounds = (self.budget, ()) if self.noise.silent else schedule(self.budget)
+        strokes, chances = self.propose(self, at, looks, keys)
+        scores = chances * self._gains(at, strokes[:, :, None], np.zeros((n, 1, DIMENSIONS)))[..., 0]
+        every, tries, sums = np.arange(n)[:, None], np.zeros((n, looks), np.int64), PRIOR * scores
+        order = np.argsort(-scores, axis=1, kind="stable")
+        samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in keys.tolist()]) if rounds and n else None
+        done = 0
+        for many, each in rounds:
+            best = order[:, :many]
+            picked = np.repeat(strokes[every, best][:, :, None], each, 2)
+            assert samples is not None
+            sums[every, best] += self._gains(at, picked, samples[:, done : done + each]).sum(2)
+            tries[every, best] += each
+            done += each
+            scores[every, best] = sums[every, best] / (PRIOR + tries[every, best])
+            again = np.argsort(-scores[every, best], axis=1, kind="stable")
+            order = np.concatenate([np.take_along_axis(best, again, 1), order[:, many:]], 1)
+        return Ranked(strokes[every, order], scores[every, order], tries[every, order])
+
+    def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Outcomes:
+        """Play strokes (m, 4) on copies of ``at[rows]`` with standard normal errors (m, 5): speed, side, top, aim, elevation."""
+        actions, physics = np.empty((len(strokes), 5)), self.dynamics[0]
+        _under_errors(strokes, errors, self._deviations, physics.end_mass_ratio, min(0.5, physics.max_offset), actions)
+        return self.planner.play(at, rows, actions)
+
+    def _gains(self, at: Positions, strokes: Floats, errors: Floats) -> Floats:
+        """Points of strokes (n, m, s, 4) under the errors (n, s, 5) of each position, and the value of what they leave: (n, m, s)."""
+        n, m, s = strokes.shape[:3]
+        every = np.broadcast_to(errors[:, None], (n, m, s, DIMENSIONS)).reshape(-1, DIMENSIONS)
+        played = self.outcomes(at, np.repeat(np.arange(n), m * s), strokes.reshape(-1, 4), every)
+        if self.pots_only:
+            return (played.points > 0).astype(np.float64).reshape(n, m, s)
+        gains, on = played.points.copy(), np.flatnonzero(played.goes_on)
+        if len(on):
+            gains[on] += self.value(played.afterstates[on])
+        return gains.reshape(n, m, s)
+
+
+def evenly(search: StrokeSearch, at: Positions, m: int, seeds: Ints) -> Proposals:
+    """The default proposals of a search: evenly spread over all pots, speeds and tips."""
+    return spread_strokes(at, m, seeds, search.spread, search.dynamics)
