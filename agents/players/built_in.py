@@ -1,4 +1,4 @@
-"""How do the built-in players play? At random, the widest pot, a one-shot lookahead, or any pot that geometry finds.
+"""How do the simplest players play? At random, the widest pot, the strokes of ``ppo_foresight`` by a rule, any pot that geometry finds.
 
 The interface of a player:
 
@@ -82,7 +82,7 @@ class GhostBall:
         return [(self._stroke + STROKES * np.arange(many), found.tolerance[k, :many]) for k, many in enumerate(there)]
 
 
-class Lookahead:
+class ForesightRule:
     """The observation of ``ppo_foresight``, scored by a rule instead of a network: mean points plus the mean value of the afterstates."""
 
     options = DISCRETE

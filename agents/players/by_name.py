@@ -12,16 +12,18 @@ from pathlib import Path
 from snooker_env import Options, SnookerVectorEnv
 from snooker_env.checks import choice, refuse
 
-from .built_in import ABSOLUTE, Geometric, GhostBall, Lookahead, Random
+from .built_in import ABSOLUTE, ForesightRule, Geometric, GhostBall, Random
 from .search import Search
+from .stroke_players import NAMES as STROKE_PLAYERS
+from .stroke_players import is_stroke_player, stroke_player
 
-NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "lookahead", "search")
+NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "lookahead_foresight", "search", *STROKE_PLAYERS)
 
 
 def is_player(name):
     """Whether that is the name of a player, built in or MODULE:CLASS, and not of a model."""
     own = re.fullmatch(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*", name) and not Path(name).exists()
-    return name in NAMES or bool(own)
+    return name in NAMES or is_stroke_player(name) or bool(own)
 
 
 def _own(name, frames):
@@ -55,11 +57,13 @@ def player_of(name, *, budget=2000, seed=0, frames=False):
         "random_absolute": lambda: Random(ABSOLUTE, seed),
         "ghost_ball": GhostBall,
         "geometric": Geometric,
-        "lookahead": Lookahead,
+        "lookahead_foresight": ForesightRule,
         "search": lambda: Search(budget, seed=seed),
     }
     if name in makers:
         return makers[name]()
+    if is_stroke_player(name):
+        return stroke_player(name, seed)
     if is_player(name):
         return _own(name, frames)
     from ..learning.models import PRETRAINED, pretrained
