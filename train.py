@@ -1,7 +1,7 @@
 """How is an agent trained to play Snooker-v0? Train one, evaluate it on held-out tables beside simple players, and report the result.
 
-    python train.py                                    four to ten minutes on two cores: PPO with a one-shot lookahead
-    python train.py --steps 1 --imitate 2000           the same, shortened to a few minutes
+    python train.py                                    under half an hour on two cores: a value and a policy by expert iteration, then PPO
+    python train.py --steps 1 --imitate 4096           the same, shortened to a few minutes
     python train.py --agent ppo_mask --seed 1 --out runs/mine
     python train.py --resume --out runs/mine           continue from the last checkpoint after Ctrl-C, a kill or a power cut
 
@@ -14,7 +14,8 @@ Files of a run folder:
 * ``train.lock``, while the run goes on: two runs cannot share a folder (``agents/learning/lock.py``).
 
 Where to read on: ``agents/features/`` has the observations, ``agents/hyperparams/`` the settings of each agent, ``agents/learning/`` the
-networks, the imitation and the files of a run, ``agents/evaluation/`` the evaluation. This file has the settings and the run.
+networks, the expert iteration, the imitation and the files of a run, ``agents/evaluation/`` the evaluation. This file has the settings and
+the run.
 """
 
 import argparse
@@ -65,7 +66,7 @@ def option(default, text, **more):
 class Settings:
     """The settings of a run."""
 
-    agent: str = option("ppo_foresight", "the agent to train: a file of agents/hyperparams", choices=tuple(names()))
+    agent: str = option("ppo_value", "the agent to train: a file of agents/hyperparams", choices=tuple(names()))
     steps: int = option(0, "total number of shots, rounded up to whole rollouts; 0: the recipe's")
     envs: int = option(0, "number of parallel tables; 0: the recipe's")
     parallel: str = option(
@@ -76,7 +77,7 @@ class Settings:
     noise: str = option("", "execution noise: none, professional, amateur, club, robot or olympiad [the recipe's]")
     fidelity: str = option("", "of the simulation: fast, standard, reference or euler:N [the recipe's]")
     physics: str = option("", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]")
-    imitate: int = option(-1, "positions of pre-training by imitating the search; -1: the recipe's number")
+    imitate: int = option(-1, "positions of pre-training, by expert iteration or imitation; -1: the recipe's number")
     start: str = option("", "initial weights: a model of the same agent, its .zip or run folder (read as plain data)")
     set: tuple = option((), "change hyperparameters, for example gamma=0", nargs="+")
     eval_visits: int = option(500, f"visits of the final evaluation, each on a held-out table of its own, at most {HELD_OUT}")
@@ -133,6 +134,8 @@ def recipe_of(settings):
     recipe = Recipe.of(settings.agent, settings.set, {key: value for key, value in chosen.items() if value}, **given)
     if recipe.imitation and recipe.algo != "ppo_mask":
         raise refuse("imitate", recipe.imitation, f"must be 0 for {recipe.name}: only agents with masks can imitate the search")
+    if recipe.expert and not recipe.imitation and not settings.start:
+        raise refuse("imitate", 0, f"must be 1 or more for {recipe.name} without --start: PPO needs the value that is learned there")
     return recipe
 
 

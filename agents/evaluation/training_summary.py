@@ -1,4 +1,4 @@
-"""What did a training run learn? Held-out visits of its agent and of two simple players, as a table and one sentence."""
+"""What did a training run learn? Held-out visits of its agent and of simple players, as a table and one or two sentences."""
 
 from typing import Any
 
@@ -12,48 +12,74 @@ from snooker_env.benchmark import play_visits, summary, tables_of
 from ..features.views import view_of
 from ..learning.hyperparameters import SHOT_OPTIONS
 from ..players.built_in import GhostBall, Random
+from ..players.stroke_players import BUDGET, StrokePlayer
 from ..players.trained import ModelPlayer, player_options
 
 
 def evaluate(recipe, model, visits):
     """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, on the same tables, under the training's noise and physics.
 
-    These are the first tables of ``agents.evaluate``. Raises ValueError if there are not so many tables.
+    Of an agent with a value of positions, also of the planner with it and of the planner by the rule of thumb (``lookahead``). These are
+    the first tables of ``agents.evaluate``. Raises ValueError if there are not so many tables.
     """
     options = player_options(recipe.env_kwargs)
     players = {"trained": ModelPlayer(model, options, view_of(recipe.view)), "ghost_ball": GhostBall(), "random": Random()}
+    if hasattr(model.policy, "position_value"):
+        players |= {"planner": StrokePlayer("planner", model=model.policy), "lookahead": StrokePlayer("lookahead")}
     shared: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS}
+    if recipe.expert:  # it learns on "fast" to save time, and is meant to play on the usual fidelity
+        shared["fidelity"] = "standard"
     seeds = tables_of("held_out", visits)
     return {name: summary(play_visits(player, visits, first_seed=seeds, **shared)) for name, player in players.items()}
 
 
+def _better(a, b):
+    return a["points_a_visit"] - b["points_a_visit"] > 2.0 * np.hypot(a["points_a_visit_se"], b["points_a_visit_se"])
+
+
 def conclusion(agent, steps, imitated, figures, start=None):
-    """The result in one sentence, from the figures; a difference is claimed from two standard errors on.
+    """The result in one sentence, from the figures; a difference is claimed from two standard errors on. A second one about the planner.
 
     ``imitated``: positions of imitation; ``start``: the origin of its initial weights, see ``models.load_weights``, or None.
     """
-    trained, ghost, random = (figures[name] for name in ("trained", "ghost_ball", "random"))
+    return _of_the_agent(agent, steps, imitated, figures, start) + _of_the_planner(figures)
 
-    def better(a, b):
-        return a["points_a_visit"] - b["points_a_visit"] > 2.0 * np.hypot(a["points_a_visit_se"], b["points_a_visit_se"])
+
+def _of_the_agent(agent, steps, imitated, figures, start):
+    trained, ghost, random = (figures[name] for name in ("trained", "ghost_ball", "random"))
 
     def made(player):
         return f"{player['pots_a_visit']:.2f} pots and {player['points_a_visit']:.2f} points a visit"
 
-    begun = f" after {imitated:,} positions of imitation" if imitated else ""
+    what = "expert iteration" if "planner" in figures else "imitation"
+    begun = f" after {imitated:,} positions of {what}" if imitated else ""
     if start:
         begun = f" on top of the {start['shots']:,} of {start['model']}"
     after, visits = f"With {steps:,} shots of training{begun}, {agent}", f"{trained['visits']} visits"
-    if not better(trained, random):
-        how = "plays worse than" if better(random, trained) else f"is not shown by {visits} to be better than"
+    if not _better(trained, random):
+        how = "plays worse than" if _better(random, trained) else f"is not shown by {visits} to be better than"
         return f"{after} {how} random strokes: {made(trained)} against {made(random)}."
-    if better(ghost, trained):
+    if _better(ghost, trained):
         return f"{after} is better than random strokes but worse than ghost_ball: {made(trained)} against {made(ghost)}."
-    if not better(trained, ghost):
+    if not _better(trained, ghost):
         return f"{after} is not shown by {visits} to be better than ghost_ball: {made(trained)} against {made(ghost)}."
     shares = [player["next_pot_after_a_pot"] for player in (trained, ghost)]
     again = "" if None in shares else "; after a pot the next one follows in {:.1f} % against {:.1f} %".format(*(100 * x for x in shares))
     return f"{after} is better than ghost_ball: {made(trained)} against {made(ghost)}{again}."
+
+
+def _of_the_planner(figures):
+    """What learning is worth to the planner; nothing for an agent without a value of positions."""
+    if "planner" not in figures:
+        return ""
+    learned, rule = figures["planner"], figures["lookahead"]
+    points = f"{learned['points_a_visit']:.2f} points a visit against {rule['points_a_visit']:.2f}"
+    shots = f"with {BUDGET} simulated shots a decision the planner makes {points}"
+    if _better(learned, rule):
+        times = learned["points_a_visit"] / rule["points_a_visit"]
+        return f" Its value and its proposals are worth {times:.2f} times a rule by hand: {shots}."
+    how = "are worth less than" if _better(rule, learned) else f"are not shown by {learned['visits']} visits to be worth more than"
+    return f" Its value and its proposals {how} a rule by hand: {shots}."
 
 
 def show(figures):
@@ -71,3 +97,5 @@ def show(figures):
     console = rich.console.Console()
     console.print(table)
     console.print("ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots.")
+    if "planner" in figures:
+        console.print(f"planner: {BUDGET} simulated shots a decision, by what was learned; lookahead: the same by a rule of thumb.")

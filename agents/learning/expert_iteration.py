@@ -74,6 +74,9 @@ class ExpertIteration:
         self._propose = PolicyProposals(model.policy)
         self.done, self.curve, self._seconds = 0, [], 0.0
         if before is None:
+            venv.seed(seed)
+        venv.reset()  # the tables wait for PPO; of a resumed run this takes the state that they were given
+        if before is None:
             self._at = self._starts.draw(self._n, self._rng)
         else:
             self._rng.bit_generator.state = before["rng"]

@@ -128,6 +128,6 @@ def fit_values(policy, optimizer, seen, masks, picks, there, worths):
     loss = ((fitted - torch.as_tensor(worths)).square() * weight).sum() / weight.sum()
     optimizer.zero_grad()
     loss.backward()
-    torch.nn.utils.clip_grad_norm_(policy.parameters(), 10.0)
+    torch.nn.utils.clip_grad_norm_([p for group in optimizer.param_groups for p in group["params"]], 10.0)
     optimizer.step()
     return loss.item()

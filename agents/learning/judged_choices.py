@@ -40,7 +40,8 @@ class JudgedChoices:
         gains[on] += value(played.afterstates[on])
         worths = np.zeros(picks.shape, np.float32)
         worths[row, column] = gains
-        self._rounds.append((seen, np.packbits(masks, axis=1), picks.astype(np.int16), there, worths))
+        kept = seen, np.packbits(masks, axis=1), picks.astype(np.int16), there, worths
+        self._rounds.append(tuple(map(np.ascontiguousarray, kept)))  # sums depend on the layout, and a saved array comes back in this one
         del self._rounds[: -max(1, KEPT // self._n)]
         for group in self._optimizer.param_groups:
             group["lr"] = RATE * max(0.02, remaining)

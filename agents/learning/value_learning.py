@@ -67,6 +67,7 @@ class ValueLearning:
             torch.nn.utils.clip_grad_norm_(self._network.parameters(), 1.0)
             self._optimizer.step()
             self.losses.append(loss.item())
+        self._optimizer.zero_grad()  # nobody else may meet these gradients: PPO clips by the norm of all
 
     @property
     def mean_target(self):

@@ -56,8 +56,8 @@ class StrokePlayer:
         One of ``NAMES``.
     budget : int
         Simulated shots a decision, at least 8.
-    model : str, optional
-        The model with value and policy: a pre-trained one, its .zip or a run's folder. Default: by the noise of the tables.
+    model : str or policy, optional
+        The model with value and policy: a pre-trained one, its .zip or a run's folder, or the policy. Default: by the noise of the tables.
     seed : int
         Of the proposals and noise samples.
 
@@ -107,7 +107,8 @@ class StrokePlayer:
             from ..features.policy_proposals import PolicyProposals
             from ..learning.value_network import Value
 
-            policy = _trained(self.model or model_for(search.noise))
+            model = self.model or model_for(search.noise)
+            policy = _trained(model) if isinstance(model, str) else model
             if self.kind != "planner_policy":
                 search.value = Value(policy.position_value, search.spread, search.planner.threads)
             if self.kind != "planner_value":
