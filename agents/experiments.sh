@@ -11,12 +11,14 @@ folder=${1:-runs/experiments} jobs=${2:-2}
 export folder
 
 runs() { # name, then the options of train.py
-    for k in 0 1 2 3 4; do echo "fore-$k --seed $k"; done
+    for k in 0 1 2 3 4; do echo "value-$k --seed $k"; done
+    for noise in none amateur club; do echo "value-$noise --noise $noise"; done
+    for k in 0 1 2 3 4; do echo "fore-$k --agent ppo_foresight --seed $k"; done
     for k in 0 1 2 3 4; do echo "mask-$k --agent ppo_mask --steps 1000000 --seed $k"; done
-    for k in 0 1 2 3 4; do echo "gamma0-$k --set gamma=0 --seed $k"; done
-    for fidelity in fast reference; do echo "$fidelity-0 --fidelity $fidelity"; done
-    for physics in match marlow; do echo "$physics-0 --physics ${physics/marlow/paper,mu_bb=marlow}"; done
-    for noise in none amateur club; do echo "$noise-0 --noise $noise"; done
+    for k in 0 1 2 3 4; do echo "gamma0-$k --agent ppo_foresight --set gamma=0 --seed $k"; done
+    for fidelity in fast reference; do echo "$fidelity-0 --agent ppo_foresight --fidelity $fidelity"; done
+    for physics in match marlow; do echo "$physics-0 --agent ppo_foresight --physics ${physics/marlow/paper,mu_bb=marlow}"; done
+    for noise in none amateur club; do echo "$noise-0 --agent ppo_foresight --noise $noise"; done
     for k in 0 1 2 3 4; do echo "absolute-$k --agent ppo_absolute --steps 500000 --seed $k"; done
     for k in 0 1 2 3 4; do echo "target-$k --agent ppo_target --steps 1000000 --seed $k"; done
     echo "tqc-0 --agent tqc_target"
@@ -59,11 +61,11 @@ evaluate() { # name of the output, then the options of agents.evaluate
 module agents.curves "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" \
     "ppo_mask=$folder/mask-?" "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?"
 evaluate main --against ghost_ball ppo_foresight_gamma0 --picture agents/pictures/destinations.png --agent \
-    "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" ghost_ball lookahead ppo_mask "ppo_mask_1M=$folder/mask-?" \
+    "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" ghost_ball lookahead_foresight ppo_mask "ppo_mask_1M=$folder/mask-?" \
     geometric random
 evaluate aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
     "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?" ghost_ball random_absolute
-evaluate imitation_against_rule --against lookahead --noise professional --agent "ppo_foresight=$folder/fore-?" lookahead
+evaluate imitation_against_rule --against lookahead_foresight --noise professional --agent "ppo_foresight=$folder/fore-?" lookahead_foresight
 evaluate curriculum --against ghost_ball ppo_mask_1M --layouts held_out line_up --noise professional --agent \
     "curriculum=$folder/curriculum-?" "ppo_mask_1M=$folder/mask-[012]" ghost_ball
 evaluate fidelity --layouts held_out --noise professional --fidelity fast standard reference --agent \
@@ -74,3 +76,20 @@ evaluate noise --layouts held_out --agent \
     "none=$folder/none-?" "professional=$folder/fore-0" "amateur=$folder/amateur-?" "club=$folder/club-?"
 evaluate search --agent search --layouts held_out=100 --noise professional
 evaluate 147 --agent search --layouts break_off=50 --noise none
+
+five() { # a player with the weights of all seeds: five planner_500
+    local all=("$1@$folder/value-"{0,1,2,3,4})
+    IFS=, && echo "${1}=${all[*]}"
+}
+evaluate planner --layouts held_out --noise professional amateur club --against lookahead lookahead_foresight best_pot ppo_mask --agent \
+    "$(five planner)" lookahead lookahead_foresight best_pot ghost_ball "ppo_value=$folder/value-?" ppo_mask
+evaluate planner_parts --layouts held_out line_up colours random:3 --noise professional club --against lookahead --agent \
+    "$(five planner)" "$(five planner_value)" "$(five planner_policy)" lookahead
+evaluate planner_budgets --layouts held_out=400 --noise professional --against search --agent \
+    "planner_30=planner_30@$folder/value-0" "planner_60=planner_60@$folder/value-0" "planner=planner@$folder/value-0" \
+    "$(five planner_500)" "planner_2000=planner_2000@$folder/value-0" lookahead_2000 search
+evaluate planner_noise --layouts held_out=500 --agent "none=planner@$folder/value-none" "professional=planner@$folder/value-0" \
+    "amateur=planner@$folder/value-amateur" "club=planner@$folder/value-club" lookahead --against lookahead
+evaluate planner_rekeyed --layouts held_out=500 --noise professional --rekey --against lookahead --agent \
+    "planner=planner@$folder/value-0" lookahead
+evaluate planner_147 --layouts break_off=50 --noise none --agent "planner_2000=planner_2000@$folder/value-none" lookahead_2000

@@ -25,7 +25,7 @@ judge ppo_mask ppo_mask 1015808
 judge ppo_foresight ppo_foresight 7677952
 judge ppo_foresight_gamma0 ppo_foresight_gamma0 7677952
 # The same view, rated by a rule of thumb (agents/players/built_in.py); "lookahead" is the built-in player of snooker_env.advice.
-judge lookahead_foresight agents.players.built_in:Lookahead 0
+judge lookahead_foresight agents.players.built_in:ForesightRule 0
 judge lookahead lookahead 0
 
 $bench check leaderboard/*.json && $bench table leaderboard/*.json --markdown docs/leaderboard.md

@@ -57,11 +57,28 @@ REFERENCE = "ghost_ball"
 PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
 
 
-def play_agent(agent, condition, seeds, budget, resamples):
+class Rekeyed:
+    """A player whose tables get new random streams after each of its decisions: whoever saw its errors coming would lose by it."""
+
+    def __init__(self, player, seed):
+        self._player, self.options, self._rng = player, player.options, np.random.default_rng(seed)
+
+    def act(self, tables, observations, going):
+        """The player's own actions."""
+        actions = self._player.act(tables, observations, going)
+        streams = tables.tables.streams
+        streams[:] = self._rng.integers(0, 2**63, streams.shape, dtype=np.uint64)
+        return actions
+
+
+def play_agent(agent, condition, seeds, budget, resamples, rekey=False):
     """``EntrantMetrics`` by every run of the agent on the tables with these seeds."""
     options = {"layout": condition["layout"], "noise": condition["noise"], "fidelity": condition["fidelity"]}
     physics = physics_option(condition["physics"])
-    runs = [play_visits(agent.player(k, budget), len(seeds), first_seed=seeds, physics=physics, **options) for k in range(len(agent.runs))]
+    players = [agent.player(k, budget) for k in range(len(agent.runs))]
+    if rekey:
+        players = [Rekeyed(player, k) for k, player in enumerate(players)]
+    runs = [play_visits(player, len(seeds), first_seed=seeds, physics=physics, **options) for player in players]
     each = [counts(strokes) for strokes in runs]
     return EntrantMetrics(agent, {name: np.stack([one[name] for one in each]) for name in each[0]}, runs, resamples)
 
@@ -95,6 +112,9 @@ def parser():
     p.add_argument("--fidelity", nargs="+", default=["standard"], help="fast, standard, reference or euler:N [standard]")
     p.add_argument("--physics", nargs="+", default=["paper"], help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
     p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
+    p.add_argument(
+        "--rekey", action="store_true", help="new execution errors after every decision: a control that no agent has seen them beforehand"
+    )
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
     p.add_argument("--json", type=Path, help="write every figure here")
     p.add_argument("--markdown", type=Path, help="write the tables here")
@@ -158,7 +178,7 @@ def evaluate(report, agents, seeds, tick, shown):
         condition = {"layout": layout, **dict(zip(AXES, at, strict=True))}
         played = {}
         for agent in agents:
-            played[agent.label] = play_agent(agent, condition, seeds[layout], p["search_budget"], p["resamples"])
+            played[agent.label] = play_agent(agent, condition, seeds[layout], p["search_budget"], p["resamples"], p["rekey"])
             tick()
         others, rows = [played[label] for label in p["against"]], []
         for one in played.values():
@@ -199,6 +219,7 @@ def main(argv=None):
         "protocol": {
             "layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED, "against": references,
             **{axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}, "resamples": args.resamples, "search_budget": args.budget,
+            "rekey": args.rekey,
         },
         "agents": [
             {"label": agent.label, "runs": [{"from": run, **how} for run, how in zip(agent.runs, agent.trained(), strict=True)]}

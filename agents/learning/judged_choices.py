@@ -5,6 +5,7 @@ from collections import deque
 import numpy as np
 import torch
 
+from snooker_env import Options
 from snooker_env.planning import Planner, action_masks
 
 from ..features.pot_features import with_pots
@@ -23,7 +24,7 @@ class JudgedChoices:
 
     def __init__(self, policy, options, threads, n, rng):
         self._policy, self._rng, self._n = policy, rng, n
-        self._planner = Planner({"action": "discrete", **options}, threads=threads)
+        self._planner = Planner(Options(action="discrete", **options), threads=threads)
         learned = [p for name, p in policy.named_parameters() if not name.startswith("position_value.")]
         self._optimizer, self._rounds = torch.optim.Adam(learned, RATE), []
         self.losses = deque(maxlen=100)

@@ -7,6 +7,7 @@ visit's luck drowns what a position is worth.
 """
 
 from collections import deque
+from typing import Any
 
 import numpy as np
 import torch
@@ -32,7 +33,7 @@ class ValueLearning:
         self._network, self._spread, self._n, self._rng = network, spread, n, rng
         self._optimizer = torch.optim.Adam(network.parameters(), RATE)
         self._rounds, self._age = [], 0
-        self._fitted = ()
+        self._fitted: tuple[Any, ...] = ()
         """Of the rounds at the last refresh: features, targets, shares of samples that scored."""
         self.losses = deque(maxlen=100)
 

@@ -97,7 +97,7 @@ def test_built_in_advisors_play_tables_too(name):
             break
 
 
-@pytest.mark.parametrize("name", ["geometric", "search", "random_absolute", "agents.players.built_in:Lookahead"])
+@pytest.mark.parametrize("name", ["geometric", "search", "random_absolute", "agents.players.built_in:ForesightRule"])
 @pytest.mark.parametrize("position", [OPEN, RESPOTTED, ALL["snookered"]], ids=["open", "respotted", "snookered"])
 def test_players_of_the_repository_give_advice(name, position):
     advice = sn.advise(position, agent=name, n=2, **QUICK)

@@ -11,7 +11,8 @@ import pytest
 import train
 from agents.evaluation import tournament
 from agents.evaluation.protocol import parser
-from agents.players.by_name import NAMES
+from agents.players.by_name import is_player
+from agents.players.stroke_players import is_stroke_player
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -22,20 +23,25 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
     lines = [shlex.split(line) for line in done.stdout.splitlines()]
     runs = [line[2:] for line in lines if line[1] == "train.py"]
     comparisons, curves = ([line[3:] for line in lines if line[2] == f"agents.{name}"] for name in ("evaluate", "curves"))
-    assert len(runs) > 25 and len(comparisons) == 9 and len(curves) == 1 and len(runs) + 10 == len(lines)
+    assert len(runs) > 25 and len(comparisons) == 15 and len(curves) == 1 and len(runs) + 16 == len(lines)
     assert all(agent.partition("=")[2].startswith(f"{tmp_path}/") for agent in curves[0])
     starts = [run[run.index("--start") + 1] for run in runs if "--start" in run]
     assert [Path(start).name for start in starts] == ["lineup-0", "lineup-1", "lineup-2"] and 'echo "lineup-$k ' in Path(
         command[1]
     ).read_text()
     recipes = [train.recipe_of(train.Settings(**train.parse(run)[1])) for run in runs]
-    assert {recipe.name for recipe in recipes} == {"ppo_foresight", "ppo_mask", "ppo_absolute", "ppo_target", "tqc_target"}
+    assert {recipe.name for recipe in recipes} == {"ppo_value", "ppo_foresight", "ppo_mask", "ppo_absolute", "ppo_target", "tqc_target"}
     for comparison in comparisons:
         parsed = parser().parse_args(comparison)
         assert parsed.json.suffix == ".json" and parsed.markdown.with_suffix(".json") == parsed.json
         for agent in parsed.agent:
-            label, equals, folder = agent.partition("=")
-            assert folder.startswith(f"{tmp_path}/") if equals else label in (*NAMES, "ppo_mask")
+            label, equals, paths = agent.partition("=")
+            for path in (paths if equals else label).split(","):
+                player, at, folder = path.partition("@")
+                if at:
+                    assert is_stroke_player(player) and folder.startswith(f"{tmp_path}/")
+                else:
+                    assert path.startswith(f"{tmp_path}/") if equals else is_player(label) or label == "ppo_mask"
 
 
 def test_a_run_that_fails_stops_the_whole(tmp_path):
