@@ -8,9 +8,7 @@ so that the grid does not limit the search.
 import numpy as np
 import torch
 
-from snooker_env.planning import action_masks
-from snooker_env.planning.proposals import FASTEST, RIM, SLOWEST, strokes_at
-from snooker_env.planning.sobol import sobol_points
+from snooker_env.planning import action_masks, sobol_points, strokes_at
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS
 
 from .pot_features import with_pots
@@ -54,9 +52,8 @@ class PolicyProposals:
         stroke = picks % STROKES
         speed, side, top = stroke // (len(SIDES) * len(TOPS)), stroke // len(TOPS) % len(SIDES), stroke % len(TOPS)
         given = np.empty((*picks.shape, 3))
-        given[..., 0] = np.clip(_SPEEDS[speed] * np.exp(_STEP[speed] * (points[..., 0] - 0.5)), SLOWEST, FASTEST)
+        given[..., 0] = _SPEEDS[speed] * np.exp(_STEP[speed] * (points[..., 0] - 0.5))
         plain = (side == SIDES.index(0.0)) & (points[..., 3] < 0.5)
         given[..., 1] = np.where(plain, 0.0, _SIDES[side] + _SIDE_STEP * (points[..., 1] - 0.5))
         given[..., 2] = _TOPS[top] + _TOP_STEP * (points[..., 2] - 0.5)
-        given[..., 1:] /= np.maximum(1.0, np.hypot(given[..., 1], given[..., 2]) / RIM)[..., None]
         return strokes_at(at, picks // STROKES, given, seeds, search.spread, search.dynamics)

@@ -1,4 +1,4 @@
-"""Players that search over continuous strokes: by a rule of thumb, for the pot alone, or with a learned value and policy.
+"""How do players search over continuous strokes? By a rule of thumb, for the pot alone, or with a learned value and policy.
 
 ``planner`` plays with the weights that were trained under the table's execution noise, as far as there are such:
 
@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 
 from snooker_env.checks import refuse
-from snooker_env.planning import Positions, StrokeSearch, actions_of
-from snooker_env.planning.proposals import AIM, SIDE, SPEED, TOP
+from snooker_env.planning import Positions, StrokeSearch
 from snooker_env.tasks import LEVELS
 
 BUDGET = 120
@@ -80,18 +79,14 @@ class StrokePlayer:
     def act(self, tables, observations, going):
         """The best stroke of each running table: float32 (n, 4)."""
         actions = np.zeros((len(going), 4), np.float32)
-        strokes = self._ranked(tables, going).strokes[:, 0]
-        actions[going] = actions_of(strokes[:, SPEED], strokes[:, AIM], strokes[:, SIDE], strokes[:, TOP])
+        actions[going] = self._ranked(tables, going).actions()[:, 0]
         return actions
 
     def rank(self, tables, observations, going):
-        """The strokes of each running table that met noise samples, best first, with their scores [points]."""
-        ranked, out = self._ranked(tables, going), []
-        for strokes, scores, samples in zip(*ranked, strict=True):
-            many = max(1, int((samples > 0).sum())) if samples.any() else min(10, len(scores))
-            some = strokes[:many]
-            out.append((actions_of(some[:, SPEED], some[:, AIM], some[:, SIDE], some[:, TOP]), scores[:many]))
-        return out
+        """The strokes of each running table that met most noise samples, best first, with their scores [points]."""
+        ranked = self._ranked(tables, going)
+        last = np.minimum((ranked.samples == ranked.samples.max(axis=1, keepdims=True)).sum(axis=1), 10)
+        return [(actions[:m], scores[:m]) for actions, scores, m in zip(ranked.actions(), ranked.scores, last.tolist(), strict=True)]
 
     def _ranked(self, tables, going):
         if self._tables is not tables:

@@ -24,12 +24,15 @@ from .geometry import Paths, Pots, clear_paths, obstructions, pots
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
+from .proposals import Proposals, spread_strokes, strokes_at
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
+from .sobol import sobol_points
 from .stops import Stops
 from .stroke_search import Ranked, StrokeSearch
 from .strokes import action_masks, actions_of, as_actions, pot_aim
 
 __all__ = [
-    "RULE_OF_THUMB", "SURE", "Outcomes", "Paths", "Planner", "Position", "Positions", "Pots", "Ranked", "Stops", "StrokeSearch",
-    "action_masks", "actions_of", "as_actions", "clear_paths", "obstructions", "pot_aim", "pots", "processors", "prospects_of", "spread_of",
+    "RULE_OF_THUMB", "SURE", "Outcomes", "Paths", "Planner", "Position", "Positions", "Pots", "Proposals", "Ranked", "Stops",
+    "StrokeSearch", "action_masks", "actions_of", "as_actions", "clear_paths", "obstructions", "pot_aim", "pots", "processors",
+    "prospects_of", "sobol_points", "spread_of", "spread_strokes", "strokes_at",
 ]  # fmt: skip

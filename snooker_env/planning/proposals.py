@@ -40,12 +40,25 @@ SPEED, SIDE, TOP, AIM = range(4)
 
 
 class Proposals(NamedTuple):
-    """m strokes for each of n positions."""
+    """m strokes for each of n positions, which a ``StrokeSearch`` then tries.
+
+    Attributes
+    ----------
+    strokes : numpy.ndarray
+        float64 (n, m, 4). Cue speed [m/s], side and top (tip offset over R), direction of the cue ball [rad].
+    chances : numpy.ndarray
+        float64 (n, m). Chance of each stroke's pot by its width; 1 for a contact without a pot.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.planning import Proposals
+    >>> Proposals(np.zeros((2, 5, 4)), np.ones((2, 5))).chances.shape
+    (2, 5)
+    """
 
     strokes: Floats
-    """float64 (n, m, 4): cue speed [m/s], side and top (tip offset over R), direction of the cue ball [rad]."""
     chances: Floats
-    """float64 (n, m). Chance of each stroke's pot by its width; 1 for a contact without a pot."""
 
 
 @kernel
@@ -129,6 +142,7 @@ def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_rat
         for i in range(m):
             if which.shape[0]:
                 j = min(which[k, i], many - 1)
+                _tip_on_rim(strokes[k, i])
             else:
                 while j < many - 1 and i >= int(m * reached + 0.5):
                     j += 1
@@ -142,7 +156,7 @@ _NOT_GIVEN = np.empty((0, 0), np.int64)
 
 
 def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: Dynamics) -> Proposals:
-    """m strokes for each of n positions, spread over all direct pots, speeds and tips.
+    """Propose m strokes for each of n positions, spread over all direct pots, speeds and tips.
 
     Parameters
     ----------
@@ -154,16 +168,54 @@ def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: 
         int64 (n,), in [0, 2**32): of the Sobol scrambles.
     spread : float
         Standard deviation of the cue ball's direction [rad], as returned by ``spread_of``.
-    dynamics : Dynamics
-        Physics and fidelity with which the aims are solved.
+    dynamics : tuple
+        Physics and fidelity with which the aims are solved: ``StrokeSearch.dynamics``.
+
+    Returns
+    -------
+    Proposals
+        The strokes and the chances of their pots.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.planning import Position, Positions, StrokeSearch, spread_strokes
+    >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
+    >>> spread_strokes(at, 5, np.array([7]), search.spread, search.dynamics).strokes.shape
+    (1, 5, 4)
     """
     return _proposed(at, np.empty((len(at), m, 4)), seeds, _NOT_GIVEN, spread, dynamics)
 
 
 def strokes_at(at: Positions, which: Ints, speeds_and_tips: Floats, seeds: Ints, spread: float, dynamics: Dynamics) -> Proposals:
-    """Strokes at given pots: ``which`` (n, m), widest first; ``speeds_and_tips`` (n, m, 3) in the columns ``SPEED`` to ``TOP``.
+    """Propose strokes at given pots with given speeds and tips; their aims are solved.
 
-    Where there is no direct pot: the contacts of ``spread_strokes``.
+    Where there is no direct pot, the strokes are the contacts of ``spread_strokes``.
+
+    Parameters
+    ----------
+    at : Positions
+        The n positions.
+    which : numpy.ndarray
+        int64 (n, m). Index of each stroke's pot, widest first as of ``pots``; beyond the last pot, the last one.
+    speeds_and_tips : numpy.ndarray
+        float64 (n, m, 3). Cue speed [m/s], side and top (tip offset over R). A tip outside the disc of radius 0.49 is drawn in to it.
+    seeds, spread, dynamics
+        As for ``spread_strokes``.
+
+    Returns
+    -------
+    Proposals
+        The strokes and the chances of their pots.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.planning import Position, Positions, StrokeSearch, strokes_at
+    >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
+    >>> given = np.array([[[2.0, 0.0, 0.2], [2.0, 0.0, -0.9]]])
+    >>> strokes_at(at, np.zeros((1, 2), int), given, np.array([7]), search.spread, search.dynamics).strokes[0, :, :3].tolist()
+    [[2.0, 0.0, 0.2], [2.0, 0.0, -0.49]]
     """
     n, m = which.shape
     strokes = np.empty((n, m, 4))

@@ -27,6 +27,7 @@ from .positions import Positions, PositionsLike
 from .proposals import AIM, SIDE, SPEED, TOP, Proposals, spread_strokes
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
+from .strokes import actions_of
 
 PRIOR = 2.0
 """Number of samples that the look without error counts as."""
@@ -49,7 +50,9 @@ Propose: TypeAlias = Callable[["StrokeSearch", Positions, int, Ints], Proposals]
 
 
 class Ranked(NamedTuple):
-    """The strokes tried in each of n positions, best first, as returned by ``StrokeSearch.rank``.
+    """The strokes tried in each of n positions, as returned by ``StrokeSearch.rank``: first those that met most samples, best first.
+
+    A stroke that was left behind in an earlier round may keep a higher score: fewer samples flatter it.
 
     Attributes
     ----------
@@ -59,11 +62,37 @@ class Ranked(NamedTuple):
         float64 (n, m). Expected points of the stroke and of what follows.
     samples : numpy.ndarray
         int64 (n, m). Noise samples that each stroke met; 0 if it had only the look without error.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Position, StrokeSearch
+    >>> ranked = StrokeSearch({"noise": "club"}, budget=30).rank(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), seeds=[7])
+    >>> ranked.samples[0, :5].tolist(), ranked.actions().shape
+    ([5, 5, 2, 2, 0], (1, 16, 4))
     """
 
     strokes: Floats
     scores: Floats
     samples: Ints
+
+    def actions(self) -> NDArray[np.float32]:
+        """Convert the strokes to actions of ``aim="absolute"``.
+
+        Returns
+        -------
+        numpy.ndarray
+            float32 (n, m, 4). Actions in [-1, 1].
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from snooker_env.planning import Ranked
+        >>> strokes = np.array([[[3.6, 0.0, 0.25, 0.0]]])
+        >>> Ranked(strokes, np.zeros((1, 1)), np.zeros((1, 1), int)).actions().tolist()
+        [[[0.0, 0.0, 0.5, 0.0]]]
+        """
+        flat = self.strokes.reshape(-1, 4)
+        return actions_of(flat[:, SPEED], flat[:, AIM], flat[:, SIDE], flat[:, TOP]).reshape(*self.scores.shape, 4)
 
 
 def schedule(budget: int) -> tuple[int, tuple[tuple[int, int], ...]]:
@@ -150,7 +179,7 @@ class StrokeSearch:
         self.planner = Planner(Options(elevation=True, noise="none", **where), threads=threads)
         self.spread = spread_of(self.noise, rules.physics)
         self.dynamics = rules.physics, rules.fidelity
-        self.value: Value = self.by_rule if value is None else value
+        self.value: Value = self._by_rule if value is None else value
         self.propose: Propose = evenly if propose is None else propose
         self.pots_only = pots_only
         self._deviations = self.noise.pack(rules.physics.R)
@@ -160,7 +189,7 @@ class StrokeSearch:
         """Number of strokes simulated so far, an int."""
         return self.planner.shots
 
-    def by_rule(self, at: Positions) -> Floats:
+    def _by_rule(self, at: Positions) -> Floats:
         """Values of positions by the rule of thumb [points]: float64 (n,)."""
         return prospects_of(at, self.spread, SURE if self.noise.silent else RULE_OF_THUMB, threads=self.planner.threads)[0]
 
@@ -177,12 +206,19 @@ class StrokeSearch:
         Returns
         -------
         Ranked
-            ``strokes``, ``scores`` and ``samples`` with n rows each, best first.
+            ``strokes``, ``scores`` and ``samples`` with n rows each; the first stroke of a row is the one to play.
 
         Raises
         ------
         ValueError
             If a position is invalid or has no stroke left to play, or ``seeds`` has the wrong shape.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Position, StrokeSearch
+        >>> ranked = StrokeSearch({"noise": "none"}, budget=20).rank(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), seeds=[7])
+        >>> float(ranked.scores[0, 0])
+        7.0
         """
         at = Positions.of(positions)
         n, own = len(at), np.asarray(seeds)
@@ -191,7 +227,9 @@ class StrokeSearch:
         keys = (own.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
         looks, rounds = (self.budget, ()) if self.noise.silent else schedule(self.budget)
         strokes, chances = self.propose(self, at, looks, keys)
-        scores = chances * self._gains(at, strokes[:, :, None], np.zeros((n, 1, DIMENSIONS)))[..., 0]
+        scores = self._gains(at, strokes[:, :, None], np.zeros((n, 1, DIMENSIONS)))[..., 0]
+        if not self.noise.silent:
+            scores *= chances
         every, tries, sums = np.arange(n)[:, None], np.zeros((n, looks), np.int64), PRIOR * scores
         order = np.argsort(-scores, axis=1, kind="stable")
         samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in keys.tolist()]) if rounds and n else None
@@ -209,7 +247,38 @@ class StrokeSearch:
         return Ranked(strokes[every, order], scores[every, order], tries[every, order])
 
     def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Outcomes:
-        """Play strokes (m, 4) on copies of ``at[rows]`` with standard normal errors (m, 5): speed, side, top, aim, elevation."""
+        """Play strokes under given execution errors.
+
+        Parameters
+        ----------
+        at : Positions
+            The n positions.
+        rows : numpy.ndarray
+            int64 (m,). Row of ``at`` for each stroke.
+        strokes : numpy.ndarray
+            float64 (m, 4). As in ``Ranked``.
+        errors : numpy.ndarray
+            float64 (m, 5). Errors of speed, side, top, aim and elevation, in standard deviations of the search's noise.
+
+        Returns
+        -------
+        Outcomes
+            As of ``Planner.play``.
+
+        Raises
+        ------
+        ValueError
+            If a position is invalid or has no stroke left to play.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from snooker_env.planning import Position, Positions, StrokeSearch
+        >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
+        >>> stroke = search.rank(at, seeds=[7]).strokes[0, :1]
+        >>> search.outcomes(at, np.zeros(2, int), np.repeat(stroke, 2, 0), np.array([[0.0] * 5, [0, 0, 0, 9.0, 0]])).points.tolist()
+        [7.0, 0.0]
+        """
         actions, physics = np.empty((len(strokes), 5)), self.dynamics[0]
         _under_errors(strokes, errors, self._deviations, physics.end_mass_ratio, min(0.5, physics.max_offset), actions)
         return self.planner.play(at, rows, actions)

@@ -71,7 +71,7 @@ ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "abc", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools",
     "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "re", "subprocess", "sys", "tempfile",
-    "textwrap", "threading", "time", "types", "typing", "warnings", "weakref", "zipfile", "zlib",
+    "statistics", "textwrap", "threading", "time", "types", "typing", "warnings", "weakref", "zipfile", "zlib",
 }  # fmt: skip
 
 

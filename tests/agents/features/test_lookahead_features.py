@@ -116,7 +116,7 @@ def test_noise_samples_are_even():
 
 def test_lookahead_plays_the_stroke_that_promises_most():
     env, going = tables(6, noise="professional", **DISCRETE), np.array([True, False, True, True, True, True])
-    player = player_of("lookahead")
+    player = player_of("lookahead_foresight")
     picks = player.act(env, None, going)
     rows = rows_of(lookahead_features.ForesightView()(env, env.reset(seed=0)[0]))
     assert np.array_equal(picks[going], lookahead_features.PICKS[lookahead_features.worth_by_rule(rows).argmax(1)][going]) and picks[1] == 0
