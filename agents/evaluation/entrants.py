@@ -41,7 +41,7 @@ class Entrant:
         for path in paths.split(","):
             if path in pretrained():
                 path = str(PRETRAINED / f"{path}.zip")
-            found = [path] if is_player(path) or Path(path).exists() else sorted(glob.glob(path))
+            found = [path] if Path(path).exists() else _players(path) or sorted(glob.glob(path))
             if not found:
                 known = ", ".join((*NAMES, *pretrained()))
                 allowed = f"must be {known}, MODULE:CLASS, or name existing models: a .zip, a run folder, a pattern"
@@ -72,8 +72,11 @@ class Entrant:
 
     def _training(self, run):
         if is_player(run):
-            player_of(run, frames=self.frames)  # one's own may not be there
-            return {}
+            player = player_of(run, frames=self.frames)  # one's own may not be there
+            run = getattr(player, "model", None)  # the weights that a planner was given
+            if run is None:
+                return {}
+            run = str(PRETRAINED / f"{run}.zip") if run in pretrained() else run
         model, path = _model(run, self.trust, self.options).model, Path(run)
         card, results = path.with_suffix(".json"), (path if path.is_dir() else path.parent) / "results.json"
         if path.is_file() and card.is_file():
@@ -99,6 +102,14 @@ def options_of(changes):
         found[key] = value_of(value)
     SnookerVectorEnv(1, **found)  # makes sure of the values
     return tuple(found.items())
+
+
+def _players(name):
+    """The player of that name in a list; several for a planner whose model is a pattern; [] if it is not a player's name."""
+    kind, at, pattern = name.partition("@")
+    if at and is_player(name):
+        return [f"{kind}@{model}" for model in sorted(glob.glob(pattern))] or [name]
+    return [name] if is_player(name) else []
 
 
 @cache
