@@ -101,16 +101,24 @@ def test_both_networks_learn_and_the_seed_matters():
 
 
 def test_the_rule_and_even_proposals_come_first():
-    """By the shares of all positions: an eighth by the rule of thumb, a fifth with even proposals."""
+    """To the round: an eighth of all positions by the rule of thumb, before the value is fitted, and a fifth with even proposals."""
     model, venv = model_and_tables()
-    run = ExpertIteration(model, venv, 160, 5, 1)
+    run = ExpertIteration(model, venv, 320, 5, 1)
     seen = []
     while run.done < 80:
         before = run.done
         run.round()
         search = run._search
-        seen.append((before, isinstance(search.value, Value), isinstance(search.propose, PolicyProposals), search.propose is evenly))
-    assert seen == [(done, done > 20, done >= 32, done < 32) for done in range(0, 80, N)]
+        seen.append(
+            (
+                before,
+                isinstance(search.value, Value),
+                isinstance(search.propose, PolicyProposals),
+                search.propose is evenly,
+                bool(run._value.losses),
+            )
+        )
+    assert seen == [(done, done > 40, done >= 64, done < 64, done >= 40) for done in range(0, 80, N)]
 
 
 def test_a_round_keeps_what_its_samples_led_to(monkeypatch):

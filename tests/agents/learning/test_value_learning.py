@@ -139,14 +139,14 @@ def test_the_network_learns_a_known_value():
 
 
 def test_values_spread_backwards_along_a_visit():
-    """State A leads to B without points, B to 10 points and the end: the value of A comes to that of B, which no single stroke shows."""
+    """State A leads to B without points, B to 10 points and the end: by backups alone A comes to the value of B. No visit was played on."""
     n, learning = 32, learner(32)
     a, b = np.zeros((n, SIZE), np.float32), np.zeros((n, SIZE), np.float32)
     a[:, 0], b[:, 1] = 1.0, 1.0
     to_b = np.tile(b[:, None], (1, 2, 1)).astype(np.float16)
     nothing = np.zeros((n, 2, SIZE), np.float16)
     for _ in range(6):
-        learning.add(a, to_b, np.zeros((n, 2)), np.ones((n, 2), bool), np.ones(n, bool))
+        learning.add(a, to_b, np.zeros((n, 2)), np.ones((n, 2), bool), np.zeros(n, bool))
         learning.add(b, nothing, np.full((n, 2), 10.0), np.zeros((n, 2), bool), np.zeros(n, bool))
     for step in range(150):
         learning.fit(1.0 - step / 160)
