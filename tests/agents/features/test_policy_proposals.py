@@ -1,0 +1,131 @@
+"""Does a policy propose the strokes that it likes, near its choices and within the limits of a stroke?"""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import torch
+from positions import tables
+
+from agents.features.policy_proposals import TEMPERATURE, PolicyProposals
+from agents.learning.models import PRETRAINED, load_trained
+from snooker_env.planning import Position, Positions, StrokeSearch, action_masks, as_actions, pots, prospects_of
+from snooker_env.planning.proposals import AIM, FASTEST, MOST_POTS, RIM, SIDE, SLOWEST, SPEED, TOP, spread_strokes
+from snooker_env.tasks import CHOICES, POTS, SIDES, SPEEDS, STROKES, TOPS, choice_of
+
+SEARCH = StrokeSearch({"noise": "professional", "fidelity": "fast"}, 30, threads=1)
+
+
+class Preferring:
+    """A policy with given scores of all choices, the same in every position."""
+
+    def __init__(self, scores):
+        self._scores = torch.as_tensor(scores, dtype=torch.float32)
+
+    def get_distribution(self, seen, masks):
+        hidden = torch.where(torch.as_tensor(masks), self._scores, torch.tensor(-1e8))
+        return SimpleNamespace(distribution=SimpleNamespace(logits=torch.log_softmax(hidden, dim=1)))
+
+
+def preferring(**worths):
+    scores = np.full(CHOICES, -1e3)
+    for name, worth in worths.items():
+        scores[choice_of(*map(int, name.strip("_").split("_")))] = worth
+    return PolicyProposals(Preferring(scores))
+
+
+def some(n=6):
+    """Positions with four pots or more."""
+    at = Positions.of(tables(60, layout="random:9", seed=3))
+    at = at[np.flatnonzero(action_masks(at).all(axis=1))[:n]]
+    assert len(at) == n
+    return at
+
+
+@pytest.fixture(scope="module")
+def learned():
+    return PolicyProposals(load_trained(PRETRAINED / "ppo_mask.zip", "agent").policy)
+
+
+def test_a_policy_that_likes_one_choice_gets_strokes_within_its_cell():
+    """The second pot at 2.9 m/s, left side, below the middle: half a cell of speed, side and top around it, aimed at that pot."""
+    at, m = some(), 64
+    strokes, chances = preferring(_1_4_0_1=5.0)(SEARCH, at, m, np.arange(6))
+    assert strokes.shape == (6, m, 4) and chances.shape == (6, m)
+    step = np.gradient(np.log(SPEEDS))[4]
+    off = np.log(strokes[..., SPEED] / SPEEDS[4]) / step
+    assert np.abs(off).max() <= 0.5 + 1e-9 and off.min() < -0.45 and off.max() > 0.45 and np.abs(off.mean(axis=1)).max() < 0.05
+    side, top = (strokes[..., SIDE] - SIDES[0]) / 0.3, (strokes[..., TOP] - TOPS[1]) / 0.2
+    inside = np.hypot(strokes[..., SIDE], strokes[..., TOP]) < RIM - 1e-9  # a tip beyond the rim was drawn in
+    for off in (side[inside], top[inside]):
+        assert np.abs(off).max() <= 0.5 + 1e-9 and off.min() < -0.4 and off.max() > 0.4
+    expected = prospects_of(at, SEARCH.spread, most=MOST_POTS)[1][:, 1]
+    assert chances == pytest.approx(np.tile(expected[:, None], m), rel=1e-9)
+    middle = as_actions(at, np.arange(6), np.full(6, choice_of(1, 4, 0, 1)))[:, 3] * np.pi
+    apart = (strokes[..., AIM] - middle[:, None] + np.pi) % (2 * np.pi) - np.pi
+    assert np.abs(apart).max() < 0.05  # throw depends on the stroke within the cell
+
+
+def test_half_of_the_plain_strokes_have_no_side_at_all():
+    strokes = preferring(_0_4_1_2=5.0)(SEARCH, some(), 400, np.arange(6)).strokes
+    assert (strokes[..., SIDE] == 0.0).mean(axis=1) == pytest.approx(np.full(6, 0.5), abs=0.03)
+    assert np.abs(strokes[..., SIDE]).max() <= 0.15 + 1e-9 and strokes[..., SIDE].max() > 0.1 and strokes[..., SIDE].min() < -0.1
+    sided = preferring(_0_4_2_2=5.0)(SEARCH, some(), 400, np.arange(6)).strokes
+    assert (sided[..., SIDE] > 0.14).all()
+
+
+def test_shares_are_the_softmax_at_its_temperature():
+    """Three choices of distinct speed: each gets its share of the strokes, to one stroke."""
+    scores = {"_0_0_1_2": 2.0, "_0_4_1_2": 0.0, "_2_8_1_2": 3.0}
+    m = 100
+    strokes = preferring(**scores)(SEARCH, some(), m, np.arange(6)).strokes
+    weights = np.exp(np.array(list(scores.values())) / TEMPERATURE)
+    nearest = np.abs(np.log(strokes[..., SPEED, None] / np.array(SPEEDS)[[0, 4, 8]])).argmin(axis=2)
+    for column, share in enumerate(weights / weights.sum()):
+        assert np.abs((nearest == column).sum(axis=1) - m * share).max() <= 1.0
+
+
+def test_only_available_choices_are_proposed():
+    """A policy that likes the pots that are not there gets strokes at those that are."""
+    scores = np.zeros(CHOICES)
+    scores[STROKES:] = 50.0
+    at = Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
+    many = int((pots(at, most=MOST_POTS).ball[0] >= 0).sum())
+    assert 1 <= many < POTS
+    policy = PolicyProposals(Preferring(scores))
+    found, masks = policy.scores(at)
+    assert found.shape == masks.shape == (1, CHOICES) and masks.sum() == many * STROKES
+    chances = prospects_of(at, SEARCH.spread)[1][0, :many]
+    proposed = policy(SEARCH, at, 50, np.array([3])).chances[0]
+    assert all(np.isclose(chances, one, rtol=1e-9).any() for one in proposed)
+
+
+def test_without_a_pot_the_policy_proposes_the_contacts(learned):
+    at = Positions.of(Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0)))
+    assert pots(at).ball[0, 0] == -1
+    found = learned(SEARCH, at, 30, np.array([5]))
+    even = spread_strokes(at, 30, [5], SEARCH.spread, SEARCH.dynamics)
+    assert np.array_equal(found.strokes, even.strokes) and (found.chances == 1.0).all()
+
+
+@pytest.mark.parametrize("layout", ["opened", "break_off", "colours", "random:1"])
+def test_a_trained_policys_strokes_can_be_played(learned, layout):
+    at = Positions.of(tables(5, layout=layout, seed=1))
+    strokes, chances = learned(SEARCH, at, 40, np.arange(5))
+    assert np.isfinite(strokes).all() and strokes[..., SPEED].min() >= SLOWEST and strokes[..., SPEED].max() <= FASTEST
+    assert np.hypot(strokes[..., SIDE], strokes[..., TOP]).max() <= RIM + 1e-12 and ((chances > 0) & (chances <= 1)).all()
+    search = StrokeSearch({"noise": "professional", "fidelity": "fast"}, 30, threads=1, propose=learned)
+    ranked = search.rank(at, np.arange(5))
+    assert ranked.strokes.shape == (5, 16, 4) and search.shots <= 5 * 30
+
+
+def test_each_position_is_proposed_for_by_itself(learned):
+    """To the rounding of a network's pass over many rows, which may move a stroke at the border of two choices."""
+    at, seeds = some(8), np.arange(8)
+    whole = learned(SEARCH, at, 50, seeds)
+    assert np.array_equal(whole.strokes, learned(SEARCH, at, 50, seeds).strokes)
+    order = np.array([6, 1, 3])
+    part = learned(SEARCH, at[order], 50, seeds[order])
+    assert (np.abs(part.strokes - whole.strokes[order]).max(axis=2) < 1e-9).mean() > 0.95
+    other = learned(SEARCH, at, 50, seeds + 90)
+    assert all(not np.array_equal(other.strokes[k], whole.strokes[k]) for k in range(8))

@@ -1,0 +1,147 @@
+"""Does a policy come to prefer what its judge likes, simulated under errors and counted from the points?"""
+
+import pickle
+
+import numpy as np
+import pytest
+import torch
+from positions import tables
+
+from agents.features.pot_features import with_pots
+from agents.features.views import training_tables
+from agents.learning import judged_choices
+from agents.learning.hyperparameters import Recipe
+from agents.learning.judged_choices import RATE, JudgedChoices
+from snooker_env.planning import Planner, Positions, action_masks
+
+OPTIONS = {"noise": "professional", "fidelity": "fast"}
+N = 64
+
+
+def policy(seed=0):
+    venv = training_tables(2, threads=1, action="discrete", **OPTIONS)
+    made = Recipe.of("ppo_value", n_envs=2).new_model(venv, seed).policy
+    venv.close()
+    return made
+
+
+def learner(own, n=N, seed=0, threads=1):
+    return JudgedChoices(own, OPTIONS, threads, n, np.random.default_rng(seed))
+
+
+def some(n=N, seed=0, layout="random:6"):
+    return Positions.of(tables(n, layout=layout, seed=seed))
+
+
+def played(own, at):
+    """What the policy's best choices lead to, without errors."""
+    masks = action_masks(at)
+    with torch.no_grad():
+        scores = own.get_distribution(torch.as_tensor(with_pots(at.observations())), masks).distribution.logits.numpy()
+    picks = np.where(masks, scores, -np.inf).argmax(axis=1)
+    return Planner({"action": "discrete", "fidelity": "fast"}, threads=1).play(at, np.arange(len(at)), picks)
+
+
+def test_the_policy_prefers_what_the_judge_likes():
+    """Two judges, one for each end of the table: both policies leave the cue ball where it pays, and still pot."""
+    ends, made, fresh = [], [], some(200, seed=99)
+    for sign in (-1.0, 1.0):
+        own = policy()
+        learning = learner(own)
+
+        def judge(left, sign=sign):
+            return 10.0 + 8.0 * sign * left.positions[:, 0, 1]
+
+        for k in range(16):
+            learning.round(some(seed=k), judge, 1.0 - k / 20)
+        out = played(own, fresh)
+        ends.append(out.afterstates.positions[out.goes_on, 0, 1].mean())
+        made.append((out.points > 0).mean())
+        losses = list(learning.losses)
+        assert np.mean(losses[-6:]) < 0.8 * np.mean(losses[:4])
+    assert ends[1] - ends[0] > 0.6 and min(made) > 0.7
+
+
+def test_a_choice_is_worth_its_points_and_what_the_judge_says_of_what_it_leaves(monkeypatch):
+    """What is kept is recomputed with the same keys; the judge is asked only where the visit goes on."""
+    kept, asked = [], []
+    monkeypatch.setattr(judged_choices, "fit_values", lambda *batch: kept.append(batch) or 0.0)
+    at, own = some(12), policy()
+    before = at.copy()
+
+    def judge(left):
+        assert not left.over.any()
+        asked.append(len(left))
+        return 100.0 + left.positions[:, 0, 0]
+
+    learning = learner(own, 12, seed=4)
+    learning.round(at, judge, 1.0)
+    ((seen, masks, picks, there, worths),) = learning._rounds
+    rng = np.random.default_rng(4)
+    with torch.no_grad():
+        scores = own.get_distribution(torch.as_tensor(seen), action_masks(at)).distribution.logits.numpy()
+    again, valid = judged_choices.to_try(scores, action_masks(at), rng)
+    assert np.array_equal(again, picks) and np.array_equal(valid, there)
+    row, column = np.nonzero(there)
+    out = Planner({"action": "discrete", **OPTIONS}, threads=1).play(
+        at, row, picks[row, column].astype(int), rng.integers(0, 2**63, len(row), dtype=np.uint64)
+    )
+    expected = out.points + np.where(out.goes_on, 100.0 + out.afterstates.positions[:, 0, 0], 0.0)
+    assert worths[row, column] == pytest.approx(expected, rel=1e-6) and not worths[~there].any()
+    assert asked == [out.goes_on.sum()] and 0 < asked[0] < len(row)
+    assert np.array_equal(np.unpackbits(masks, axis=1, count=540).astype(bool), action_masks(at))
+    assert np.array_equal(at.positions, before.positions) and np.array_equal(seen, with_pots(at.observations()))
+    _, _, *batch = kept[0]  # of the policy and its optimizer, then rows of what is kept
+    shown, offered, chosen, tried, gains = batch
+    assert shown.shape == (4 * 12, seen.shape[1]) and offered.dtype == tried.dtype == bool and chosen.dtype == np.int64
+    for k in range(48):
+        own_row = np.flatnonzero((seen == shown[k]).all(axis=1))[0]
+        assert np.array_equal(chosen[k], picks[own_row]) and np.array_equal(gains[k], worths[own_row])
+        assert np.array_equal(offered[k], action_masks(at)[own_row]) and np.array_equal(tried[k], there[own_row])
+
+
+def test_the_value_of_positions_is_not_touched():
+    """It learns apart: the policy's rounds leave its weights as they are."""
+    own = policy()
+    before = [p.detach().clone() for p in own.position_value.parameters()]
+    reader = torch.cat([p.detach().flatten() for p in own.features_extractor.parameters()])
+    learning = learner(own, 16)
+    for k in range(2):
+        learning.round(some(16, seed=k), lambda left: np.zeros(len(left)), 1.0)
+    assert all(torch.equal(a, b) for a, b in zip(before, own.position_value.parameters(), strict=True))
+    assert not torch.equal(reader, torch.cat([p.detach().flatten() for p in own.features_extractor.parameters()]))
+    learning.round(some(16), lambda left: np.zeros(len(left)), 0.5)
+    assert [group["lr"] for group in learning._optimizer.param_groups] == [pytest.approx(0.5 * RATE)]
+
+
+def test_the_oldest_rounds_are_forgotten(monkeypatch):
+    monkeypatch.setattr(judged_choices, "KEPT", 24)
+    learning = learner(policy(), 8)
+    for k in range(5):
+        learning.round(some(8, seed=k), lambda left: np.zeros(len(left)), 1.0)
+    assert len(learning._rounds) == 3 and np.array_equal(learning._rounds[-1][0], with_pots(some(8, seed=4).observations()))
+
+
+@pytest.mark.parametrize("stop", [1, 3])
+def test_it_goes_on_from_a_saved_state_bit_for_bit_on_any_number_of_threads(stop):
+    def judge(left):
+        return 5.0 + left.positions[:, 0, 1]
+
+    def go_on(learning, rounds):
+        for k in rounds:
+            learning.round(some(16, seed=k), judge, 0.6)
+
+    first_policy = policy(3)
+    first = learner(first_policy, 16, seed=8)
+    go_on(first, range(stop))
+    saved = pickle.dumps((first.get_state(), first_policy.state_dict(), first._rng.bit_generator.state))
+    go_on(first, range(stop, 4))
+    state, weights, generator = pickle.loads(saved)
+    second_policy = policy(4)
+    second_policy.load_state_dict(weights)
+    second = learner(second_policy, 16, threads=2)
+    second._rng.bit_generator.state = generator
+    second.set_state(state)
+    go_on(second, range(stop, 4))
+    assert all(torch.equal(a, b) for a, b in zip(first_policy.parameters(), second_policy.parameters(), strict=True))
+    assert list(first.losses) == list(second.losses)

@@ -1,0 +1,199 @@
+"""Are the value's targets those of the docstring, recomputed by hand, and does the network come to them?"""
+
+import pickle
+
+import numpy as np
+import pytest
+import torch
+
+from agents.features.value_features import LOGIT, SIZE
+from agents.learning import value_learning
+from agents.learning.value_learning import FIRST_GUESS, LAMBDA, RATE, ValueLearning
+from agents.learning.value_network import ValueNetwork
+
+SPREAD, SAMPLES = 1e-3, 3
+
+
+def learner(n, seed=0):
+    torch.manual_seed(seed)
+    return ValueLearning(ValueNetwork(), SPREAD, n, np.random.default_rng(seed))
+
+
+def a_round(n, rng, scale=1.0):
+    """Features, features of what is left, points, whether the visit went on, whether its first sample was followed."""
+    goes_on = rng.random((n, SAMPLES)) < 0.6
+    after = (rng.normal(0, scale, (n, SAMPLES, SIZE)) * goes_on[..., None]).astype(np.float16)
+    points = np.where(goes_on, rng.integers(1, 8, (n, SAMPLES)), 0).astype(np.float64)
+    follows = goes_on[:, 0] & (rng.random(n) < 0.7)  # not where the stroke was exploratory
+    return rng.normal(0, scale, (n, SIZE)).astype(np.float32), after, points, goes_on, follows
+
+
+def layers(learning):
+    return [(layer.weight.detach().double().numpy(), layer.bias.detach().double().numpy()) for layer in learning._network.layers]
+
+
+def worth(network, row):
+    """The value of one row of features by the ``layers`` of a network."""
+    x = row.astype(np.float64)
+    for k, (weight, bias) in enumerate(network):
+        x = weight @ x + bias
+        x = np.maximum(x, 0.0) if k < 2 else x
+    return 40.0 * np.log1p(np.exp(x[1])) / (1.0 + np.exp(-(float(row[LOGIT]) + x[0])))
+
+
+def by_hand(network, rounds):
+    """Targets (rounds, n): backup of each round, and 0.7 of how far the next round's target was from its value, if it followed."""
+    n = len(rounds[0][0])
+    targets = np.zeros((len(rounds), n))
+    for i in range(n):
+        for t in reversed(range(len(rounds))):
+            _, after, points, goes_on, follows = rounds[t]
+            gains = [points[i, j] + (worth(network, after[i, j]) if goes_on[i, j] else 0.0) for j in range(SAMPLES)]
+            targets[t, i] = sum(gains) / SAMPLES
+            if follows[i] and t + 1 < len(rounds):
+                targets[t, i] += 0.7 * (targets[t + 1, i] - worth(network, rounds[t + 1][0][i].astype(np.float16)))
+    return targets
+
+
+def test_the_targets_recomputed():
+    """Four rounds of nine tables: some visits go on through all of them, some end, some are cut by an exploratory stroke."""
+    rng, learning = np.random.default_rng(3), learner(9)
+    rounds = [a_round(9, rng) for _ in range(4)]
+    for one in rounds:
+        learning.add(*one)
+    expected = by_hand(layers(learning), rounds)
+    assert learning._targets().reshape(4, 9) == pytest.approx(expected, rel=1e-3, abs=2e-3) and LAMBDA == 0.7
+    follows = np.array([one[4] for one in rounds[:-1]])
+    without = by_hand(layers(learning), [(*one[:4], np.zeros(9, bool)) for one in rounds])
+    moved = np.abs(expected - without)[:-1] > 1e-3
+    assert np.array_equal(moved, follows) and 5 < follows.sum() < 22  # corrected where it was followed, and only there
+    later = [*rounds[:-1], (rounds[-1][0], rounds[-1][1], rounds[-1][2] + 30.0, *rounds[-1][3:])]
+    reached = np.abs(by_hand(layers(learning), later) - expected) > 1.0
+    assert np.array_equal(reached[2], follows[2]) and np.array_equal(reached[1], follows[2] & follows[1])
+    assert reached[1].any()  # a correction reaches two rounds back
+
+
+def test_the_first_targets_are_returns():
+    """Points, and what followed as far as it is known; beyond it, and beyond an exploratory stroke, a guess."""
+    rng, learning = np.random.default_rng(2), learner(6)
+    rounds = [a_round(6, rng) for _ in range(3)]
+    for one in rounds:
+        learning.add(*one)
+    expected = np.zeros((3, 6))
+    for i in range(6):
+        for t in (2, 1, 0):
+            _, _, points, goes_on, follows = rounds[t]
+            more = expected[t + 1, i] if t < 2 and follows[i] else 25.0
+            expected[t, i] = points[i].mean() + goes_on[i].mean() * more
+    assert learning._returns().reshape(3, 6) == pytest.approx(expected, rel=1e-5) and FIRST_GUESS == 25.0
+
+
+def test_the_oldest_rounds_are_forgotten(monkeypatch):
+    monkeypatch.setattr(value_learning, "KEPT", 20)
+    rng, learning = np.random.default_rng(0), learner(5)
+    rounds = [a_round(5, rng) for _ in range(7)]
+    for one in rounds:
+        learning.add(*one)
+    assert len(learning._rounds) == 4
+    assert learning._targets().reshape(4, 5) == pytest.approx(by_hand(layers(learning), rounds[3:]), rel=1e-3, abs=2e-3)
+
+
+def test_nothing_given_is_changed():
+    given = a_round(5, np.random.default_rng(4))
+    kept = [one.copy() for one in given]
+    learning = learner(5)
+    learning.add(*given)
+    learning.fit(1.0)
+    assert all(np.array_equal(a, b) for a, b in zip(given, kept, strict=True))
+
+
+def test_the_network_learns_a_known_value():
+    """Strokes that end the visit: with one feature the mean is 7 points, without it 1, and a second says how many samples score.
+
+    Then the loss falls, V comes to the mean, and P to the share of samples that score.
+    """
+    rng, n, learning = np.random.default_rng(0), 64, learner(64)
+    nothing = np.zeros((n, 8, SIZE), np.float16)
+
+    def play():
+        seen = np.zeros((n, SIZE), np.float32)
+        seen[:, :3] = rng.integers(0, 2, (n, 3))
+        made = rng.random((n, 8)) < np.where(seen[:, 1] > 0, 0.9, 0.3)[:, None]
+        seen[:, LOGIT] = 0.5
+        return seen, nothing, made * np.where(seen[:, 0] > 0, 7.0, 1.0)[:, None], np.zeros((n, 8), bool), np.zeros(n, bool)
+
+    for _ in range(30):
+        learning.add(*play())
+    began = []
+    for step in range(40):
+        learning.fit(1.0 - step / 80)
+        began = began or [np.mean(list(learning.losses)[:5])]
+    assert np.mean(list(learning.losses)[-20:]) < 0.8 * began[0] and np.isfinite(learning.losses).all()
+    seen, _, _, _, _ = play()
+    expected = np.where(seen[:, 1] > 0, 0.9, 0.3) * np.where(seen[:, 0] > 0, 7.0, 1.0)
+    assert np.abs(learning.value().of(seen) - expected).mean() < 0.6
+    with torch.no_grad():
+        p = torch.sigmoid(learning._network(torch.from_numpy(seen))[0]).numpy()
+    assert np.abs(p - np.where(seen[:, 1] > 0, 0.9, 0.3)).mean() < 0.08
+    assert learning.mean_target == pytest.approx(learning._fitted[1][-n:].mean()) and 1.0 < learning.mean_target < 4.0
+
+
+def test_values_spread_backwards_along_a_visit():
+    """State A leads to B without points, B to 10 points and the end: by backups alone A comes to the value of B. No visit was played on."""
+    n, learning = 32, learner(32)
+    a, b = np.zeros((n, SIZE), np.float32), np.zeros((n, SIZE), np.float32)
+    a[:, 0], b[:, 1] = 1.0, 1.0
+    to_b = np.tile(b[:, None], (1, 2, 1)).astype(np.float16)
+    nothing = np.zeros((n, 2, SIZE), np.float16)
+    for _ in range(6):
+        learning.add(a, to_b, np.zeros((n, 2)), np.ones((n, 2), bool), np.zeros(n, bool))
+        learning.add(b, nothing, np.full((n, 2), 10.0), np.zeros((n, 2), bool), np.zeros(n, bool))
+    for step in range(150):
+        learning.fit(1.0 - step / 160)
+    found = learning.value().of(np.stack([a[0], b[0]]))
+    assert found == pytest.approx([10.0, 10.0], abs=1.5)
+
+
+def test_no_gradient_is_left_behind():
+    """Whoever learns next, PPO or the policy's own steps, clips the gradients of the whole policy: these must not count there."""
+    learning = learner(5)
+    learning.add(*a_round(5, np.random.default_rng(0)))
+    learning.fit(1.0)
+    assert torch.nn.utils.clip_grad_norm_(learning._network.parameters(), 1.0) == 0.0
+
+
+def test_the_rate_falls_with_what_is_left():
+    learning = learner(5)
+    learning.add(*a_round(5, np.random.default_rng(0)))
+    for left, rate in ((1.0, RATE), (0.25, 0.25 * RATE), (0.0, 0.02 * RATE)):
+        learning.fit(left)
+        assert [group["lr"] for group in learning._optimizer.param_groups] == [pytest.approx(rate)]
+
+
+def test_learning_goes_on_from_a_saved_state_bit_for_bit():
+    """Saved at every step of a cycle of refreshes; the state is a copy as soon as it is a file."""
+    rng = np.random.default_rng(5)
+    rounds = [a_round(8, rng) for _ in range(12)]
+
+    def go_on(learning, some):
+        for one in some:
+            learning.add(*one)
+            learning.fit(0.7)
+
+    whole = learner(8, seed=9)
+    go_on(whole, rounds)
+    assert learner(8).mean_target is None
+    for stop in (0, 1, 5, 8, 11):
+        first = learner(8, seed=9)
+        go_on(first, rounds[:stop])
+        saved = pickle.dumps((first.get_state(), first._network.state_dict(), first._rng.bit_generator.state))
+        go_on(first, rounds[stop:])  # what comes later does not reach the file
+        state, weights, generator = pickle.loads(saved)
+        second = learner(8, seed=10)
+        second._network.load_state_dict(weights)
+        second._rng.bit_generator.state = generator
+        second.set_state(state)
+        go_on(second, rounds[stop:])
+        for one in (first, second):
+            assert all(torch.equal(a, b) for a, b in zip(whole._network.parameters(), one._network.parameters(), strict=True))
+            assert list(one.losses) == list(whole.losses) and one.mean_target == whole.mean_target

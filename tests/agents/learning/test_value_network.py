@@ -1,0 +1,95 @@
+"""Is the value that is played the network that is trained, and does it begin where the geometry stands?"""
+
+import numpy as np
+import pytest
+import torch
+from positions import tables
+
+from agents.features.value_features import LOGIT, SIZE, value_features
+from agents.learning.value_network import POINTS, WIDTHS, Value, ValueNetwork
+from snooker_env.planning import Positions, StrokeSearch, prospects_of, spread_of
+from snooker_env.tasks import LEVELS
+
+SPREAD = spread_of(LEVELS["professional"])
+
+
+def network(seed=0, scale=1.0):
+    torch.manual_seed(seed)
+    made = ValueNetwork()
+    with torch.no_grad():
+        for p in made.parameters():
+            p.mul_(scale)
+    return made
+
+
+def by_torch(made, seen):
+    with torch.no_grad():
+        logit, follows = made(torch.from_numpy(seen))
+        return torch.sigmoid(logit).numpy(), follows.numpy()
+
+
+def some(n=200, layout="random:5"):
+    return Positions.of(tables(n, layout=layout, seed=1))
+
+
+@pytest.mark.parametrize("scale", [1.0, 3.0])
+def test_the_value_is_that_of_the_network(scale):
+    """On real positions and on random features, also with weights that saturate both outputs."""
+    made = network(3, scale)
+    value = Value(made, SPREAD)
+    for seen in (value_features(some(), SPREAD), np.random.default_rng(0).normal(0, 1.5, (300, SIZE)).astype(np.float32)):
+        p, u = by_torch(made, seen)
+        assert value.of(seen) == pytest.approx(p * u, rel=1e-4, abs=1e-4) and value.of(seen).shape == (len(seen),)
+        assert np.isfinite(value.of(seen)).all() and (value.of(seen) >= 0.0).all()
+
+
+def test_the_network_has_the_layers_that_the_file_says():
+    shapes = [tuple(layer.weight.shape) for layer in network().layers]
+    assert shapes == [(WIDTHS[0], SIZE), (WIDTHS[1], WIDTHS[0]), (2, WIDTHS[1])]
+    made, seen = network(2), np.random.default_rng(1).normal(0, 1, (50, SIZE)).astype(np.float32)
+    x = seen.astype(np.float64)
+    for k, layer in enumerate(made.layers):
+        x = x @ layer.weight.detach().double().numpy().T + layer.bias.detach().double().numpy()
+        x = np.maximum(x, 0.0) if k < 2 else x
+    p, u = by_torch(made, seen)
+    assert p == pytest.approx(1 / (1 + np.exp(-(seen[:, LOGIT] + x[:, 0]))), abs=1e-5)
+    assert u == pytest.approx(POINTS * np.log1p(np.exp(x[:, 1])), rel=1e-4)
+
+
+def test_at_first_the_chance_is_the_likeliest_pots_and_what_follows_hardly_differs():
+    at = some()
+    likeliest = prospects_of(at, SPREAD, most=16)[1].max(axis=1)
+    for seed in range(4):
+        p, u = by_torch(network(seed), value_features(at, SPREAD))
+        assert np.abs(p - likeliest).max() < 0.03 and np.corrcoef(p, likeliest)[0, 1] > 0.999
+        assert u.std() < 0.05 * u.mean() and 0.4 * POINTS < u.mean() < POINTS
+
+
+def test_a_value_keeps_the_weights_that_it_was_made_of():
+    made, seen = network(), value_features(some(20), SPREAD)
+    value = Value(made, SPREAD)
+    before = value.of(seen)
+    with torch.no_grad():
+        for p in made.parameters():
+            p.add_(0.1)
+    assert np.array_equal(value.of(seen), before) and not np.allclose(Value(made, SPREAD).of(seen), before)
+
+
+def test_the_value_of_positions_is_that_of_their_features_on_any_number_of_threads():
+    made, at = network(), some(300)
+    seen = value_features(at, SPREAD)
+    kept = seen.copy()
+    value = Value(made, SPREAD)
+    assert np.array_equal(value(at), value.of(seen)) and np.array_equal(value(at), Value(made, SPREAD, threads=2)(at))
+    assert np.array_equal(seen, kept) and value(at).dtype == np.float32
+    assert not np.allclose(Value(made, 4e-3)(at), value(at), rtol=0.05)  # larger errors, a lower value
+    assert Value(made, 4e-3)(at).mean() < value(at).mean()
+
+
+def test_a_search_takes_it_as_its_value():
+    made, at = network(1, 2.0), some(3)
+    options = {"noise": "professional", "fidelity": "fast"}
+    value = Value(made, SPREAD)
+    ranked = StrokeSearch(options, 30, value=value, threads=1).rank(at, [1, 2, 3])
+    usual = StrokeSearch(options, 30, threads=1).rank(at, [1, 2, 3])
+    assert np.isfinite(ranked.scores).all() and not np.allclose(ranked.scores, usual.scores)

@@ -1,0 +1,154 @@
+"""Are the strokes proposed within their limits, aimed at real pots and shared among them by their chance?"""
+
+from itertools import pairwise
+from math import floor
+
+import numpy as np
+import pytest
+from positions import tables
+
+from snooker_env.geometry import POCKET_AIMS
+from snooker_env.planning import Planner, Position, Positions, actions_of, pots, prospects_of, spread_of
+from snooker_env.planning.proposals import (
+    AIM,
+    FASTEST,
+    HIGHEST,
+    MOST_POTS,
+    PLAIN,
+    RIM,
+    SIDE,
+    SLOWEST,
+    SPEED,
+    TOP,
+    WIDEST,
+    spread_strokes,
+    strokes_at,
+)
+from snooker_env.tasks import LEVELS
+
+PLANNER = Planner({"fidelity": "fast"}, threads=1)
+DYNAMICS = PLANNER.physics, PLANNER.rules.fidelity
+SPREAD = spread_of(LEVELS["club"])
+NO_POT = Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0))
+"""Both reds lie on the top cushion and hide each other from the corners."""
+
+
+def some(n=20, seed=4):
+    return Positions.of(tables(n, layout="random:4", seed=seed))
+
+
+def seeds(n, first=100):
+    return np.arange(first, first + n)
+
+
+def solved(at, row, strokes, ball, pocket, ghost):
+    """The aims of ``Planner.pot_aim`` for strokes (m, 4) at one pot."""
+    m = len(strokes)
+    target, ghosts = np.tile(POCKET_AIMS[pocket, :2], (m, 1)), np.tile(ghost, (m, 1))
+    return PLANNER.pot_aim(
+        at, np.full(m, row), np.full(m, ball), target, strokes[:, SPEED], side=strokes[:, SIDE], top=strokes[:, TOP], ghosts=ghosts
+    )
+
+
+def test_strokes_stay_within_their_limits_and_fill_them():
+    at = some()
+    strokes, chances = spread_strokes(at, 512, seeds(20), SPREAD, DYNAMICS)
+    assert strokes.shape == (20, 512, 4) and chances.shape == (20, 512) and np.isfinite(strokes).all()
+    speed, side, top = (strokes[..., c] for c in (SPEED, SIDE, TOP))
+    assert speed.min() >= SLOWEST and speed.max() <= FASTEST and speed.min() < 1.02 * SLOWEST and speed.max() > 0.98 * FASTEST
+    assert np.abs(side).max() <= WIDEST and np.abs(top).max() <= HIGHEST and np.hypot(side, top).max() <= RIM + 1e-12
+    assert np.abs(side).max() > 0.9 * WIDEST and np.abs(top).max() > 0.98 * HIGHEST
+    assert (side == 0.0).mean(axis=1) == pytest.approx(np.full(20, PLAIN), abs=0.03)
+    assert np.abs(side.mean(axis=1)).max() < 0.01 and np.abs(top.mean(axis=1)).max() < 0.01  # as much to the left, as much below
+    assert np.abs(np.log(speed).mean(axis=1) - 0.5 * np.log(SLOWEST * FASTEST)).max() < 0.02
+    assert ((chances > 0.0) & (chances <= 1.0)).all()
+
+
+def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
+    """Shares in plain Python from the chances of ``prospects_of``; aims by ``Planner.pot_aim``. Of two reds the likelier gets more."""
+    at, m, several = some(), 150, 0
+    found, chances = pots(at, most=MOST_POTS), prospects_of(at, SPREAD, most=MOST_POTS)[1]
+    proposed = spread_strokes(at, m, seeds(20), SPREAD, DYNAMICS)
+    for k in range(20):
+        many = int((found.ball[k] >= 0).sum())
+        if many == 0:
+            continue
+        values = [1 if ball <= 15 else int(ball) - 14 for ball in found.ball[k, :many]]
+        weights = [chances[k, j] ** 4 * (values[j] + 25.0) + 1e-12 for j in range(many)]
+        ends, first, counts = np.cumsum(weights) / sum(weights), 0, []
+        for j in range(many):
+            last = m if j == many - 1 else floor(m * ends[j] + 0.5)
+            strokes = proposed.strokes[k, first:last]
+            assert proposed.chances[k, first:last] == pytest.approx(np.full(last - first, chances[k, j]), rel=1e-9)
+            if last > first:
+                expected = solved(at, k, strokes, found.ball[k, j], found.pocket[k, j], found.ghost[k, j])
+                assert np.array_equal(strokes[:, AIM], expected)
+            counts.append(last - first)
+            first = last
+        reds = [j for j in range(many) if values[j] == values[0]]
+        by_chance = sorted(reds, key=lambda j: chances[k, j])
+        assert all(counts[a] <= counts[b] + 1 for a, b in pairwise(by_chance))
+        several += sum(count > 0 for count in counts) > 1
+    assert several >= 5
+
+
+def test_where_there_is_no_pot_the_strokes_hit_the_balls_on_from_thin_to_full():
+    at, m = Positions.of(NO_POT), 200
+    assert pots(at).ball[0, 0] == -1
+    strokes, chances = spread_strokes(at, m, [5], SPREAD, DYNAMICS)
+    assert (chances == 1.0).all() and np.array_equal(strokes[0, :, SIDE] == 0.0, np.abs(strokes[0, :, SIDE]) < 1e-9)
+    actions = actions_of(strokes[0, :, SPEED], strokes[0, :, AIM], strokes[0, :, SIDE], strokes[0, :, TOP])
+    first = PLANNER.stops(at, np.zeros(m, int), actions).first
+    hard = strokes[0, :, SPEED] > 1.5  # a soft one with backspin does not arrive
+    assert set(first[hard]) == {1, 2} and set(first) <= {-1, 1, 2} and hard.sum() > 100
+    x, y = at.positions[0, 1] - at.positions[0, 0]
+    reach = np.arcsin(2 * 0.02625 / np.hypot(x, y))
+    off = (strokes[0, :, AIM] - np.arctan2(y, x)) / reach  # +-1 grazes the first red
+    assert off.min() < -0.95 and (np.abs(off) < 0.05).any() and (np.abs(off) <= 1.0).sum() >= 0.5 * m
+    nearer = np.abs(np.arctan2(*(at.positions[0, 2] - at.positions[0, 0])[::-1]) - strokes[0, :, AIM])
+    assert (nearer <= np.arcsin(2 * 0.02625 / np.hypot(*(at.positions[0, 2] - at.positions[0, 0])))).sum() >= 0.5 * m
+
+
+def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
+    at, rng = some(6), np.random.default_rng(1)
+    found, chances = pots(at, most=MOST_POTS), prospects_of(at, SPREAD, most=MOST_POTS)[1]
+    many = (found.ball >= 0).sum(axis=1)
+    assert (many > 0).all()
+    which = rng.integers(0, 4, (6, 30))
+    given = np.stack([rng.uniform(1.0, 5.0, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30))], axis=2)
+    kept = which.copy(), given.copy()
+    strokes, of = strokes_at(at, which, given, seeds(6), SPREAD, DYNAMICS)
+    assert np.array_equal(strokes[..., :AIM], given) and np.array_equal(which, kept[0]) and np.array_equal(given, kept[1])
+    for k in range(6):
+        for i in range(30):
+            j = min(which[k, i], many[k] - 1)  # beyond the last pot: the last one
+            assert of[k, i] == pytest.approx(chances[k, j], rel=1e-9)
+            assert strokes[k, i, AIM] == solved(at, k, strokes[k, i : i + 1], found.ball[k, j], found.pocket[k, j], found.ghost[k, j])[0]
+
+
+def test_without_a_pot_strokes_at_are_the_contacts():
+    at = Positions.of(NO_POT)
+    given = np.full((1, 40, 3), (3.0, 0.1, 0.2))
+    assert np.array_equal(
+        strokes_at(at, np.zeros((1, 40), int), given, [9], SPREAD, DYNAMICS).strokes, spread_strokes(at, 40, [9], SPREAD, DYNAMICS).strokes
+    )
+
+
+def test_a_position_is_proposed_for_by_itself():
+    """Its strokes depend on its own seed and layout alone, and nothing that is given is changed."""
+    at = some(8)
+    kept = at.copy()
+    strokes, chances = spread_strokes(at, 40, seeds(8), SPREAD, DYNAMICS)
+    order = np.array([5, 2, 7])
+    again = spread_strokes(at[order], 40, seeds(8)[order], SPREAD, DYNAMICS)
+    assert np.array_equal(again.strokes, strokes[order]) and np.array_equal(again.chances, chances[order])
+    other = spread_strokes(at, 40, seeds(8, first=500), SPREAD, DYNAMICS).strokes
+    assert all(not np.array_equal(other[k], strokes[k]) for k in range(8))
+    assert all(np.array_equal(getattr(at, name), getattr(kept, name)) for name in ("positions", "on_table", "game"))
+
+
+def test_a_wider_hand_spares_the_doubtful_pots():
+    """With larger errors every chance falls, and the likeliest pot's share of the strokes grows."""
+    at = Positions.of(Position(cue=(0.0, 0.9), reds=[(0.5, 1.35), (-0.6, -0.9)], black=(0.0, 1.4605), on="red"))
+    small, large = (spread_strokes(at, 200, [3], spread, DYNAMICS).chances[0] for spread in (5e-4, 4e-3))
+    assert large.max() < small.max() and (large == large.max()).sum() > (small == small.max()).sum() > 0

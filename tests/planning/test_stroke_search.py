@@ -1,0 +1,343 @@
+"""Does the search play its strokes as the table would, within its budget, and rank them by the scores that its docstring defines?"""
+
+from math import atan, sqrt
+
+import numpy as np
+import pytest
+from positions import tables
+
+from agents.features.noise_samples import errors_of
+from snooker_env.planning import RULE_OF_THUMB, SURE, Planner, Position, Positions, StrokeSearch, prospects_of
+from snooker_env.planning.proposals import Proposals, spread_strokes
+from snooker_env.planning.sobol import normal_points
+from snooker_env.planning.stroke_search import FEWEST, PRIOR, schedule
+
+OPTIONS = {"noise": "club", "fidelity": "fast"}
+LOUD = {"aim_deg": 0.3, "speed_rel": 0.05, "speed_abs": 0.05, "offset_mm": 5.0, "elevation_deg": 2.0}
+"""Its tip errors are a fifth of R: many leave the disc."""
+
+
+def some(n=6, layout="random:6", seed=2):
+    return Positions.of(tables(n, layout=layout, seed=seed))
+
+
+def search(budget=30, options=OPTIONS, **more):
+    return StrokeSearch(options, budget, **{"threads": 1} | more)
+
+
+def same(one, other):
+    return all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+
+
+def by_place(at):
+    """A made-up value [points]: how far up the table the cue ball is, and how many balls there are."""
+    return 5.0 + 2.0 * at.positions[:, 0, 1] + 0.1 * at.on_table.sum(axis=1)
+
+
+# strokes under errors --------------------------------------------------------------------------------------------------------------
+
+
+def random_strokes(m, rng):
+    """Strokes (m, 4) over the whole tip disc, in all directions: with side and draw, mirrored in pairs."""
+    strokes = np.empty((m, 4))
+    far, way = 0.49 * np.sqrt(rng.random(m)), rng.uniform(-np.pi, np.pi, m)
+    strokes[:, 0], strokes[:, 1], strokes[:, 2] = rng.uniform(0.8, 5.0, m), far * np.cos(way), far * np.sin(way)
+    strokes[:, 3] = rng.uniform(-np.pi, np.pi, m)
+    strokes[m // 2 :] = strokes[: m - m // 2]
+    strokes[m // 2 :, 1] *= -1.0
+    strokes[m // 2 :, 3] = np.pi - strokes[: m - m // 2, 3]
+    return strokes
+
+
+def as_actions(strokes):
+    """The actions of ``aim="absolute"`` for strokes, in double precision, as the table of ``Actions`` defines them."""
+    turns = strokes[:, 3] / np.pi
+    return np.stack(
+        [2.0 * (strokes[:, 0] - 0.2) / 6.8 - 1.0, 2.0 * strokes[:, 1], 2.0 * strokes[:, 2], turns - 2.0 * np.round(turns / 2.0)], 1
+    )
+
+
+@pytest.mark.parametrize(
+    "noise",
+    [
+        "professional", "club", "olympiad", LOUD, {"offset_mm": 6.0}, {"elevation_deg": 4.0}, {"aim_deg": 2.0},
+        {"speed_abs": 0.1, "speed_rel": 0.03},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_strokes_under_errors_are_those_of_the_table_under_the_same_errors(noise):
+    """The table draws its errors from a key's stream; given the same five numbers, the search plays the same shot, squirt and all.
+
+    Both are exact but for rounding, which a break of the pack may magnify; a wrong sign or factor of any error moves most of the balls.
+    """
+    at, rng, m = some(20), np.random.default_rng(1), 300
+    rows, keys, strokes = rng.integers(0, 20, m), np.arange(1000, 1000 + m), random_strokes(m, rng)
+    options = {"noise": noise, "fidelity": "fast"}
+    errors = errors_of(keys)
+    kept = strokes.copy(), errors.copy()
+    played = search(options=options).outcomes(at, rows, strokes, errors)
+    table = Planner(options, threads=1).play(at, rows, as_actions(strokes), keys)
+    apart = np.abs(played.afterstates.positions - table.afterstates.positions).max(axis=(1, 2))
+    assert np.median(apart) < 1e-9 and (apart < 1e-4).mean() > 0.99
+    alike = apart < 1e-4
+    assert np.array_equal(played.points[alike], table.points[alike]) and np.array_equal(played.goes_on[alike], table.goes_on[alike])
+    assert np.array_equal(strokes, kept[0]) and np.array_equal(errors, kept[1])
+    exact = Planner(options, noise="none", threads=1).play(at, rows, as_actions(strokes)).afterstates.positions
+    assert (np.abs(exact - table.afterstates.positions).max(axis=(1, 2)) > 1e-3).mean() > 0.3  # the errors do matter
+
+
+def test_a_tip_error_beyond_the_disc_is_drawn_in_along_its_radius():
+    """A ball alone, its tip sent far to the right of the rim: it leaves as from the rim there, turned by the squirt of what was hit."""
+    at = Positions.of(Position(cue=(0.0, -1.2), black=(0.6, 1.6)))
+    noise = {"offset_mm": 0.02625e3 * 0.2}  # a fifth of R
+    tool = search(options={"noise": noise})
+    left = tool.outcomes(at, np.array([0, 0]), np.array([[0.9, 0.4, 0.0, 1.5]] * 2), np.array([[0, 2.0, 0, 0, 0], [0, 0.5, 0, 0, 0]]))
+    ratio = tool.dynamics[0].end_mass_ratio
+    rim, meant = (atan(2.5 * b * sqrt(1 - b * b) / (1 + ratio + 2.5 * (1 - b * b))) for b in (0.5, 0.4))  # squirt [Alciatore, TP A.31]
+    turned = rim - meant
+    assert turned > 1e-3
+    for place in left.afterstates.positions[:, 0]:  # 0.8 and 0.5 both end on the rim
+        x, y = place - at.positions[0, 0]
+        assert np.arctan2(y, x) == pytest.approx(1.5 + turned, abs=1e-9)
+
+
+def test_without_errors_a_stroke_leaves_along_its_aim_whatever_its_side():
+    at = Positions.of(Position(cue=(0.0, -1.2), black=(0.6, 1.6)))
+    strokes = np.array([[0.9, side, top, 1.4] for side in (-0.35, 0.0, 0.35) for top in (-0.3, 0.0, 0.3)])
+    left = search().outcomes(at, np.zeros(9, int), strokes, np.zeros((9, 5))).afterstates.positions[:, 0] - at.positions[0, 0]
+    assert np.arctan2(left[:, 1], left[:, 0]) == pytest.approx(np.full(9, 1.4), abs=1e-9)
+    assert len(np.unique(np.hypot(*left.T).round(6))) == 3  # the height of the tip decides how far it runs
+
+
+# budget ----------------------------------------------------------------------------------------------------------------------------
+
+
+def test_no_budget_is_exceeded_nor_left_unused():
+    for budget in range(FEWEST, 2501):
+        looks, rounds = schedule(budget)
+        total = looks + sum(many * each for many, each in rounds)
+        assert 0.8 * budget < total <= budget, budget
+        assert all(each >= 1 for _, each in rounds)
+        strokes = [looks, *(many for many, _ in rounds)]
+        assert strokes == sorted(strokes, reverse=True), budget  # each round keeps some of the one before
+        assert bool(rounds) == (budget >= 30)
+
+
+@pytest.mark.parametrize("budget", [8, 29, 30, 77, 120, 333, 2000])
+@pytest.mark.parametrize("noise", ["club", "none"])
+def test_as_many_strokes_are_played_as_the_schedule_says(budget, noise):
+    at = some(2)
+    tool = search(budget, {"noise": noise, "fidelity": "fast"})
+    ranked = tool.rank(at, [1, 2])
+    looks, rounds = schedule(budget)
+    total = looks + sum(many * each for many, each in rounds)
+    if noise == "none":
+        looks, rounds, total = budget, (), budget
+    assert tool.shots == 2 * total and ranked.strokes.shape == (2, looks, 4) and ranked.scores.shape == ranked.samples.shape == (2, looks)
+    met = np.zeros(looks, int)
+    for many, each in rounds:
+        met[:many] += each
+    assert np.array_equal(ranked.samples, [met, met]) and ranked.samples.dtype == np.int64
+
+
+# scores ----------------------------------------------------------------------------------------------------------------------------
+
+
+def gains_by_hand(tool, at, strokes, errors, value):
+    """Points and value of what is left, for each of the strokes (m, 4) of one position under each of the errors (s, 5): (m, s)."""
+    m, s = len(strokes), len(errors)
+    out = tool.outcomes(at, np.zeros(m * s, int), np.repeat(strokes, s, axis=0), np.tile(errors, (m, 1)))
+    gains = [
+        points + (value(out.afterstates[[i]])[0] if on else 0.0)
+        for i, (points, on) in enumerate(zip(out.points.tolist(), out.goes_on.tolist(), strict=True))
+    ]
+    return np.array(gains).reshape(m, s)
+
+
+@pytest.mark.parametrize("budget", [30, 120])
+@pytest.mark.parametrize("value", [by_place, None])
+def test_the_ranking_recomputed(budget, value):
+    """Sequential halving in plain Python: look = chance x gain; each round samples the best; score = (2 look + sum) / (2 + samples)."""
+    at, seeds = some(4), [3, 2**32 - 1, 0, 17]
+    tool = search(budget, value=value)
+    worth = value or (lambda left: prospects_of(left, tool.spread, RULE_OF_THUMB)[0])
+    ranked = tool.rank(at, seeds)
+    looks, rounds = schedule(budget)
+    total = sum(each for _, each in rounds)
+    for k, seed in enumerate(seeds):
+        here = at[k : k + 1]
+        strokes, chances = (one[0] for one in spread_strokes(here, looks, [seed], tool.spread, tool.dynamics))
+        look = chances * gains_by_hand(tool, here, strokes, np.zeros((1, 5)), worth)[:, 0]
+        gains = gains_by_hand(tool, here, strokes, normal_points(total, seed), worth)
+        order, score, done, met = sorted(range(looks), key=lambda i: -look[i]), list(look), 0, [0] * looks
+        for many, each in rounds:
+            done += each
+            for i in order[:many]:
+                score[i], met[i] = (PRIOR * look[i] + gains[i, :done].sum()) / (PRIOR + done), done
+            order[:many] = sorted(order[:many], key=lambda i: -score[i])
+        assert np.array_equal(ranked.strokes[k], strokes[order]) and ranked.samples[k].tolist() == [met[i] for i in order]
+        assert ranked.scores[k] == pytest.approx([score[i] for i in order], rel=1e-9, abs=1e-9)
+    assert PRIOR == 2.0 and ranked.scores.max() > 3.0
+
+
+def test_for_pots_alone_a_score_is_a_rate_and_nothing_is_valued():
+    def never(_):
+        raise AssertionError("asked for a value")
+
+    at = some(5)
+    tool = search(60, pots_only=True, value=never)
+    ranked = tool.rank(at, np.arange(5))
+    assert ranked.scores.min() >= 0.0 and ranked.scores.max() <= 1.0 and (ranked.scores[:, 0] > 0.3).any()
+    for k in range(5):
+        best, met = ranked.strokes[k, 0], int(ranked.samples[k, 0])
+        out = tool.outcomes(at, np.full(met + 1, k), np.tile(best, (met + 1, 1)), np.concatenate([np.zeros((1, 5)), normal_points(met, k)]))
+        made = out.points > 0
+        strokes, chances = (one[0] for one in spread_strokes(at[k : k + 1], schedule(60)[0], [k], tool.spread, tool.dynamics))
+        chance = chances[np.flatnonzero((strokes == best).all(axis=1))[0]]
+        assert ranked.scores[k, 0] == pytest.approx((2.0 * chance * made[0] + made[1:].sum()) / (2.0 + met))
+
+
+def test_without_errors_the_ranking_is_that_of_the_looks():
+    """All strokes given a chance of 1: scores are points and value, best first, and the best scores what it says when it is played."""
+    at = some(6)
+
+    def sure(tool, here, m, seeds):
+        strokes, chances = spread_strokes(here, m, seeds, tool.spread, tool.dynamics)
+        return Proposals(strokes, np.ones_like(chances))
+
+    tool = search(80, {"noise": "none", "fidelity": "fast"}, propose=sure)
+    ranked = tool.rank(at, np.arange(6))
+    assert not ranked.samples.any() and (np.diff(ranked.scores) <= 0.0).all() and ranked.scores.shape == (6, 80)
+    played = Planner({"noise": "none", "fidelity": "fast"}).play(at, np.arange(6), as_actions(ranked.strokes[:, 0]))
+    worth = played.points + played.goes_on * prospects_of(played.afterstates, tool.spread, SURE)[0]
+    assert ranked.scores[:, 0] == pytest.approx(worth, rel=1e-6) and (played.points > 0).sum() >= 4
+
+
+def test_the_search_beats_the_first_of_its_looks_under_fresh_errors():
+    """On positions with easy pots, what the search prefers is worth more than a stroke proposed at random, and its score is no flattery."""
+    at = some(30, layout="random:4")
+    tool = search(120, value=by_place)
+    ranked = tool.rank(at, np.arange(30))
+    rows, errors = np.repeat(np.arange(30), 20), np.random.default_rng(0).standard_normal((600, 5))
+    means = []
+    for column in (0, 40):
+        out = tool.outcomes(at, rows, np.repeat(ranked.strokes[:, column], 20, axis=0), errors)
+        means.append((out.points + np.where(out.goes_on, by_place(out.afterstates), 0.0)).mean())
+    assert means[0] > means[1] + 1.0 and abs(means[0] - ranked.scores[:, 0].mean()) < 1.5
+
+
+# what a decision depends on --------------------------------------------------------------------------------------------------------
+
+
+def test_equal_seeds_give_equal_decisions_on_any_number_of_threads():
+    at, seeds = some(12), np.arange(12)
+    one = search(60).rank(at, seeds)
+    assert same(one, search(60).rank(at, seeds)) and same(one, search(60, threads=2).rank(at, seeds))
+    tool = search(60)
+    assert same(one, tool.rank(at, seeds)) and same(one, tool.rank(at, seeds))  # a search remembers nothing
+    other = tool.rank(at, seeds + 50)
+    assert all(not np.array_equal(one.strokes[k], other.strokes[k]) for k in range(12))
+    assert same(one, tool.rank(at, (seeds + 2**32).astype(np.uint64))) and same(one, tool.rank(at, seeds.tolist()))
+
+
+def test_a_decision_does_not_depend_on_the_other_positions():
+    at, order = some(9), np.array([7, 0, 4])
+    whole, part = search(60).rank(at, np.arange(9)), search(60).rank(at[order], order)
+    assert all(np.array_equal(a[order], b) for a, b in zip(whole, part, strict=True))
+    alone = search(60).rank(at[4], [4])
+    assert all(np.array_equal(a[4:5], b) for a, b in zip(whole, alone, strict=True))
+
+
+def test_nothing_given_is_changed_and_nothing_returned_is_shared():
+    at, seeds = some(5), np.arange(5)
+    kept, proposed = at.copy(), []
+
+    def propose(tool, here, m, own):
+        made = spread_strokes(here, m, own, tool.spread, tool.dynamics)
+        proposed.append((made, made.strokes.copy(), made.chances.copy()))
+        return made
+
+    tool = search(60, propose=propose)
+    first = tool.rank(at, seeds)
+    copies = [one.copy() for one in first]
+    for made, strokes, chances in proposed:
+        assert np.array_equal(made.strokes, strokes) and np.array_equal(made.chances, chances)
+    assert all(np.array_equal(getattr(at, name), getattr(kept, name)) for name in ("positions", "on_table", "game"))
+    assert np.array_equal(seeds, np.arange(5))
+    for one in first:
+        one[:] = 0
+    assert same(copies, tool.rank(at, seeds))
+
+
+def test_noise_given_takes_the_place_of_the_tables_own():
+    at = some(3)
+    exact = search(30, noise="none")
+    assert exact.noise.silent and not exact.rank(at, [1, 2, 3]).samples.any()
+    assert same(search(30, {"noise": "none", "fidelity": "fast"}, noise="club").rank(at, [1, 2, 3]), search(30).rank(at, [1, 2, 3]))
+
+
+def test_the_tables_own_physics_and_fidelity_count():
+    at = some(3)
+    usual = search(30).rank(at, [1, 2, 3])
+    for change in ({"physics": "match"}, {"fidelity": "standard"}, {"table": "tight"}):
+        assert not np.array_equal(usual.scores, search(30, OPTIONS | change).rank(at, [1, 2, 3]).scores), change
+
+
+def test_no_position_is_no_decision():
+    ranked = search(30).rank(some(2)[np.zeros(0, int)], np.zeros(0, int))
+    assert ranked.strokes.shape == (0, 16, 4) and ranked.scores.shape == ranked.samples.shape == (0, 16)
+
+
+# bad input -------------------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("budget", "complaint"),
+    [(7, "budget = 7: must be"), (-1, "budget = -1"), (30.0, "budget = 30.0"), ("30", "budget = '30'"), (None, "budget")],
+)
+def test_a_wrong_budget_is_refused(budget, complaint):
+    with pytest.raises(ValueError, match=f"^{complaint}"):
+        search(budget)
+
+
+@pytest.mark.parametrize("seeds", [[1], [1, 2, 3], 1, [[1, 2]], [1.0, 2.0], [True, False], ["1", "2"], [None, 1]], ids=str)
+def test_wrong_seeds_are_refused_before_anything_is_played(seeds):
+    tool = search()
+    with pytest.raises(ValueError, match=r"^seeds = .*: must be 2 integers, one for each position"):
+        tool.rank(some(2), seeds)
+    assert tool.shots == 0
+
+
+def spoilt(kind):
+    at = some(3)
+    if kind == "over":
+        at.game[1, 3] = 1
+    elif kind == "cleared":
+        at.game[1, 3], at.on_table[1, 1:] = 1, False
+    elif kind == "no cue ball":
+        at.on_table[1, 0] = False
+    elif kind == "no ball on":
+        at.on_table[1, 1:] = False
+    elif kind == "overlap":
+        at.positions[1, 0] = at.positions[1, 1]
+    elif kind == "nan":
+        at.positions[1, 0, 1] = np.nan
+    return at
+
+
+@pytest.mark.parametrize("kind", ["over", "cleared", "no cue ball", "no ball on", "overlap", "nan"])
+def test_a_position_without_a_stroke_is_refused_by_its_row(kind):
+    tool = search()
+    with pytest.raises(ValueError, match=r"^positions\[1\]") as info:
+        tool.rank(spoilt(kind), [1, 2, 3])
+    assert type(info.value) is ValueError and tool.shots == 0
+
+
+@pytest.mark.parametrize(("changes", "complaint"), [({"threads": 0}, "threads = 0"), ({"noise": "loud"}, "noise = 'loud'")])
+def test_other_wrong_arguments_are_refused(changes, complaint):
+    with pytest.raises(ValueError, match=f"^{complaint}"):
+        search(**changes)
+    with pytest.raises(ValueError, match=r"^env_or_options = "):
+        StrokeSearch(3)
+    with pytest.raises(ValueError, match=r"^positions = "):
+        search().rank(3, [1])
