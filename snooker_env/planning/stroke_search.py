@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 from .._check import integer, refuse_what
 from .._jit import entry
 from .._types import Environment, Floats, Integers, Ints
-from ..physics.cue import MAX_ELEVATION, squirt
-from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
+from ..physics.cue import squirt
+from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 from ..tasks.noise import N_AIM, N_ELEVATION, N_SPEED, N_SPEED_REL, N_TIP, NoiseLike
 from ..tasks.options import Options
 from .planner import Outcomes, Planner, options_in
-from .positions import Positions, PositionsLike
+from .positions import Positions, PositionsLike, check_played
 from .proposals import AIM, SIDE, SPEED, TOP, Proposals, spread_strokes
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
@@ -225,19 +225,21 @@ class StrokeSearch:
         if own.shape != (n,) or own.dtype.kind not in "iu":
             raise refuse_what("seeds", f"{own.dtype} array of shape {own.shape}", f"must be {n} integers, one for each position")
         keys = (own.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
+        check_played(at, np.arange(n), self.planner.table, self.planner.physics.R)
         looks, rounds = (self.budget, ()) if self.noise.silent else schedule(self.budget)
+        if not n:
+            return Ranked(np.zeros((0, looks, 4)), np.zeros((0, looks)), np.zeros((0, looks), np.int64))
         strokes, chances = self.propose(self, at, looks, keys)
         scores = self._gains(at, strokes[:, :, None], np.zeros((n, 1, DIMENSIONS)))[..., 0]
         if not self.noise.silent:
             scores *= chances
         every, tries, sums = np.arange(n)[:, None], np.zeros((n, looks), np.int64), PRIOR * scores
         order = np.argsort(-scores, axis=1, kind="stable")
-        samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in keys.tolist()]) if rounds and n else None
+        samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in keys.tolist()])
         done = 0
         for many, each in rounds:
             best = order[:, :many]
             picked = np.repeat(strokes[every, best][:, :, None], each, 2)
-            assert samples is not None
             sums[every, best] += self._gains(at, picked, samples[:, done : done + each]).sum(2)
             tries[every, best] += each
             done += each

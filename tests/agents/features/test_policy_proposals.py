@@ -10,7 +10,7 @@ from positions import tables
 from agents.features.policy_proposals import TEMPERATURE, PolicyProposals
 from agents.learning.models import PRETRAINED, load_trained
 from snooker_env.planning import Position, Positions, StrokeSearch, action_masks, as_actions, pots, prospects_of
-from snooker_env.planning.proposals import AIM, FASTEST, MOST_POTS, RIM, SIDE, SLOWEST, SPEED, TOP, spread_strokes
+from snooker_env.planning.proposals import AIM, MOST_POTS, RIM, SIDE, SPEED, TOP, spread_strokes
 from snooker_env.tasks import CHOICES, POTS, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
 SEARCH = StrokeSearch({"noise": "professional", "fidelity": "fast"}, 30, threads=1)
@@ -112,7 +112,9 @@ def test_without_a_pot_the_policy_proposes_the_contacts(learned):
 def test_a_trained_policys_strokes_can_be_played(learned, layout):
     at = Positions.of(tables(5, layout=layout, seed=1))
     strokes, chances = learned(SEARCH, at, 40, np.arange(5))
-    assert np.isfinite(strokes).all() and strokes[..., SPEED].min() >= SLOWEST and strokes[..., SPEED].max() <= FASTEST
+    assert (
+        np.isfinite(strokes).all() and strokes[..., SPEED].min() >= 0.75 and strokes[..., SPEED].max() <= 6.88
+    )  # half a cell beyond the grid
     assert np.hypot(strokes[..., SIDE], strokes[..., TOP]).max() <= RIM + 1e-12 and ((chances > 0) & (chances <= 1)).all()
     search = StrokeSearch({"noise": "professional", "fidelity": "fast"}, 30, threads=1, propose=learned)
     ranked = search.rank(at, np.arange(5))

@@ -132,7 +132,7 @@ def test_a_round_keeps_what_its_samples_led_to(monkeypatch):
     followed = 0
     for _ in range(6):
         at = run._at.copy()
-        run._search.value, run._search.propose = run._search.by_rule, evenly
+        run._search.value, run._search.propose = run._search._by_rule, evenly
         run._play()
         (given, rows, strokes, _), out = played[-1]
         seen, after, points, goes_on, follows = added[-1]

@@ -67,7 +67,7 @@ def test_the_pupil_becomes_the_softmax_of_worths():
     picks, there = to_try(rng.normal(size=masks.shape), masks, rng)
     worths = rng.uniform(0.0, 4.0, SIZE)[picks].astype(np.float32)
     optimizer = torch.optim.Adam(model.policy.parameters(), 1e-3)
-    losses = [imitation._fit(model.policy, optimizer, [(seen, masks, picks, there, worths)]) for _ in range(400)]
+    losses = [imitation.fit_values(model.policy, optimizer, seen, masks, picks, there, worths) for _ in range(400)]
     assert losses[-1] < 0.05 * np.var(worths) < losses[0]
     with torch.no_grad():
         logits = model.policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()

@@ -66,7 +66,8 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
     seen = np.random.default_rng(0).uniform(-1, 1, (16, *model.observation_space.shape)).astype(np.float32)
     for one in (trained, read(tmp_path / "plain.zip", "agent")):
         assert {key: getattr(one, key) for key in ("recipe", "view", "num_timesteps", "gamma", "seed", "imitated", "start")} == {
-            "recipe": name, "view": Recipe.of(name).view, "num_timesteps": 77, "gamma": 0.95, "seed": 3, "imitated": 300, "start": None,
+            "recipe": name, "view": Recipe.of(name).view, "num_timesteps": 77, "gamma": model.gamma, "seed": 3, "imitated": 300,
+            "start": None,
         }  # fmt: skip
         assert one.env_options == model.env_options and one.action_space == model.action_space
         assert type(one.policy) is type(model.policy) and one.policy.observation_space == model.observation_space
