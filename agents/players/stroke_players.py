@@ -73,7 +73,8 @@ class StrokePlayer:
         self.kind, self.budget, self.model = kind, budget, model
         self._seed, self._decisions = seed, 0
         self._tables: Any = None
-        self._search: Any = None
+        self.search: Any = None
+        """The ``StrokeSearch`` on the present tables; None before the first decision."""
         StrokeSearch({}, budget)  # checks the budget
 
     def act(self, tables, observations, going):
@@ -90,11 +91,11 @@ class StrokePlayer:
 
     def _ranked(self, tables, going):
         if self._tables is not tables:
-            self._tables, self._search = tables, self._new_search(tables)
+            self._tables, self.search = tables, self._new_search(tables)
         # each table and decision its own: what is drawn on one says nothing of another
         seeds = np.random.SeedSequence([self._seed, self._decisions]).generate_state(len(going))[going]
         self._decisions += 1
-        return self._search.rank(Positions.of(tables)[going], seeds)
+        return self.search.rank(Positions.of(tables)[going], seeds)
 
     def _new_search(self, tables):
         search = StrokeSearch(tables, self.budget, pots_only=self.kind == "best_pot")

@@ -1,0 +1,127 @@
+"""How good is a learned value of positions? What it says before each stroke of a planner, beside the points that really followed.
+
+    python -m agents.value_quality --agent planner --visits 500 --noise professional club
+    python -m agents.value_quality --agent planner@runs/ppo_value-0 --json quality.json --markdown quality.md
+
+Correlation with what followed: one visit's luck bounds it, so it says which of two values sees more, not how good one is. Calibration:
+positions sorted by the value, in ten equal groups; in each the mean of the value and of what followed. The rule of thumb is judged in the
+same positions. Standard errors are over visits.
+"""
+
+import argparse
+import json
+import shlex
+import sys
+from pathlib import Path
+
+from commands.lifecycle import command, needs
+
+with needs("agents.value_quality"):
+    import numpy as np
+
+    import snooker_env
+    from commands.files import writable, write_atomic
+    from snooker_env.benchmark import play_visits, tables_of
+    from snooker_env.checks import integer, refuse
+    from snooker_env.planning import RULE_OF_THUMB, SURE, Positions, prospects_of
+    from snooker_env.tasks import Noise
+
+    from ..players.by_name import player_of
+    from .protocol import provenance
+
+GROUPS, LEAST = 10, 20
+"""Number of groups of positions, fewer where a group would have fewer than ``LEAST``."""
+
+
+class Recording:
+    """A planner that notes the values of the positions that it plays from."""
+
+    def __init__(self, planner):
+        self._planner, self.options, self.rows = planner, planner.options, []
+
+    def act(self, tables, observations, going):
+        """The planner's own actions."""
+        actions = self._planner.act(tables, observations, going)
+        at, search = Positions.of(tables)[going], self._planner.search
+        rule = prospects_of(at, search.spread, SURE if search.noise.silent else RULE_OF_THUMB)[0]
+        self.rows.append(np.column_stack([np.flatnonzero(going), at.points, search.value(at), rule]))
+        return actions
+
+
+def quality(player, visits, layout, noise):
+    """Figures of the value of ``player``, a planner, over so many visits."""
+    recording = Recording(player)
+    strokes = play_visits(recording, visits, layout=layout, noise=noise, first_seed=tables_of(layout, visits))
+    visit, so_far, value, rule = np.concatenate(recording.rows).T
+    visit = visit.astype(np.int64)
+    followed = strokes.a_visit(strokes.points)[visit] - so_far
+    figures = {"layout": layout, "noise": noise, "visits": visits, "positions": len(visit), "followed": float(followed.mean())}
+    for name, of in (("value", value), ("rule", rule)):
+        known = of.std() > 0 and followed.std() > 0
+        figures[name] = {"mean": float(of.mean()), "correlation": float(np.corrcoef(of, followed)[0, 1]) if known else 0.0}
+    groups = np.array_split(np.argsort(value, kind="stable"), max(1, min(GROUPS, len(visit) // LEAST)))
+    figures["groups"] = [
+        {"value": float(value[rows].mean()), "followed": float(followed[rows].mean()), "se": _standard_error(followed[rows], visit[rows])}
+        for rows in groups
+    ]
+    return figures
+
+
+def _standard_error(values, visit):
+    """Of a mean over positions, those of a visit taken together."""
+    sums, many = np.bincount(visit, values - values.mean()), np.bincount(visit)
+    return float(np.sqrt((sums[many > 0] ** 2).sum()) / len(values))
+
+
+def markdown(report):
+    """The figures as tables."""
+    lines = ["# How good the value of " + report["agent"] + " is", "", "Made by", "", "```bash", report["command"], "```", ""]
+    lines += [f"with snooker_env {report['version']}, at commit {report['commit']} on {report['machine']}.", ""]
+    for one in report["results"]:
+        value, rule = one["value"], one["rule"]
+        lines += [
+            f"**{one['layout']}, noise {one['noise']}: {one['visits']} visits, {one['positions']:,} positions**", "",
+            "| value | correlation with what followed | mean | really followed |", "|---|--:|--:|--:|",
+            f"| learned | {value['correlation']:.3f} | {value['mean']:.1f} | {one['followed']:.1f} |",
+            f"| rule of thumb | {rule['correlation']:.3f} | {rule['mean']:.1f} | {one['followed']:.1f} |", "",
+            "| group of positions, by the learned value | mean value | followed (± s. e.) |", "|---|--:|--:|",
+            *(f"| {k + 1} | {g['value']:.1f} | {g['followed']:.1f} ± {g['se']:.1f} |" for k, g in enumerate(one["groups"])), "",
+        ]  # fmt: skip
+    return "\n".join(lines)
+
+
+@command("agents.value_quality")
+def main(argv=None):
+    """Play, compare, report. Exit code 0."""
+    p = argparse.ArgumentParser("python -m agents.value_quality", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("--agent", default="planner", help="a planner: planner, planner@MODEL, planner_500@MODEL [planner]")
+    p.add_argument("--visits", type=int, default=500, help="visits under each condition [500]")
+    p.add_argument("--layouts", nargs="+", default=["held_out"], help="[held_out]")
+    p.add_argument("--noise", nargs="+", default=["professional"], help="levels of execution noise [professional]")
+    p.add_argument("--json", type=Path, help="write every figure here")
+    p.add_argument("--markdown", type=Path, help="write the tables here")
+    argv = sys.argv[1:] if argv is None else argv
+    args = p.parse_args(argv)
+    try:
+        integer("visits", args.visits, 2, 2**20)
+        for layout in args.layouts:
+            tables_of(layout, args.visits)
+        for level in args.noise:
+            Noise.of(level)
+        if not args.agent.startswith("planner"):
+            raise refuse("agent", args.agent, "must be a planner: planner, planner@MODEL")
+        player_of(args.agent)
+        for name in ("json", "markdown"):
+            writable(name, getattr(args, name))
+    except ValueError as error:
+        p.error(str(error))
+    snooker_env.warmup()
+    report = {"command": "python -m agents.value_quality " + shlex.join(argv), "agent": args.agent, **provenance()}
+    report["results"] = [quality(player_of(args.agent), args.visits, layout, noise) for layout in args.layouts for noise in args.noise]
+    if args.json:
+        write_atomic(args.json, (json.dumps(report, indent=1) + "\n").encode())
+    text = markdown(report)
+    if args.markdown:
+        write_atomic(args.markdown, text.encode())
+    print(text)
+    return 0
