@@ -89,3 +89,5 @@ evaluate planner_noise --layouts held_out=500 --agent "none=planner@$folder/valu
 evaluate planner_rekeyed --layouts held_out=500 --noise professional --rekey --against lookahead --agent \
     "planner=planner@$folder/value-0" lookahead
 evaluate planner_147 --layouts break_off=50 --noise none --agent "planner_2000=planner_2000@$folder/value-none" lookahead_2000
+module agents.value_quality --agent "planner@$folder/value-0" --visits 1000 --layouts held_out line_up colours random:3 \
+    --noise professional club --json agents/results/value_quality.json --markdown agents/results/value_quality.md

@@ -23,6 +23,7 @@ SHORT = {
     "benchmarks.fuzz": ["--shots", "300", "--threads", "1"],
     "benchmarks.vector": ["--seconds", "0.1", "--repeats", "1", "--tables", "64", "--ppo-steps", "2048"],
     "agents.evaluate": ["--agent", "random", "--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"],
+    "agents.value_quality": ["--agent", "planner_30", "--visits", "3"],
     "agents.watch": ["--agent", "ghost_ball", "--out", "{tmp}/visit.html"],
     "agents.report": ["--show", "agents/results/147.json"],
     "tests.rules_cases": ["tests/data/rules_cases.json"],
