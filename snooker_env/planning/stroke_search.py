@@ -282,7 +282,8 @@ class StrokeSearch:
         [7.0, 0.0]
         """
         actions, physics = np.empty((len(strokes), 5)), self.dynamics[0]
-        _under_errors(strokes, errors, self._deviations, physics.end_mass_ratio, min(0.5, physics.max_offset), actions)
+        given = np.array(strokes, np.float64), np.array(errors, np.float64)  # copies: a view would be compiled for anew
+        _under_errors(*given, self._deviations, physics.end_mass_ratio, min(0.5, physics.max_offset), actions)
         return self.planner.play(at, rows, actions)
 
     def _gains(self, at: Positions, strokes: Floats, errors: Floats) -> Floats:

@@ -88,6 +88,8 @@ WEIGHTS = {
     "ppo_foresight_gamma0": "86b1104b70879a7b187cc7a73c0d6622de313f04c6952d300a9f17d33c8e4a3d",
     "ppo_mask": "dfe17966c74afe0d4d1a8cce0d121d1ba2a4ebfbe5091edff517c4f3688fcc36",
     "ppo_target": "a0d80caf6416d41fab71b6157ba3c380d2e128f98f993adf96ce37bbbe09ff7f",
+    "ppo_value": "733661108a02d51900262d229f481396f9211bc7087492fdb2de37ba2cd18879",
+    "ppo_value_club": "15cd61ec02e947477d13040781fd3bb914ae45453eb32588762efb328901d3a8",
 }
 """SHA-256 of the weights that the published figures were played with, whatever file holds them."""
 

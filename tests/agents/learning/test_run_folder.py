@@ -204,7 +204,7 @@ def test_saves_are_rare(tmp_path, monkeypatch):
         now[0] += 5.0
 
     class Lessons:
-        states, done, curve, seconds = 2000, 0, [{"states": 2000}], 0.0
+        doing, states, done, curve, seconds = "learning", 2000, 0, [{"states": 2000}], 0.0
 
         def round(self):
             self.done += 1
