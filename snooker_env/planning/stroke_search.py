@@ -282,7 +282,7 @@ class StrokeSearch:
         [7.0, 0.0]
         """
         actions, physics = np.empty((len(strokes), 5)), self.dynamics[0]
-        given = np.array(strokes, np.float64), np.array(errors, np.float64)  # copies: a view would be compiled for anew
+        given = [np.array(one, np.float64, order="C") for one in (strokes, errors)]  # of another layout, it would be compiled anew
         _under_errors(*given, self._deviations, physics.end_mass_ratio, min(0.5, physics.max_offset), actions)
         return self.planner.play(at, rows, actions)
 
