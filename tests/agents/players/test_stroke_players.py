@@ -115,7 +115,7 @@ def test_each_kind_has_its_value_and_its_proposals(model):
     for kind in NAMES:
         player = stroke_player(f"{kind}_30@{model}" if kind.startswith("planner") else f"{kind}_30")
         player.act(env, None, GOING)
-        search = player._search
+        search = player.search
         kinds[kind] = (
             isinstance(search.value, Value),
             isinstance(search.propose, PolicyProposals),
@@ -150,7 +150,7 @@ def test_the_strokes_of_a_search_are_what_is_played():
     player = stroke_player("lookahead_60", seed=6)
     acted = player.act(env, None, GOING)
     seeds = np.random.SeedSequence([6, 0]).generate_state(4)[GOING]
-    best = player._search.rank(Positions.of(env)[GOING], seeds).strokes[:, 0]
+    best = player.search.rank(Positions.of(env)[GOING], seeds).strokes[:, 0]
     assert np.array_equal(acted[GOING], actions_of(best[:, 0], best[:, 3], best[:, 1], best[:, 2]))
 
 
@@ -171,7 +171,7 @@ def test_a_player_goes_on_at_other_tables_with_their_noise():
     player = stroke_player("lookahead_30")
     player.act(four(), None, GOING)
     player.act(four(noise="club"), None, GOING)
-    assert player._search.noise == LEVELS["club"]
+    assert player.search.noise == LEVELS["club"]
 
 
 def test_when_all_visits_have_ended_there_is_nothing_to_play(model):
