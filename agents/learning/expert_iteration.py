@@ -13,7 +13,7 @@ import time
 import numpy as np
 
 from snooker_env import SnookerVectorEnv
-from snooker_env.planning import Positions, StrokeSearch
+from snooker_env.planning import Positions, StrokeSearch, spread_of
 
 from ..features.policy_proposals import PolicyProposals
 from ..features.value_features import SIZE, value_features
@@ -147,5 +147,5 @@ class ExpertIteration:
 
 def judge_rewards(venv, policy, threads):
     """Let the training tables add the learned value of the afterstate to each reward: the reward-to-go of PPO with gamma = 0."""
-    search = StrokeSearch(venv.unwrapped.tables)
-    venv.judge = Value(policy.position_value, search.spread, threads)
+    rules = venv.unwrapped.tables.options.rules
+    venv.judge = Value(policy.position_value, spread_of(rules.noise, rules.physics), threads)

@@ -115,8 +115,9 @@ def schedule(budget: int) -> tuple[int, tuple[tuple[int, int], ...]]:
 def _under_errors(strokes, errors, noise, end_mass_ratio, max_offset, actions):
     """Actions (n, 5) of strokes (n, 4) with standard normal errors (n, 5): speed, side, top, aim, elevation, as ``tasks.noise.executed``.
 
-    The cue's direction has been corrected for the squirt of the intended side. A tip error adds its own, so the direction that the action
-    names, which is that of the ball, is turned by the difference.
+    The speed is kept within the range of actions, which the table's own errors may leave by a little. The cue's direction has been
+    corrected for the squirt of the intended side. A tip error adds its own, so the direction that the action names, which is that of the
+    ball, is turned by the difference.
     """
     for i in range(len(strokes)):
         speed, side, top, e = strokes[i, SPEED], strokes[i, SIDE], strokes[i, TOP], errors[i]
