@@ -23,7 +23,7 @@ from .value_network import Value
 
 BUDGET = 60
 """Simulated shots of a decision in training."""
-FRESH = 6
+FRESH = 4
 """Fresh noise samples of the best stroke for a target."""
 EXPLORED, AMONG = 0.2, 12
 """Share of exploratory strokes, each one of the best ``AMONG``."""

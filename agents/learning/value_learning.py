@@ -13,14 +13,14 @@ import numpy as np
 import torch
 
 from ..features.value_features import SIZE
-from .value_network import Value
+from .value_network import MEMBERS, Value
 
 LAMBDA = 0.7
-KEPT = 40_960
+KEPT = 81_920
 """Positions that gradient steps are drawn from."""
 REFRESH = 8
 """Rounds between two computations of the targets."""
-BATCH, EACH, RATE = 1024, 16, 2e-3
+BATCH, EACH, RATE = 1024, 32, 2e-3
 """Positions in the batch of a gradient step, new positions for each step, and the first learning rate."""
 FIRST_STEPS, FIRST_GUESS = 25, 25.0
 """The first time, so many times the steps; and the points that follow a visit's last known stroke in its first targets."""
@@ -58,14 +58,14 @@ class ValueLearning:
         for group in self._optimizer.param_groups:
             group["lr"] = RATE * max(0.02, remaining)
         for _ in range(max(1, self._n // EACH) * (FIRST_STEPS if first else 1)):
-            rows = self._rng.integers(len(self._fitted[0]), size=BATCH)
+            rows = self._rng.integers(len(self._fitted[0]), size=(MEMBERS, BATCH))
             seen, target, made = (torch.from_numpy(one[rows].astype(np.float32)) for one in self._fitted)
             logit, follows = self._network(seen)
             error = (torch.sigmoid(logit) * follows - target) / 20.0  # points a typical target errs by
-            loss = error.square().mean() + 0.3 * torch.nn.functional.binary_cross_entropy_with_logits(logit, made)
+            loss = MEMBERS * (error.square().mean() + 0.3 * torch.nn.functional.binary_cross_entropy_with_logits(logit, made))
             self._optimizer.zero_grad()
             loss.backward()
-            torch.nn.utils.clip_grad_norm_(self._network.parameters(), 1.0)
+            torch.nn.utils.clip_grad_norm_(self._network.parameters(), 2.0)
             self._optimizer.step()
             self.losses.append(loss.item())
         self._optimizer.zero_grad()  # nobody else may meet these gradients: PPO clips by the norm of all
