@@ -62,7 +62,8 @@ class ValueLearning:
             seen, target, made = (torch.from_numpy(one[rows].astype(np.float32)) for one in self._fitted)
             logit, follows = self._network(seen)
             error = (torch.sigmoid(logit) * follows - target) / 20.0  # points a typical target errs by
-            loss = MEMBERS * (error.square().mean() + 0.3 * torch.nn.functional.binary_cross_entropy_with_logits(logit, made))
+            chance = torch.nn.functional.binary_cross_entropy_with_logits(logit, made)
+            loss = MEMBERS * (error.square().mean() + 0.3 * chance)  # the sum over the members: each learns at the full rate
             self._optimizer.zero_grad()
             loss.backward()
             torch.nn.utils.clip_grad_norm_(self._network.parameters(), 2.0)

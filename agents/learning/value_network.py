@@ -43,7 +43,17 @@ class ValueNetwork(nn.Module):
 
 
 class Value:
-    """The value [points] of positions by a ``ValueNetwork``: called with n ``Positions``, it returns float32 (n,)."""
+    """The value [points] of positions by a ``ValueNetwork``: called with n ``Positions``, it returns float32 (n,).
+
+    Parameters
+    ----------
+    network : ValueNetwork
+        Its present weights are copied.
+    spread : float
+        Standard deviation of the cue ball's direction [rad], of ``planning.spread_of``.
+    threads : int
+        Number of threads for the features.
+    """
 
     def __init__(self, network, spread, threads=1):
         pairs = zip(network.weights, network.biases, strict=True)

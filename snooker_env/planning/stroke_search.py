@@ -29,7 +29,7 @@ from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
 from .strokes import actions_of
 
-PRIOR = 2.0
+PRIOR = 1.0
 """Number of samples that the look without error counts as."""
 FEWEST = 8
 """Least budget of a decision."""
