@@ -155,7 +155,7 @@ def checked(args):
         parse_fidelity(fidelity)
     for physics in args.physics:
         physics_option(physics)
-    integer("budget", args.budget, 2, 2**31)
+    integer("budget", args.budget, 8, 10**7)
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")

@@ -130,7 +130,7 @@ def checked(args):
     protocol = {
         "first_seed": integer("seed", args.seed, 0, 2**53), "matches": _even("frames", args.frames, 2**20),
         "fewer": dict(_fewer(text, labels, args.frames) for text in args.fewer), "best_of": integer("match", args.match, 1, 99),
-        "tables": TABLES, "chunk": CHUNK, "search_budget": integer("budget", args.budget, 2, 2**31),
+        "tables": TABLES, "chunk": CHUNK, "search_budget": integer("budget", args.budget, 8, 10**7),
         "resamples": integer("resamples", args.resamples, 100, 10**6), "prior": PRIOR, "anchor": choice("anchor", anchor, tuple(labels)),
         "anchor_elo": ANCHOR_ELO,
     }  # fmt: skip

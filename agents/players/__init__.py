@@ -1,1 +1,1 @@
-"""Which players are there? The built-in ones, the search, and trained models by name."""
+"""Which players are there? The built-in ones, those that search, and trained models by name."""

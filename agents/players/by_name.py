@@ -13,9 +13,8 @@ from snooker_env import Options, SnookerVectorEnv
 from snooker_env.checks import choice, refuse
 
 from .built_in import ABSOLUTE, ForesightRule, Geometric, GhostBall, Random
-from .search import Search
 from .stroke_players import NAMES as STROKE_PLAYERS
-from .stroke_players import is_stroke_player, stroke_player
+from .stroke_players import StrokePlayer, is_stroke_player, stroke_player
 
 NAMES = ("random", "random_absolute", "ghost_ball", "geometric", "lookahead_foresight", "search", *STROKE_PLAYERS)
 
@@ -50,7 +49,7 @@ def _own(name, frames):
 def player_of(name, *, budget=2000, seed=0, frames=False):
     """The player or pre-trained model of that name, the model in that file or run folder, or MODULE:CLASS. ValueError if there is none.
 
-    ``frames``: one's own player is to play frames; otherwise visits.
+    ``budget``: simulated shots a decision of "search". ``frames``: one's own player is to play frames; otherwise visits.
     """
     makers = {
         "random": lambda: Random(seed=seed),
@@ -58,7 +57,7 @@ def player_of(name, *, budget=2000, seed=0, frames=False):
         "ghost_ball": GhostBall,
         "geometric": Geometric,
         "lookahead_foresight": ForesightRule,
-        "search": lambda: Search(budget, seed=seed),
+        "search": lambda: StrokePlayer("lookahead", budget, seed=seed),
     }
     if name in makers:
         return makers[name]()

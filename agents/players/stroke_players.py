@@ -4,7 +4,8 @@
 
 * "planner" judges by the learned value and looks at the strokes that the learned policy proposes;
 * "planner_value" judges by the value and looks at evenly spread strokes, "planner_policy" the other way round: what is each worth?
-* "lookahead" does neither, "best_pot" plays the likeliest pot without regard to what follows.
+* "lookahead" does neither, and "search" is "lookahead" with 2,000 simulated shots;
+* "best_pot" plays the likeliest pot without regard to what follows.
 
 A name may end in a number of simulated shots a decision and in a model: planner_500, planner@runs/ppo_value-0, planner_60@ppo_value_club.
 """

@@ -2,10 +2,11 @@
 
 A pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth. The strokes at a pot are consecutive points of
 one scrambled Sobol sequence over the logarithm of the speed, the height of the tip and its side; half of them have no side. Where there is
-no direct pot, the strokes are contacts with the balls on, from thin to full on both sides.
+no direct pot, as after a break-off, three of four strokes are contacts with the balls on that can be struck, from thin to full on both
+sides, and the fourth goes in any direction; most of them are hard, since a ball then goes in by chance more often.
 """
 
-from math import asin, atan2, erf, exp, hypot, log, sqrt
+from math import asin, atan2, cos, erf, exp, hypot, log, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOL
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cloth import COLUMNS
 from ..physics.impact.polynomial import WORK
+from ..tasks.box_actions import MAX_SPEED
 from ..tasks.pot_aim import solved_aim
 from .positions import Positions
 from .prospects import FAR, FOLLOWS
@@ -36,6 +38,9 @@ LOST = 0.01
 width at 0.92 of its size."""
 POWER = 4.0
 """Power of the chance in a pot's share of the strokes. 2 to 16 gave the same points (600 visits, professional and club errors)."""
+ANYWHERE, TRIES = 4, 16
+"""Of the strokes without a pot every ``ANYWHERE``-th goes in any direction; for each other one so many contacts are tried until no other ball is
+in the way."""
 MOST_POTS = 16
 """Number of pots that strokes are shared among, the widest ones."""
 SPEED, SIDE, TOP, AIM = range(4)
@@ -92,23 +97,51 @@ def _spread_stroke(i, seed, stroke):
 
 
 @kernel
+def _struck_first(positions, on_table, ux, uy):
+    """Id of the ball that the cue ball meets first on a straight line in the direction (ux, uy); 0 if none."""
+    first, nearest = 0, 1e9
+    for b in range(1, N_BALLS):
+        if not on_table[b]:
+            continue
+        x, y = positions[b, 0] - positions[0, 0], positions[b, 1] - positions[0, 1]
+        along, across = x * ux + y * uy, ux * y - uy * x
+        if along > 0.0 and abs(across) < 2.0 * BALL_RADIUS:
+            far = along - sqrt(4.0 * BALL_RADIUS**2 - across**2)
+            if far < nearest:
+                first, nearest = b, far
+    return first
+
+
+@kernel
 def _contacts(positions, on_table, on, seed, strokes, chances):
-    """Fill the strokes (m, 4) with contacts at the balls on, from thin to full."""
+    """Fill the strokes (m, 4) with contacts at the balls on that can be struck, from thin to full, and with strokes in any direction."""
     count = 0
     for ball in range(1, N_BALLS):
         count += on_table[ball] and (on >> ball) & 1
+    tried = 0
     for i in range(len(strokes)):
         _spread_stroke(i, seed, strokes[i])
-        which, ball = min(count - 1, int(sobol(i, 3, seed) * count)), 0
-        for b in range(1, N_BALLS):
-            if on_table[b] and (on >> b) & 1:
-                if which == 0:
-                    ball = b
-                which -= 1
-        x, y = positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]
-        reach = asin(min(1.0, 2.0 * BALL_RADIUS / hypot(x, y)))
-        strokes[i, AIM] = atan2(y, x) + reach * (2.0 * sobol(i, 4, seed) - 1.0)
+        strokes[i, SPEED] = MAX_SPEED * sobol(i, 0, seed) ** (1.0 / 3.0)  # few balls go in by chance unless the stroke is hard
+        strokes[i, SPEED] = max(SLOWEST, strokes[i, SPEED])
+        strokes[i, AIM] = pi * (2.0 * sobol(i, 4, seed) - 1.0)
         chances[i] = 1.0
+        if i % ANYWHERE == 0:
+            continue
+        for _ in range(TRIES):
+            which, ball = min(count - 1, int(sobol(tried, 3, seed) * count)), 0
+            turned = 2.0 * sobol(tried, 4, seed) - 1.0
+            tried += 1
+            for b in range(1, N_BALLS):
+                if on_table[b] and (on >> b) & 1:
+                    if which == 0:
+                        ball = b
+                    which -= 1
+            x, y = positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]
+            aim = atan2(y, x) + asin(min(1.0, 2.0 * BALL_RADIUS / hypot(x, y))) * turned
+            first = _struck_first(positions, on_table, cos(aim), sin(aim))
+            if first > 0 and (on >> first) & 1:
+                strokes[i, AIM] = aim
+                break
 
 
 @kernel

@@ -177,7 +177,7 @@ def test_the_ranking_recomputed(budget, value):
             order[:many] = sorted(order[:many], key=lambda i: -score[i])
         assert np.array_equal(ranked.strokes[k], strokes[order]) and ranked.samples[k].tolist() == [met[i] for i in order]
         assert ranked.scores[k] == pytest.approx([score[i] for i in order], rel=1e-9, abs=1e-9)
-    assert PRIOR == 2.0 and ranked.scores.max() > 3.0
+    assert PRIOR == 1.0 and ranked.scores.max() > 3.0
 
 
 def test_for_pots_alone_a_score_is_a_rate_and_nothing_is_valued():
@@ -194,7 +194,7 @@ def test_for_pots_alone_a_score_is_a_rate_and_nothing_is_valued():
         made = out.points > 0
         strokes, chances = (one[0] for one in spread_strokes(at[k : k + 1], schedule(60)[0], [k], tool.spread, tool.dynamics))
         chance = chances[np.flatnonzero((strokes == best).all(axis=1))[0]]
-        assert ranked.scores[k, 0] == pytest.approx((2.0 * chance * made[0] + made[1:].sum()) / (2.0 + met))
+        assert ranked.scores[k, 0] == pytest.approx((chance * made[0] + made[1:].sum()) / (1.0 + met))
 
 
 def test_without_errors_the_ranking_is_that_of_the_looks():
