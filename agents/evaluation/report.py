@@ -115,7 +115,8 @@ def agents_tables(report):
     for agent in report["agents"]:
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
-            trained.append([label, "not trained", "", "", "", ""])
+            by_noise = runs[0]["from"].startswith("planner")  # without a model in its name
+            trained.append([label, "pre-trained, by the noise played" if by_noise else "not trained", "", "", "", ""])
             continue
         words = [", ".join(sorted({str(run[key]) for run in runs})) for key in ("recipe", "noise", "fidelity", "physics")]
         rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]

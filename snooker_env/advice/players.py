@@ -14,6 +14,8 @@ from .simple import GhostBallAdvisor, RandomAdvisor
 
 BUILT_IN: dict[str, type[Advisor]] = {maker.name: maker for maker in (LookaheadAdvisor, GhostBallAdvisor, RandomAdvisor)}
 """The players in the package, by name."""
+OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
+"""MODULE:CLASS."""
 
 
 def names() -> list[str]:
@@ -31,6 +33,12 @@ def names() -> list[str]:
     ['lookahead', 'ghost_ball', 'random']
     """
     return [*BUILT_IN, *(name for name in _others() if name not in BUILT_IN)]
+
+
+def is_known(name: str) -> bool:
+    """Whether ``player_of`` finds a player by this name alone: one of ``names``, or in a clone such a name as "planner_500"."""
+    by_name = _repository("agents.players.by_name")
+    return name in names() or (by_name is not None and OWN.fullmatch(name) is None and by_name.is_player(name))
 
 
 def player_of(agent: Any, *, trust: bool = False) -> Advisor:
@@ -73,7 +81,7 @@ def player_of(agent: Any, *, trust: bool = False) -> Advisor:
     if not isinstance(agent, str | Path):
         return Borrowed(agent, type(agent).__name__)
     name = str(agent)
-    if re.fullmatch(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*", name) and not Path(name).exists():
+    if OWN.fullmatch(name) and not Path(name).exists():
         return Borrowed(_own(name), name)
     by_name = _repository("agents.players.by_name")
     if by_name is None:

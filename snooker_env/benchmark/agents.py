@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .._check import integer, refuse
-from ..advice.players import BUILT_IN, names, player_of
+from ..advice.players import BUILT_IN, OWN, is_known, names, player_of
 from ..tasks.saved_models import by_train, entries
 from .models import ForeignModelPlayer
 from .playing import check_player
@@ -21,7 +21,6 @@ KINDS = ("built_in", "repository", "model", "class", "program", "object")
 """Kinds of agents: a player of the package, a name of the repository, a ``.zip`` of Stable-Baselines3, MODULE:CLASS, a program of the text
 protocol; "object": a player made in Python."""
 PROGRAM = "program:"
-OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,7 +179,7 @@ def _kind(source):
         return "model"
     if OWN.fullmatch(source):
         return "class"
-    if source in names():
+    if is_known(source):
         return "repository"
     known = ", ".join(names())
     raise refuse("agent", source, f'must be one of {known}, a .zip or run folder, MODULE:CLASS or program:"COMMAND"')

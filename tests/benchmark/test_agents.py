@@ -155,6 +155,12 @@ class Peeks:
         raise AssertionError
 
 
+def test_a_player_with_a_budget_in_its_name_is_one_of_the_repository():
+    agent = Agent.of("lookahead_60")
+    assert (agent.kind, agent.label, agent.player(TASKS["SnookerBreak-v0"]).player.budget) == ("repository", "lookahead_60", 60)
+    assert Agent.of("planner_500").label == "planner_500"
+
+
 def test_no_agent_changes_what_is_frozen():
     agent = Agent(label="peeks", kind="object", sources=("here",), maker=Peeks)
     with pytest.raises(ValueError, match="key of options = 'noise': must be one of 'action', 'aim'"):

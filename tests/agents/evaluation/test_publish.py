@@ -88,8 +88,9 @@ WEIGHTS = {
     "ppo_foresight_gamma0": "86b1104b70879a7b187cc7a73c0d6622de313f04c6952d300a9f17d33c8e4a3d",
     "ppo_mask": "dfe17966c74afe0d4d1a8cce0d121d1ba2a4ebfbe5091edff517c4f3688fcc36",
     "ppo_target": "a0d80caf6416d41fab71b6157ba3c380d2e128f98f993adf96ce37bbbe09ff7f",
-    "ppo_value": "733661108a02d51900262d229f481396f9211bc7087492fdb2de37ba2cd18879",
-    "ppo_value_club": "15cd61ec02e947477d13040781fd3bb914ae45453eb32588762efb328901d3a8",
+    "ppo_value": "b54127bfdbdf98695a3fe38e868fc188443164050930d8edc50910f394f7150d",
+    "ppo_value_club": "9900ea2ba7c666cea0bf8de3fd73a68e484bf919d576a23ab70613bdaf2116d6",
+    "ppo_value_none": "19d0e235bf97a17aaf7819bb78fba0001815ed168cff6fa9d381b6c697c22a5a",
 }
 """SHA-256 of the weights that the published figures were played with, whatever file holds them."""
 

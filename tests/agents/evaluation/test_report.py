@@ -82,6 +82,8 @@ def test_the_agents():
     assert long.header == ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
     assert long.rows == [["a", "5", "300", "1,000", "", ""]]
     assert report.agents_tables(report_of(agent("a")))[1].rows[0][-3:] == ["1,000", "10", "100"]
+    planner = {"label": "p", "runs": [{"from": "planner_500"}]}  # its weights are known only when it plays
+    assert report.agents_tables(report_of(planner))[0].rows == [["p", "pre-trained, by the noise played", "", "", "", ""]]
 
 
 def figure(value, low=None, high=None):

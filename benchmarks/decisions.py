@@ -1,0 +1,52 @@
+"""How long does a player take to decide, on one table and on many at once?
+
+    python -m benchmarks.decisions [--agents planner lookahead ...] [--tables 1 256] [--repeats 9] [--seed 0] [--json FILE] [--out FOLDER]
+
+Opened tables, a professional's errors. Milliseconds a decision: the median over the repeats, each on new tables; on several tables the time
+of all divided by their number. The first decision on tables, which makes the search, is not timed.
+"""
+
+import time
+
+import numpy as np
+
+import snooker_env as sn
+from agents.players.by_name import player_of
+
+from ._common.command import Command, at_least, run, save_json
+
+AGENTS = ("ghost_ball", "ppo_mask", "ppo_value", "lookahead", "planner_30", "planner_60", "planner", "planner_500", "planner_2000", "search")
+
+
+def milliseconds(player, tables, repeats, seed):
+    """Milliseconds a decision on so many tables, of each repeat."""
+    env, taken = sn.SnookerVectorEnv(tables, noise="professional", **player.options), []
+    for k in range(repeats + 1):
+        seen, _ = env.reset(seed=np.random.SeedSequence([seed, k]).generate_state(tables).tolist())
+        start = time.perf_counter()
+        player.act(env, seen, np.ones(tables, bool))
+        taken.append(1e3 * (time.perf_counter() - start) / tables)
+    env.close()
+    return taken[1:]
+
+
+def main():
+    """Measure and print."""
+    parser = Command("decisions", __doc__, seed=0)
+    parser.add_argument("--agents", nargs="+", default=AGENTS, help=f"names of players [{' '.join(AGENTS)}]")
+    parser.add_argument("--tables", nargs="+", type=at_least(1), default=(1, 256), help="numbers of tables at once [1 256]")
+    parser.add_argument("--repeats", type=at_least(1), default=9, help="decisions of each [9]")
+    args = parser.options()
+    players = {name: player_of(name) for name in args.agents}
+    sn.warmup()
+    print(f"{'ms a decision':20s}" + "".join(f"{n:>8,} tables" for n in args.tables))
+    found = {}
+    for name, player in players.items():
+        found[name] = {n: milliseconds(player, n, args.repeats, args.seed) for n in args.tables}
+        print(f"{name:20s}" + "".join(f"{np.median(taken):15.2f}" for taken in found[name].values()), flush=True)
+    save_json(args.json, found)
+    return 0
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,127 @@
+"""What should a value of positions see: features of the pots, or every ball, read by a network of sets?
+
+    python -m benchmarks.value_inputs [--positions 40000] [--steps 3000] [--seed 0] [--json FILE] [--out FOLDER]
+
+Both learn the same numbers: for positions of visits by ``lookahead_60`` under a professional's errors, the mean over 16 fresh noise samples of
+the points of its stroke plus the rule of thumb's value of what it leaves. So neither helps to make its own targets. Equal positions, batches
+and steps; visits of the last fifth of the tables are kept out. ``features`` is one of the networks of the planner's value; ``sets`` is the encoder of
+``ppo_mask`` with a layer for the value. R2: the share of the targets' variance on the visits kept out that the value explains.
+"""
+
+import time
+
+import numpy as np
+import torch
+from torch import nn
+
+import snooker_env as sn
+from agents.features.pot_features import VIEW_SPACE, with_pots
+from agents.features.value_features import value_features
+from agents.learning.networks import CONTEXT, TableReader, ValueHead
+from agents.learning.value_network import ValueNetwork
+from snooker_env.planning import Positions, StrokeSearch
+
+from ._common.command import Command, at_least, run, save_json
+
+SAMPLES, BATCH, RATE, SCALE = 16, 512, 2e-3, 20.0
+TABLES = 500
+
+
+class Sets(nn.Module):
+    """The encoder of sets, and a head."""
+
+    def __init__(self):
+        super().__init__()
+        self.reader, self.head = TableReader(VIEW_SPACE), ValueHead()
+
+    def forward(self, seen):
+        """Values [points] (n,)."""
+        return SCALE * self.head(self.reader(seen)[:, :CONTEXT])[:, 0]
+
+
+class Features(nn.Module):
+    """One member of a ``ValueNetwork``."""
+
+    def __init__(self):
+        super().__init__()
+        self.network = ValueNetwork()
+
+    def forward(self, seen):
+        """Values [points] (n,)."""
+        logit, follows = self.network(seen)
+        return torch.sigmoid(logit[0]) * follows[0]
+
+
+def examples(many, seed):
+    """Positions of visits, the targets, and which table each is from."""
+    search, rng = StrokeSearch({"noise": "professional"}, 60), np.random.default_rng(seed)
+    at, targets, tables, first = [], [], [], 0
+    while sum(map(len, targets)) < many:
+        env = sn.SnookerVectorEnv(TABLES, noise="professional")
+        env.reset(seed=rng.integers(2**31, size=TABLES).tolist())
+        now, running = Positions.of(env), np.arange(first, first + TABLES)
+        first += TABLES
+        while len(running):
+            strokes = search.rank(now, rng.integers(2**32, size=len(now))).strokes[:, 0]
+            rows = np.repeat(np.arange(len(now)), SAMPLES)
+            out = search.outcomes(now, rows, strokes[rows], rng.standard_normal((len(rows), 5)))
+            gains, on = out.points.copy(), np.flatnonzero(out.goes_on)
+            gains[on] += search.value(out.afterstates[on])
+            at.append(now)
+            targets.append(gains.reshape(-1, SAMPLES).mean(1))
+            tables.append(running)
+            goes_on = out.goes_on[::SAMPLES]  # the first sample is played
+            now, running = out.afterstates[np.flatnonzero(goes_on) * SAMPLES], running[goes_on]
+    parts = (np.concatenate([getattr(one, name) for one in at]) for name in ("positions", "on_table", "game"))
+    return Positions(*parts), np.concatenate(targets).astype(np.float32), np.concatenate(tables), search.spread
+
+
+def fitted(network, seen, targets, steps, rng):
+    """Fit and return the network, and the seconds it took."""
+    optimizer, started = torch.optim.Adam(network.parameters(), RATE), time.perf_counter()
+    for step in range(steps):
+        for group in optimizer.param_groups:
+            group["lr"] = RATE * max(0.02, 1.0 - step / steps)
+        rows = rng.integers(len(seen), size=BATCH)
+        error = (network(torch.from_numpy(seen[rows])) - torch.from_numpy(targets[rows])) / SCALE
+        optimizer.zero_grad()
+        error.square().mean().backward()
+        optimizer.step()
+    return network, time.perf_counter() - started
+
+
+def main():
+    """Measure and print."""
+    parser = Command("value_inputs", __doc__, seed=0)
+    parser.add_argument("--positions", type=at_least(1000), default=40_000, help="positions, at least [40000]")
+    parser.add_argument("--steps", type=at_least(1), default=3000, help="gradient steps of each [3000]")
+    args = parser.options()
+    torch.set_num_threads(1)
+    torch.manual_seed(args.seed)
+    at, targets, tables, spread = examples(args.positions, args.seed)
+    learned = tables < 0.8 * (tables.max() + 1)
+    print(f"{len(at):,} positions of {tables.max() + 1:,} visits; targets {targets.mean():.1f} points, standard deviation {targets.std():.1f}")
+    found = {}
+    for name, make, inputs in (
+        ("features", Features, lambda at: value_features(at, spread)),
+        ("sets", Sets, lambda at: with_pots(at.observations())),
+    ):
+        inputs(at[:2])  # compiled
+        started = time.perf_counter()
+        seen = inputs(at)
+        reading = time.perf_counter() - started
+        network, seconds = fitted(make(), seen[learned], targets[learned], args.steps, np.random.default_rng(args.seed))
+        kept, truth, started = torch.from_numpy(seen[~learned]), targets[~learned], time.perf_counter()
+        with torch.no_grad():
+            said = np.concatenate([network(part).numpy() for part in kept.split(1024)])
+        forward = time.perf_counter() - started
+        r2 = 1.0 - float(np.mean((said - truth) ** 2) / truth.var())
+        us = 1e6 * (reading / len(seen) + forward / len(kept))
+        found[name] = {"r2": r2, "rms": float(np.sqrt(np.mean((said - truth) ** 2))), "us": us, "seconds": seconds}
+        print(f"{name:10s} R2 {r2:.3f}   error {found[name]['rms']:5.2f} points   {us:6.1f} us a position   fitted in {seconds:4.0f} s", flush=True)
+    save_json(args.json, found)
+    return 0
+
+
+if __name__ == "__main__":
+    run(main)
