@@ -64,7 +64,7 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on):
     at = some(60, "random:4", seed=5)
     at.game[:, 0] = ball_on
     rows, found = value_features(at, SPREAD), pots(at, most=40)
-    chances = prospects_of(at, SPREAD, most=16)[1]
+    chances = prospects_of(at, SPREAD, (25.0, 0.15, 0.05, 0.01), most=16)[1]
     several = 0
     for k in range(60):
         best = []
@@ -75,7 +75,7 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on):
             px, py = {0: (-1, -1), 1: (1, -1), 2: (1, 0), 3: (1, 1), 4: (-1, 1), 5: (-1, 0)}[int(found.pocket[k, j])]
             px, py = (px * (0.889 - 0.0016), 0.0) if middle else (px * (0.889 - 0.01524), py * (1.7845 - 0.01524))
             run = hypot(px - x, py - y)
-            chance = erf(tolerance / (SPREAD * sqrt(2))) * exp(-0.1 * (away + run))
+            chance = erf(tolerance / (SPREAD * sqrt(2))) * exp(-0.01 * (away + run))
             side = -1.0 if cx < 0 else 1.0
             entries = [1, chance, 0.25 * log((chance + 1e-3) / (1 - chance + 1e-3)), VALUES[ball] / 7, np.cos(found.cut[k, j])]
             entries += [

@@ -29,16 +29,21 @@ def a_round(n, rng, scale=1.0):
 
 
 def layers(learning):
-    return [(layer.weight.detach().double().numpy(), layer.bias.detach().double().numpy()) for layer in learning._network.layers]
+    """Weights and biases of each layer: of all members."""
+    network = learning._network
+    return [(w.detach().double().numpy(), b.detach().double().numpy()) for w, b in zip(network.weights, network.biases, strict=True)]
 
 
 def worth(network, row):
-    """The value of one row of features by the ``layers`` of a network."""
-    x = row.astype(np.float64)
-    for k, (weight, bias) in enumerate(network):
-        x = weight @ x + bias
-        x = np.maximum(x, 0.0) if k < 2 else x
-    return 40.0 * np.log1p(np.exp(x[1])) / (1.0 + np.exp(-(float(row[LOGIT]) + x[0])))
+    """The value of one row of features by the ``layers`` of a network: the mean of its members."""
+    values = []
+    for member in range(4):
+        x = row.astype(np.float64)
+        for k, (weight, bias) in enumerate(network):
+            x = x @ weight[member] + bias[member, 0]
+            x = np.maximum(x, 0.0) if k < 2 else x
+        values.append(40.0 * np.log1p(np.exp(x[1])) / (1.0 + np.exp(-(float(row[LOGIT]) + x[0]))))
+    return np.mean(values)
 
 
 def by_hand(network, rounds):
@@ -125,8 +130,8 @@ def test_the_network_learns_a_known_value():
     for _ in range(30):
         learning.add(*play())
     began = []
-    for step in range(40):
-        learning.fit(1.0 - step / 80)
+    for step in range(80):
+        learning.fit(1.0 - step / 160)
         began = began or [np.mean(list(learning.losses)[:5])]
     assert np.mean(list(learning.losses)[-20:]) < 0.8 * began[0] and np.isfinite(learning.losses).all()
     seen, _, _, _, _ = play()
@@ -148,8 +153,8 @@ def test_values_spread_backwards_along_a_visit():
     for _ in range(6):
         learning.add(a, to_b, np.zeros((n, 2)), np.ones((n, 2), bool), np.zeros(n, bool))
         learning.add(b, nothing, np.full((n, 2), 10.0), np.zeros((n, 2), bool), np.zeros(n, bool))
-    for step in range(150):
-        learning.fit(1.0 - step / 160)
+    for step in range(300):
+        learning.fit(1.0 - step / 320)
     found = learning.value().of(np.stack([a[0], b[0]]))
     assert found == pytest.approx([10.0, 10.0], abs=1.5)
 

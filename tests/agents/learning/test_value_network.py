@@ -6,7 +6,7 @@ import torch
 from positions import tables
 
 from agents.features.value_features import LOGIT, SIZE, value_features
-from agents.learning.value_network import POINTS, WIDTHS, Value, ValueNetwork
+from agents.learning.value_network import MEMBERS, POINTS, WIDTHS, Value, ValueNetwork
 from snooker_env.planning import Positions, StrokeSearch, prospects_of, spread_of
 from snooker_env.tasks import LEVELS
 
@@ -23,6 +23,7 @@ def network(seed=0, scale=1.0):
 
 
 def by_torch(made, seen):
+    """P and U of every member: (MEMBERS, n) each."""
     with torch.no_grad():
         logit, follows = made(torch.from_numpy(seen))
         return torch.sigmoid(logit).numpy(), follows.numpy()
@@ -39,30 +40,45 @@ def test_the_value_is_that_of_the_network(scale):
     value = Value(made, SPREAD)
     for seen in (value_features(some(), SPREAD), np.random.default_rng(0).normal(0, 1.5, (300, SIZE)).astype(np.float32)):
         p, u = by_torch(made, seen)
-        assert value.of(seen) == pytest.approx(p * u, rel=1e-4, abs=1e-4) and value.of(seen).shape == (len(seen),)
+        assert value.of(seen) == pytest.approx((p * u).mean(axis=0), rel=1e-4, abs=1e-4) and value.of(seen).shape == (len(seen),)
         assert np.isfinite(value.of(seen)).all() and (value.of(seen) >= 0.0).all()
 
 
 def test_the_network_has_the_layers_that_the_file_says():
-    shapes = [tuple(layer.weight.shape) for layer in network().layers]
-    assert shapes == [(WIDTHS[0], SIZE), (WIDTHS[1], WIDTHS[0]), (2, WIDTHS[1])]
+    sizes = [(SIZE, WIDTHS[0]), (WIDTHS[0], WIDTHS[1]), (WIDTHS[1], 2)]
+    assert [tuple(w.shape) for w in network().weights] == [(MEMBERS, *size) for size in sizes] and MEMBERS == 4
+    assert [tuple(b.shape) for b in network().biases] == [(MEMBERS, 1, b) for _, b in sizes]
     made, seen = network(2), np.random.default_rng(1).normal(0, 1, (50, SIZE)).astype(np.float32)
-    x = seen.astype(np.float64)
-    for k, layer in enumerate(made.layers):
-        x = x @ layer.weight.detach().double().numpy().T + layer.bias.detach().double().numpy()
-        x = np.maximum(x, 0.0) if k < 2 else x
     p, u = by_torch(made, seen)
-    assert p == pytest.approx(1 / (1 + np.exp(-(seen[:, LOGIT] + x[:, 0]))), abs=1e-5)
-    assert u == pytest.approx(POINTS * np.log1p(np.exp(x[:, 1])), rel=1e-4)
+    for member in range(MEMBERS):
+        x = seen.astype(np.float64)
+        for k, (weight, bias) in enumerate(zip(made.weights, made.biases, strict=True)):
+            x = x @ weight[member].detach().double().numpy() + bias[member].detach().double().numpy()
+            x = np.maximum(x, 0.0) if k < 2 else x
+        assert p[member] == pytest.approx(1 / (1 + np.exp(-(seen[:, LOGIT] + x[:, 0]))), abs=1e-5)
+        assert u[member] == pytest.approx(POINTS * np.log1p(np.exp(x[:, 1])), rel=1e-4)
+
+
+def test_the_members_start_apart_and_learn_from_batches_of_their_own():
+    made = network()
+    assert all(not torch.equal(w[a], w[b]) for w in made.weights for a in range(MEMBERS) for b in range(a))
+    seen = torch.from_numpy(np.random.default_rng(0).normal(0, 1, (MEMBERS, 30, SIZE)).astype(np.float32))
+    together = [one.detach() for one in made(seen)]
+    for member in range(MEMBERS):  # each reads its own rows
+        alone = [one[member].detach() for one in made(seen[member])]
+        assert all(torch.allclose(one[member], own, atol=1e-4) for one, own in zip(together, alone, strict=True))
+    made(seen)[1][2].sum().backward()
+    reached = [(w.grad != 0).flatten(1).any(1).tolist() for w in made.weights]
+    assert reached == [[False, False, True, False]] * 3
 
 
 def test_at_first_the_chance_is_the_likeliest_pots_and_what_follows_hardly_differs():
     at = some()
-    likeliest = prospects_of(at, SPREAD, most=16)[1].max(axis=1)
+    likeliest = prospects_of(at, SPREAD, (25.0, 0.15, 0.05, 0.01), most=16)[1].max(axis=1)
     for seed in range(4):
         p, u = by_torch(network(seed), value_features(at, SPREAD))
-        assert np.abs(p - likeliest).max() < 0.03 and np.corrcoef(p, likeliest)[0, 1] > 0.999
-        assert u.std() < 0.05 * u.mean() and 0.4 * POINTS < u.mean() < POINTS
+        assert np.abs(p - likeliest).max() < 0.03 and all(np.corrcoef(one, likeliest)[0, 1] > 0.999 for one in p)
+        assert (u.std(axis=1) < 0.05 * u.mean(axis=1)).all() and 0.4 * POINTS < u.mean() < POINTS
 
 
 def test_a_value_keeps_the_weights_that_it_was_made_of():
