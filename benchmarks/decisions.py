@@ -15,7 +15,9 @@ from agents.players.by_name import player_of
 
 from ._common.command import Command, at_least, run, save_json
 
-AGENTS = ("ghost_ball", "ppo_mask", "ppo_value", "lookahead", "planner_30", "planner_60", "planner", "planner_500", "planner_2000", "search")
+AGENTS = (
+    "ghost_ball", "ppo_mask", "ppo_value", "lookahead", "planner_30", "planner_60", "planner", "planner_500", "planner_2000", "search",
+)  # fmt: skip
 
 
 def milliseconds(player, tables, repeats, seed):

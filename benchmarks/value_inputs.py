@@ -2,10 +2,11 @@
 
     python -m benchmarks.value_inputs [--positions 40000] [--steps 3000] [--seed 0] [--json FILE] [--out FOLDER]
 
-Both learn the same numbers: for positions of visits by ``lookahead_60`` under a professional's errors, the mean over 16 fresh noise samples of
-the points of its stroke plus the rule of thumb's value of what it leaves. So neither helps to make its own targets. Equal positions, batches
-and steps; visits of the last fifth of the tables are kept out. ``features`` is one of the networks of the planner's value; ``sets`` is the encoder of
-``ppo_mask`` with a layer for the value. R2: the share of the targets' variance on the visits kept out that the value explains.
+Both learn the same numbers: for positions of visits by ``lookahead_60`` under a professional's errors, the mean over 16 fresh noise samples
+of the points of its stroke plus the rule of thumb's value of what it leaves. So neither helps to make its own targets. Equal positions,
+batches and steps; visits of the last fifth of the tables are kept out. ``features`` is one of the networks of the planner's value; ``sets``
+is the encoder of ``ppo_mask`` with a layer for the value. R2: the share of the targets' variance on the visits kept out that the value
+explains.
 """
 
 import time
@@ -99,8 +100,9 @@ def main():
     torch.set_num_threads(1)
     torch.manual_seed(args.seed)
     at, targets, tables, spread = examples(args.positions, args.seed)
-    learned = tables < 0.8 * (tables.max() + 1)
-    print(f"{len(at):,} positions of {tables.max() + 1:,} visits; targets {targets.mean():.1f} points, standard deviation {targets.std():.1f}")
+    visits = tables.max() + 1
+    learned = tables < 0.8 * visits
+    print(f"{len(at):,} positions of {visits:,} visits; targets {targets.mean():.1f} points, standard deviation {targets.std():.1f}")
     found = {}
     for name, make, inputs in (
         ("features", Features, lambda at: value_features(at, spread)),
@@ -115,10 +117,15 @@ def main():
         with torch.no_grad():
             said = np.concatenate([network(part).numpy() for part in kept.split(1024)])
         forward = time.perf_counter() - started
-        r2 = 1.0 - float(np.mean((said - truth) ** 2) / truth.var())
-        us = 1e6 * (reading / len(seen) + forward / len(kept))
-        found[name] = {"r2": r2, "rms": float(np.sqrt(np.mean((said - truth) ** 2))), "us": us, "seconds": seconds}
-        print(f"{name:10s} R2 {r2:.3f}   error {found[name]['rms']:5.2f} points   {us:6.1f} us a position   fitted in {seconds:4.0f} s", flush=True)
+        error = said - truth
+        figures = {
+            "r2": 1.0 - float(np.mean(error**2) / truth.var()), "rms": float(np.sqrt(np.mean(error**2))),
+            "us": 1e6 * (reading / len(seen) + forward / len(kept)), "seconds": seconds,
+        }  # fmt: skip
+        print(
+            name.ljust(10), "R2 {r2:.3f}   error {rms:5.2f} points   {us:6.1f} us a position   fitted in {seconds:4.0f} s".format(**figures)
+        )
+        found[name] = figures
     save_json(args.json, found)
     return 0
 

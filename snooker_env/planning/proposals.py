@@ -34,13 +34,12 @@ PLAIN = 0.5
 """Share of the strokes without side."""
 RIM = 0.49
 LOST = 0.01
-"""Decay of the chance of a pot per metre of both balls' paths [1/m]. Fitted to 300,000 strokes under a professional's errors: 0.009, with the
-width at 0.92 of its size."""
+"""Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly says what errors leave of a pot."""
 POWER = 4.0
 """Power of the chance in a pot's share of the strokes. 2 to 16 gave the same points (600 visits, professional and club errors)."""
 ANYWHERE, TRIES = 4, 16
-"""Of the strokes without a pot every ``ANYWHERE``-th goes in any direction; for each other one so many contacts are tried until no other ball is
-in the way."""
+"""Of the strokes without a pot every ``ANYWHERE``-th goes in any direction; for the others up to ``TRIES`` contacts are tried until no other
+ball is in the way."""
 MOST_POTS = 16
 """Number of pots that strokes are shared among, the widest ones."""
 SPEED, SIDE, TOP, AIM = range(4)

@@ -8,7 +8,7 @@ import pytest
 from positions import tables
 
 from snooker_env.geometry import POCKET_AIMS
-from snooker_env.planning import Planner, Position, Positions, actions_of, pots, prospects_of, spread_of
+from snooker_env.planning import Planner, Position, Positions, StrokeSearch, actions_of, pots, prospects_of, spread_of
 from snooker_env.planning.proposals import (
     AIM,
     FASTEST,
@@ -96,6 +96,21 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
         assert all(counts[a] <= counts[b] + 1 for a, b in pairwise(by_chance))
         several += sum(count > 0 for count in counts) > 1
     assert several >= 5
+
+
+def test_a_chance_is_what_errors_leave_of_the_pot():
+    """Strokes that score without errors, under a professional's: by the chance that they were given, sure ones and doubtful ones."""
+    spread, n, m, errors = spread_of(LEVELS["professional"]), 40, 30, 12
+    at = Positions.of(tables(n, seed=9))
+    strokes, chances = spread_strokes(at, m, seeds(n), spread, DYNAMICS)
+    tool = StrokeSearch({"noise": "professional", "fidelity": "fast"}, threads=1)
+    rows = np.repeat(np.arange(n), m * errors)
+    drawn = np.random.default_rng(0).standard_normal((len(rows), 5))
+    pots_made = tool.outcomes(at, rows, np.repeat(strokes.reshape(-1, 4), errors, 0), drawn).points > 0
+    made, chances = pots_made.reshape(-1, errors).mean(axis=1), chances.ravel()
+    scores = tool.outcomes(at, np.repeat(np.arange(n), m), strokes.reshape(-1, 4), np.zeros((n * m, 5))).points > 0
+    for some, exact in ((scores & (chances > 0.9), 0.05), (scores & (chances < 0.9), 0.1)):
+        assert some.sum() > 30 and made[some].mean() == pytest.approx(chances[some].mean(), abs=exact)
 
 
 def first_struck(at, strokes):
