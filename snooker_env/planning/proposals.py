@@ -38,8 +38,8 @@ LOST = 0.01
 POWER = 4.0
 """Power of the chance in a pot's share of the strokes. 2 to 16 gave the same points (600 visits, professional and club errors)."""
 ANYWHERE, TRIES = 4, 16
-"""Of the strokes without a pot every ``ANYWHERE``-th goes in any direction; for the others up to ``TRIES`` contacts are tried until no other
-ball is in the way."""
+"""Of the strokes without a pot every ``ANYWHERE``-th goes in any direction; for each other one contacts are tried, at most ``TRIES``, until
+no other ball is in the way."""
 MOST_POTS = 16
 """Number of pots that strokes are shared among, the widest ones."""
 SPEED, SIDE, TOP, AIM = range(4)
