@@ -30,7 +30,7 @@ from ..play.service import Service
 from ..play.session import STATE, Session
 from ..play.wishes import DECISIONS, action_of
 
-OPTIONS = {"aim": "absolute", "elevation": True, "placement": True}
+OPTIONS: dict[str, Any] = {"aim": "absolute", "elevation": True, "placement": True}
 """How a program's strokes become actions."""
 
 LONGEST = 1 << 20

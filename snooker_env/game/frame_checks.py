@@ -11,7 +11,7 @@ from .balls import BLACK, REDS_MASK, BallOn, next_on
 MOST_BREAK = 155
 """The highest break: a free ball and the colour after it, then 147. A break and the points still on the table are never more together."""
 
-SETTLED = {
+SETTLED: dict[str, Any] = {
     "ball_on": BallOn.NOTHING, "free_ball": False, "miss_called": False, "failures": 0, "warned": False, "saved": None, "misses": 0,
     "anywhere": False,
 }  # fmt: skip

@@ -20,14 +20,14 @@ from .._jit import entry
 from .._types import Environment, Floats, Integers, Ints
 from ..physics.cue import squirt
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
-from ..tasks.noise import N_AIM, N_ELEVATION, N_SPEED, N_SPEED_REL, N_TIP, NoiseLike
+from ..tasks.noise import N_AIM, N_ELEVATION, N_SPEED, N_SPEED_REL, N_TIP, Noise, NoiseLike
 from ..tasks.options import Options
 from .planner import Outcomes, Planner, options_in
 from .positions import Positions, PositionsLike, check_played
 from .proposals import AIM, SIDE, SPEED, TOP, Proposals, spread_strokes
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
-from .strokes import actions_of
+from .strokes import Dynamics, actions_of
 
 PRIOR = 1.0
 """Number of samples that the look without error counts as."""
@@ -171,15 +171,15 @@ class StrokeSearch:
         self, env_or_options: Environment | Options | dict[str, Any], budget: int = 120, *, value: Value | None = None,
         propose: Propose | None = None, pots_only: bool = False, noise: NoiseLike | None = None, threads: int | None = None,
     ):  # fmt: skip
-        self.budget = integer("budget", budget, FEWEST, 10**7)
+        self.budget: int = integer("budget", budget, FEWEST, 10**7)
         options = options_in(env_or_options)
         rules = Planner(options, noise=noise).rules
-        self.noise = rules.noise
+        self.noise: Noise = rules.noise
         # the errors are drawn here, not by the table: Sobol points instead of a random stream
         where: Any = {name: getattr(options, name) for name in ("physics", "table", "fidelity")}
-        self.planner = Planner(Options(elevation=True, noise="none", **where), threads=threads)
-        self.spread = spread_of(self.noise, rules.physics)
-        self.dynamics = rules.physics, rules.fidelity
+        self.planner: Planner = Planner(Options(elevation=True, noise="none", **where), threads=threads)
+        self.spread: float = spread_of(self.noise, rules.physics)
+        self.dynamics: Dynamics = rules.physics, rules.fidelity
         self.value: Value = self._by_rule if value is None else value
         self.propose: Propose = evenly if propose is None else propose
         self.pots_only = pots_only

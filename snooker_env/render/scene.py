@@ -67,7 +67,7 @@ class ScoreBar:
     ball_on: str = ""
     words: str = ""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if len(self.players) > 2 or not all(isinstance(name, str) for name in self.players):
             raise refuse("players", self.players, "must be the names of at most two players")
         if len(self.scores) != len(self.players):

@@ -28,7 +28,7 @@ UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 SIZE = (1920, 1080)
 HD = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
 """Options that declare the colour space of ``to_video`` (BT.709, limited range)."""
-USUAL = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 15.0)}
+USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif": ((640, 360), 15.0)}
 """Default size [pixels] and pictures per second of a film: a GIF that fits into a page."""
 
 

@@ -134,7 +134,8 @@ class PoolOpponent:
     """The members of a pool as opponents; ``opponent_of`` makes a member ready to play."""
 
     def __init__(self, pool: OpponentPool, opponent_of: Callable[[Any], Any]):
-        self.pool, self._opponent_of = pool, opponent_of
+        self.pool: OpponentPool = pool
+        self._opponent_of = opponent_of
         self._ready: list[Any] = []
         self._complete()
 

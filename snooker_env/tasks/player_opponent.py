@@ -87,8 +87,10 @@ class PlayerOpponent:
     """
 
     def __init__(self, player: Any, physics: Physics, game: Mapping[str, Any], name: str | None = None):
-        self.player, self.game, self.name = player, dict(game), name or type(player).__name__
-        self.frames = getattr(player, "frames", False) is True
+        self.player: Any = player
+        self.game: dict[str, Any] = dict(game)
+        self.name: str = name or type(player).__name__
+        self.frames: bool = getattr(player, "frames", False) is True
         options = dict(player.options)
         for key in options:
             choice(f"key of the options of opponent {self.name}", key, _FRAMES if self.frames else _VISITS)
