@@ -245,7 +245,7 @@ def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
 
 def test_no_two_titles_are_alike():
     titles = [report.title(report.read(file)) for file in KEPT]
-    assert len(KEPT) == 11 and len(set(titles)) == 11
+    assert len(KEPT) == 12 and len(set(titles)) == 12
     assert titles[0] == "How search and ghost_ball play on break_off, noise none"
     assert "How agents trained under one fidelity play under another, on held_out: fast, standard and reference" in titles
 
