@@ -74,16 +74,14 @@ evaluate physics --layouts held_out --noise professional --physics paper match p
     "paper=$folder/fore-0" "match=$folder/match-?" "marlow=$folder/marlow-?"
 evaluate noise --layouts held_out --agent \
     "none=$folder/none-?" "professional=$folder/fore-0" "amateur=$folder/amateur-?" "club=$folder/club-?"
-evaluate search --agent search --layouts held_out=100 --noise professional
-evaluate 147 --agent search --layouts break_off=50 --noise none
 
 evaluate planner --layouts held_out --noise professional amateur club --against lookahead lookahead_foresight best_pot ppo_mask --agent \
     "planner=planner@$folder/value-?" lookahead lookahead_foresight best_pot ghost_ball "ppo_value=$folder/value-?" ppo_mask
 evaluate planner_parts --layouts held_out line_up colours random:3 --noise professional club --against lookahead --agent \
     "planner=planner@$folder/value-?" "planner_value=planner_value@$folder/value-?" "planner_policy=planner_policy@$folder/value-?" lookahead
-evaluate planner_budgets --layouts held_out=400 --noise professional --against search --agent \
+evaluate planner_budgets --layouts held_out=400 --noise professional --against lookahead_2000 --agent \
     "planner_30=planner_30@$folder/value-0" "planner_60=planner_60@$folder/value-0" "planner=planner@$folder/value-0" \
-    "planner_500=planner_500@$folder/value-?" "planner_2000=planner_2000@$folder/value-0" lookahead_2000 search
+    "planner_500=planner_500@$folder/value-?" "planner_2000=planner_2000@$folder/value-0" lookahead_2000
 evaluate planner_noise --layouts held_out=500 --agent "none=planner@$folder/value-none" "professional=planner@$folder/value-0" \
     "amateur=planner@$folder/value-amateur" "club=planner@$folder/value-club" lookahead --against lookahead
 evaluate planner_rekeyed --layouts held_out=500 --noise professional --rekey --against lookahead --agent \

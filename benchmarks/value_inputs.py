@@ -46,11 +46,14 @@ class Features(nn.Module):
     def __init__(self):
         super().__init__()
         self.network = ValueNetwork()
+        for parts in (self.network.weights, self.network.biases):
+            for k, part in enumerate(parts):
+                parts[k] = nn.Parameter(part[:1].detach().clone())
 
     def forward(self, seen):
         """Values [points] (n,)."""
         logit, follows = self.network(seen)
-        return torch.sigmoid(logit[0]) * follows[0]
+        return (torch.sigmoid(logit) * follows)[0]
 
 
 def examples(many, seed):

@@ -10,6 +10,7 @@ which writes ``agents/results/*.md``; --show prints the tables instead.
 import argparse
 import json
 import os
+import re
 import shlex
 from pathlib import Path
 
@@ -115,7 +116,7 @@ def agents_tables(report):
     for agent in report["agents"]:
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
-            by_noise = runs[0]["from"].startswith("planner")  # without a model in its name
+            by_noise = re.fullmatch(r"planner(_value|_policy)?(_\d+)?", runs[0]["from"])
             trained.append([label, "pre-trained, by the noise played" if by_noise else "not trained", "", "", "", ""])
             continue
         words = [", ".join(sorted({str(run[key]) for run in runs})) for key in ("recipe", "noise", "fidelity", "physics")]

@@ -68,7 +68,7 @@ class ValueLearning:
             loss.backward()
             torch.nn.utils.clip_grad_norm_(self._network.parameters(), 2.0)
             self._optimizer.step()
-            self.losses.append(loss.item())
+            self.losses.append(loss.item() / MEMBERS)
         self._optimizer.zero_grad()  # nobody else may meet these gradients: PPO clips by the norm of all
 
     @property

@@ -36,7 +36,7 @@ def names() -> list[str]:
 
 
 def is_known(name: str) -> bool:
-    """Whether ``player_of`` finds a player by this name alone: one of ``names``, or in a clone such a name as "planner_500"."""
+    """Whether this is the name of a player: one of ``names``, or in a clone such as "planner_500"; ``player_of`` checks the rest."""
     by_name = _repository("agents.players.by_name")
     return name in names() or (by_name is not None and OWN.fullmatch(name) is None and by_name.is_player(name))
 

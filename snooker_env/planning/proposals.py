@@ -2,8 +2,8 @@
 
 A pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth. The strokes at a pot are consecutive points of
 one scrambled Sobol sequence over the logarithm of the speed, the height of the tip and its side; half of them have no side. Where there is
-no direct pot, as after a break-off, three of four strokes are contacts with the balls on that can be struck, from thin to full on both
-sides, and the fourth goes in any direction; most of them are hard, since a ball then goes in by chance more often.
+no direct pot, as after a break-off, most strokes are contacts with the balls on that can be struck, from thin to full on both sides, and
+every eighth goes in any direction; most of them are hard, since a ball then goes in by chance more often.
 """
 
 from math import asin, atan2, cos, erf, exp, hypot, log, pi, sin, sqrt
@@ -27,7 +27,7 @@ from .sobol import sobol
 from .strokes import Dynamics
 
 SLOWEST, FASTEST = 0.8, 6.5
-"""Cue speeds of the proposals [m/s]."""
+"""Cue speeds of the proposals at pots [m/s]."""
 HIGHEST, WIDEST = 0.45, 0.35
 """Largest tip offsets over R, up or down and to a side; a corner is drawn in to the disc of radius ``RIM``."""
 PLAIN = 0.5
@@ -37,7 +37,7 @@ LOST = 0.01
 """Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly says what errors leave of a pot."""
 POWER = 4.0
 """Power of the chance in a pot's share of the strokes. 2 to 16 gave the same points (600 visits, professional and club errors)."""
-ANYWHERE, TRIES = 4, 16
+ANYWHERE, TRIES = 8, 16
 """Of the strokes without a pot every ``ANYWHERE``-th goes in any direction; for each other one contacts are tried, at most ``TRIES``, until
 no other ball is in the way."""
 MOST_POTS = 16
@@ -119,12 +119,13 @@ def _contacts(positions, on_table, on, seed, strokes, chances):
         count += on_table[ball] and (on >> ball) & 1
     tried = 0
     for i in range(len(strokes)):
-        _spread_stroke(i, seed, strokes[i])
-        strokes[i, SPEED] = MAX_SPEED * sobol(i, 0, seed) ** (1.0 / 3.0)  # few balls go in by chance unless the stroke is hard
-        strokes[i, SPEED] = max(SLOWEST, strokes[i, SPEED])
-        strokes[i, AIM] = pi * (2.0 * sobol(i, 4, seed) - 1.0)
+        anywhere = i % ANYWHERE == 0  # two sequences: every n-th point of one would fill a part of the cube only
+        k, own = (i // ANYWHERE, seed ^ 0xA5A5) if anywhere else (i - i // ANYWHERE - 1, seed)
+        _spread_stroke(k, own, strokes[i])
+        strokes[i, SPEED] = max(SLOWEST, MAX_SPEED * sobol(k, 0, own) ** (1.0 / 3.0))  # few balls go in by chance unless the stroke is hard
+        strokes[i, AIM] = pi * (2.0 * sobol(k, 4, own) - 1.0)
         chances[i] = 1.0
-        if i % ANYWHERE == 0:
+        if anywhere:
             continue
         for _ in range(TRIES):
             which, ball = min(count - 1, int(sobol(tried, 3, seed) * count)), 0

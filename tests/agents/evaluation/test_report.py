@@ -84,6 +84,8 @@ def test_the_agents():
     assert report.agents_tables(report_of(agent("a")))[1].rows[0][-3:] == ["1,000", "10", "100"]
     planner = {"label": "p", "runs": [{"from": "planner_500"}]}  # its weights are known only when it plays
     assert report.agents_tables(report_of(planner))[0].rows == [["p", "pre-trained, by the noise played", "", "", "", ""]]
+    own = {"label": "p", "runs": [{"from": "planner_mine:Mine"}]}
+    assert report.agents_tables(report_of(own))[0].rows[0][1] == "not trained"
 
 
 def figure(value, low=None, high=None):
