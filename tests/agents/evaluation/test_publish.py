@@ -89,6 +89,7 @@ WEIGHTS = {
     "ppo_mask": "dfe17966c74afe0d4d1a8cce0d121d1ba2a4ebfbe5091edff517c4f3688fcc36",
     "ppo_target": "a0d80caf6416d41fab71b6157ba3c380d2e128f98f993adf96ce37bbbe09ff7f",
     "ppo_value": "b54127bfdbdf98695a3fe38e868fc188443164050930d8edc50910f394f7150d",
+    "ppo_value_amateur": "7ef577aa1f95fcac3b493f44fed38451d2b771bda8dea1ad1f018e054beed32b",
     "ppo_value_club": "9900ea2ba7c666cea0bf8de3fd73a68e484bf919d576a23ab70613bdaf2116d6",
     "ppo_value_none": "19d0e235bf97a17aaf7819bb78fba0001815ed168cff6fa9d381b6c697c22a5a",
 }
