@@ -45,10 +45,7 @@ class Features(nn.Module):
 
     def __init__(self):
         super().__init__()
-        self.network = ValueNetwork()
-        for parts in (self.network.weights, self.network.biases):
-            for k, part in enumerate(parts):
-                parts[k] = nn.Parameter(part[:1].detach().clone())
+        self.network = ValueNetwork(members=1)
 
     def forward(self, seen):
         """Values [points] (n,)."""

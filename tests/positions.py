@@ -1,9 +1,15 @@
 """How does a test of an agent get tables?"""
 
 from snooker_env import SnookerVectorEnv
+from snooker_env.planning import prospects_of
 
 
 def tables(n, seed=0, **options):
     env = SnookerVectorEnv(n, **options)
     env.reset(seed=seed)
     return env
+
+
+def chances_by_width(at, spread):
+    """Chances of the pots of ``Positions``, widest first, with the loss of 0.01 a metre that a stroke's score has: (n, 16)."""
+    return prospects_of(at, spread, (25.0, 0.15, 0.05, 0.01), most=16)[1]

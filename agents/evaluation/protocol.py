@@ -45,7 +45,7 @@ with needs("agents.evaluate"):
     from snooker_env.tasks import Noise
 
     from ..learning.models import pretrained
-    from ..players.by_name import NAMES
+    from ..players.by_name import NAMES, player_of
     from .entrants import Entrant, options_of
     from .metrics import EntrantMetrics
     from .report import AXES, main_condition, markdown, show
@@ -155,7 +155,7 @@ def checked(args):
         parse_fidelity(fidelity)
     for physics in args.physics:
         physics_option(physics)
-    integer("budget", args.budget, 8, 10**7)
+    player_of("search", budget=args.budget)  # checks the budget
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")

@@ -10,7 +10,6 @@ which writes ``agents/results/*.md``; --show prints the tables instead.
 import argparse
 import json
 import os
-import re
 import shlex
 from pathlib import Path
 
@@ -21,6 +20,7 @@ with needs("agents.report"):
     from snooker_env.benchmark import CENTURY, MAXIMUM, most_points, unseen
     from snooker_env.checks import refuse
 
+    from ..players.stroke_players import by_noise
     from . import tournament_report
     from .text_tables import TextTable, say
 
@@ -116,8 +116,7 @@ def agents_tables(report):
     for agent in report["agents"]:
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
-            by_noise = re.fullmatch(r"planner(_value|_policy)?(_\d+)?", runs[0]["from"])
-            trained.append([label, "pre-trained, by the noise played" if by_noise else "not trained", "", "", "", ""])
+            trained.append([label, "pre-trained, by the noise played" if by_noise(runs[0]["from"]) else "not trained", "", "", "", ""])
             continue
         words = [", ".join(sorted({str(run[key]) for run in runs})) for key in ("recipe", "noise", "fidelity", "physics")]
         rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]

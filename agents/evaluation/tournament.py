@@ -127,10 +127,11 @@ def checked(args):
     if options and not any(entrant.foreign for entrant in entrants):
         raise refuse("options", " ".join(args.options), "must be left out: it is for models that train.py did not make")
     anchor = args.anchor or (ANCHOR if ANCHOR in labels else labels[0])
+    player_of("search", budget=args.budget)  # checks the budget
     protocol = {
         "first_seed": integer("seed", args.seed, 0, 2**53), "matches": _even("frames", args.frames, 2**20),
         "fewer": dict(_fewer(text, labels, args.frames) for text in args.fewer), "best_of": integer("match", args.match, 1, 99),
-        "tables": TABLES, "chunk": CHUNK, "search_budget": integer("budget", args.budget, 8, 10**7),
+        "tables": TABLES, "chunk": CHUNK, "search_budget": args.budget,
         "resamples": integer("resamples", args.resamples, 100, 10**6), "prior": PRIOR, "anchor": choice("anchor", anchor, tuple(labels)),
         "anchor_elo": ANCHOR_ELO,
     }  # fmt: skip

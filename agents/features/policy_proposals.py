@@ -14,7 +14,7 @@ from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS
 from .pot_features import with_pots
 
 TEMPERATURE = 2.0
-"""Of the policy's scores. 0.5 to 4 hardly differ by the value of the strokes found; admixed even proposals made it worse."""
+"""Of the policy's scores: above 1, so that strokes which it likes less are tried too."""
 _SPEEDS, _SIDES, _TOPS = np.array(SPEEDS), np.array(SIDES), np.array(TOPS)
 _STEP = np.gradient(np.log(_SPEEDS))
 """Width of a cell in the logarithm of the speed."""

@@ -13,7 +13,7 @@ import numpy as np
 import torch
 
 from ..features.value_features import SIZE
-from .value_network import MEMBERS, Value
+from .value_network import Value
 
 LAMBDA = 0.7
 KEPT = 81_920
@@ -57,18 +57,19 @@ class ValueLearning:
         self._age += 1
         for group in self._optimizer.param_groups:
             group["lr"] = RATE * max(0.02, remaining)
+        members = self._network.members
         for _ in range(max(1, self._n // EACH) * (FIRST_STEPS if first else 1)):
-            rows = self._rng.integers(len(self._fitted[0]), size=(MEMBERS, BATCH))
+            rows = self._rng.integers(len(self._fitted[0]), size=(members, BATCH))  # each member its own batch
             seen, target, made = (torch.from_numpy(one[rows].astype(np.float32)) for one in self._fitted)
             logit, follows = self._network(seen)
             error = (torch.sigmoid(logit) * follows - target) / 20.0  # points a typical target errs by
             chance = torch.nn.functional.binary_cross_entropy_with_logits(logit, made)
-            loss = MEMBERS * (error.square().mean() + 0.3 * chance)  # the sum over the members: each learns at the full rate
+            loss = error.square().mean() + 0.3 * chance
             self._optimizer.zero_grad()
-            loss.backward()
-            torch.nn.utils.clip_grad_norm_(self._network.parameters(), 2.0)
+            (members * loss).backward()  # the sum over the members: the gradient of each is that of its own mean
+            torch.nn.utils.clip_grad_norm_(self._network.parameters(), members**0.5)
             self._optimizer.step()
-            self.losses.append(loss.item() / MEMBERS)
+            self.losses.append(loss.item())
         self._optimizer.zero_grad()  # nobody else may meet these gradients: PPO clips by the norm of all
 
     @property

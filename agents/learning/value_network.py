@@ -22,14 +22,15 @@ POINTS = 40.0
 class ValueNetwork(nn.Module):
     """Features (members, n, SIZE) or (n, SIZE) -> logits of P and U [points], each (members, n)."""
 
-    def __init__(self):
+    def __init__(self, members=MEMBERS):
         super().__init__()
+        self.members = members
         sizes = (SIZE, *WIDTHS, 2)
         self.weights, self.biases = nn.ParameterList(), nn.ParameterList()
         for a, b in pairwise(sizes):
             reach = a**-0.5  # as nn.Linear
-            self.weights.append(nn.Parameter(torch.empty(MEMBERS, a, b).uniform_(-reach, reach)))
-            self.biases.append(nn.Parameter(torch.empty(MEMBERS, 1, b).uniform_(-reach, reach)))
+            self.weights.append(nn.Parameter(torch.empty(members, a, b).uniform_(-reach, reach)))
+            self.biases.append(nn.Parameter(torch.empty(members, 1, b).uniform_(-reach, reach)))
         with torch.no_grad():  # at first P is the chance by its width, and U hardly differs
             self.weights[-1].mul_(0.1)
 
@@ -58,7 +59,7 @@ class Value:
     def __init__(self, network, spread, threads=1):
         pairs = zip(network.weights, network.biases, strict=True)
         self._layers = [(weight.detach().numpy().copy(), bias.detach().numpy().copy()) for weight, bias in pairs]
-        self.spread, self.threads = spread, threads
+        self.spread, self.threads, self._members = spread, threads, network.members
 
     def __call__(self, at):
         return self.of(value_features(at, self.spread, self.threads))
@@ -66,7 +67,7 @@ class Value:
     def of(self, seen):
         """The values of features (n, SIZE)."""
         total = np.zeros(len(seen), np.float32)
-        for k in range(MEMBERS):
+        for k in range(self._members):
             x = seen
             for weight, bias in self._layers[:-1]:
                 x = x @ weight[k]
@@ -75,4 +76,4 @@ class Value:
             weight, bias = self._layers[-1]
             p, u = (x @ weight[k] + bias[k]).T
             total += POINTS * np.logaddexp(0.0, u) / (1.0 + np.exp(-(seen[:, LOGIT] + p)))
-        return total / MEMBERS
+        return total / self._members

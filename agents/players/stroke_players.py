@@ -34,6 +34,12 @@ def is_stroke_player(name):
     return _FORM.fullmatch(name) is not None
 
 
+def by_noise(name):
+    """Whether that is a planner that names no model: it plays the pre-trained one of the noise that it meets."""
+    form = _FORM.fullmatch(name)
+    return form is not None and form[1].startswith("planner") and form[3] is None
+
+
 def stroke_player(name, seed=0):
     """The player of that name. Raises ValueError if its model or its budget is unfit."""
     form = _FORM.fullmatch(name)

@@ -36,7 +36,7 @@ RIM = 0.49
 LOST = 0.01
 """Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly says what errors leave of a pot."""
 POWER = 4.0
-"""Power of the chance in a pot's share of the strokes. 2 to 16 gave the same points (600 visits, professional and club errors)."""
+"""Power of the chance in a pot's share of the strokes."""
 ANYWHERE, TRIES = 8, 16
 """Of the strokes without a pot every ``ANYWHERE``-th goes in any direction; for each other one contacts are tried, at most ``TRIES``, until
 no other ball is in the way."""
@@ -112,6 +112,18 @@ def _struck_first(positions, on_table, ux, uy):
 
 
 @kernel
+def _towards(positions, on_table, on, which, turned):
+    """Direction of a contact with the ball on number ``which``: full at ``turned`` = 0, a graze at -1 and 1."""
+    for ball in range(1, N_BALLS):
+        if on_table[ball] and (on >> ball) & 1:
+            if which == 0:
+                x, y = positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]
+                return atan2(y, x) + asin(min(1.0, 2.0 * BALL_RADIUS / hypot(x, y))) * turned
+            which -= 1
+    return 0.0
+
+
+@kernel
 def _contacts(positions, on_table, on, seed, strokes, chances):
     """Fill the strokes (m, 4) with contacts at the balls on that can be struck, from thin to full, and with strokes in any direction."""
     count = 0
@@ -125,21 +137,10 @@ def _contacts(positions, on_table, on, seed, strokes, chances):
         strokes[i, SPEED] = max(SLOWEST, MAX_SPEED * sobol(k, 0, own) ** (1.0 / 3.0))  # few balls go in by chance unless the stroke is hard
         strokes[i, AIM] = pi * (2.0 * sobol(k, 4, own) - 1.0)
         chances[i] = 1.0
-        if anywhere:
-            continue
-        for _ in range(TRIES):
-            which, ball = min(count - 1, int(sobol(tried, 3, seed) * count)), 0
-            turned = 2.0 * sobol(tried, 4, seed) - 1.0
+        for _ in range(0 if anywhere else TRIES):
+            aim = _towards(positions, on_table, on, min(count - 1, int(sobol(tried, 3, seed) * count)), 2.0 * sobol(tried, 4, seed) - 1.0)
             tried += 1
-            for b in range(1, N_BALLS):
-                if on_table[b] and (on >> b) & 1:
-                    if which == 0:
-                        ball = b
-                    which -= 1
-            x, y = positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]
-            aim = atan2(y, x) + asin(min(1.0, 2.0 * BALL_RADIUS / hypot(x, y))) * turned
-            first = _struck_first(positions, on_table, cos(aim), sin(aim))
-            if first > 0 and (on >> first) & 1:
+            if (on >> _struck_first(positions, on_table, cos(aim), sin(aim))) & 1:
                 strokes[i, AIM] = aim
                 break
 

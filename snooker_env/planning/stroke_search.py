@@ -40,8 +40,7 @@ SCHEDULES = (
     (500, 220, ((20, 4), (8, 12), (4, 25))),
     (2000, 800, ((40, 8), (16, 25), (5, 95))),
 )
-"""Budget, number of looks, and for each round the number of strokes and their further samples. Around that of 120, neighbours were no
-better by the value of the strokes that they chose (268 positions)."""
+"""Budget, number of looks, and for each round the number of strokes and their further samples."""
 
 Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 """Values [points] of n positions that strokes have left: (n,)."""

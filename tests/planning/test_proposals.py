@@ -5,7 +5,7 @@ from math import floor
 
 import numpy as np
 import pytest
-from positions import tables
+from positions import chances_by_width, tables
 
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import Planner, Position, Positions, StrokeSearch, actions_of, pots, prospects_of, spread_of
@@ -51,11 +51,6 @@ def solved(at, row, strokes, ball, pocket, ghost):
     )
 
 
-def honest(at):
-    """Chances by their width with the loss that strokes under errors show, 0.01 a metre; the shares' own loss is ten times that."""
-    return prospects_of(at, SPREAD, (25.0, 0.15, 0.05, 0.01), most=MOST_POTS)[1]
-
-
 def test_strokes_stay_within_their_limits_and_fill_them():
     at = some()
     strokes, chances = spread_strokes(at, 512, seeds(20), SPREAD, DYNAMICS)
@@ -73,7 +68,7 @@ def test_strokes_stay_within_their_limits_and_fill_them():
 def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
     """Shares in plain Python from the chances of ``prospects_of``; aims by ``Planner.pot_aim``. Of two reds the likelier gets more."""
     at, m, several = some(), 150, 0
-    found, likely, chances = pots(at, most=MOST_POTS), prospects_of(at, SPREAD, most=MOST_POTS)[1], honest(at)
+    found, likely, chances = pots(at, most=MOST_POTS), prospects_of(at, SPREAD, most=MOST_POTS)[1], chances_by_width(at, SPREAD)
     proposed = spread_strokes(at, m, seeds(20), SPREAD, DYNAMICS)
     for k in range(20):
         many = int((found.ball[k] >= 0).sum())
@@ -168,7 +163,7 @@ def test_from_the_break_off_2000_contacts_nearly_always_pot_something():
 
 def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
     at, rng = some(6), np.random.default_rng(1)
-    found, chances = pots(at, most=MOST_POTS), honest(at)
+    found, chances = pots(at, most=MOST_POTS), chances_by_width(at, SPREAD)
     many = (found.ball >= 0).sum(axis=1)
     assert (many > 0).all()
     which = rng.integers(0, 4, (6, 30))

@@ -5,11 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import torch
-from positions import tables
+from positions import chances_by_width, tables
 
 from agents.features.policy_proposals import TEMPERATURE, PolicyProposals
 from agents.learning.models import PRETRAINED, load_trained
-from snooker_env.planning import Position, Positions, StrokeSearch, action_masks, as_actions, pots, prospects_of
+from snooker_env.planning import Position, Positions, StrokeSearch, action_masks, as_actions, pots
 from snooker_env.planning.proposals import AIM, MOST_POTS, RIM, SIDE, SPEED, TOP, spread_strokes
 from snooker_env.tasks import CHOICES, POTS, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
@@ -32,11 +32,6 @@ def preferring(**worths):
     for name, worth in worths.items():
         scores[choice_of(*map(int, name.strip("_").split("_")))] = worth
     return PolicyProposals(Preferring(scores))
-
-
-def honest(at):
-    """Chances by their width with the loss of ``proposals.LOST``."""
-    return prospects_of(at, SEARCH.spread, (25.0, 0.15, 0.05, 0.01), most=MOST_POTS)[1]
 
 
 def some(n=6):
@@ -64,7 +59,7 @@ def test_a_policy_that_likes_one_choice_gets_strokes_within_its_cell():
     inside = np.hypot(strokes[..., SIDE], strokes[..., TOP]) < RIM - 1e-9  # a tip beyond the rim was drawn in
     for off in (side[inside], top[inside]):
         assert np.abs(off).max() <= 0.5 + 1e-9 and off.min() < -0.4 and off.max() > 0.4
-    expected = honest(at)[:, 1]
+    expected = chances_by_width(at, SEARCH.spread)[:, 1]
     assert chances == pytest.approx(np.tile(expected[:, None], m), rel=1e-9)
     middle = as_actions(at, np.arange(6), np.full(6, choice_of(1, 4, 0, 1)))[:, 3] * np.pi
     apart = (strokes[..., AIM] - middle[:, None] + np.pi) % (2 * np.pi) - np.pi
@@ -100,7 +95,7 @@ def test_only_available_choices_are_proposed():
     policy = PolicyProposals(Preferring(scores))
     found, masks = policy.scores(at)
     assert found.shape == masks.shape == (1, CHOICES) and masks.sum() == many * STROKES
-    chances = honest(at)[0, :many]
+    chances = chances_by_width(at, SEARCH.spread)[0, :many]
     proposed = policy(SEARCH, at, 50, np.array([3])).chances[0]
     assert all(np.isclose(chances, one, rtol=1e-9).any() for one in proposed)
 

@@ -4,11 +4,11 @@ from math import erf, exp, hypot, log, sqrt
 
 import numpy as np
 import pytest
-from positions import tables
+from positions import chances_by_width, tables
 
 from agents.features.value_features import COLOUR_ENTRIES, LOGIT, POT_ENTRIES, POTS_SEEN, SHARED, SIZE, value_features
 from snooker_env.game import VALUES
-from snooker_env.planning import Position, Positions, pots, prospects_of, spread_of
+from snooker_env.planning import Position, Positions, pots, spread_of
 from snooker_env.tasks import LEVELS
 
 SPREAD = spread_of(LEVELS["professional"])
@@ -64,7 +64,7 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on):
     at = some(60, "random:4", seed=5)
     at.game[:, 0] = ball_on
     rows, found = value_features(at, SPREAD), pots(at, most=40)
-    chances = prospects_of(at, SPREAD, (25.0, 0.15, 0.05, 0.01), most=16)[1]
+    chances = chances_by_width(at, SPREAD)
     several = 0
     for k in range(60):
         best = []

@@ -143,6 +143,27 @@ def test_the_network_learns_a_known_value():
     assert learning.mean_target == pytest.approx(learning._fitted[1][-n:].mean()) and 1.0 < learning.mean_target < 4.0
 
 
+def test_each_member_learns_from_batches_of_its_own():
+    """Members that start alike are apart after a fit, and each moves as fast as a network that learns alone."""
+    rng, learning = np.random.default_rng(4), learner(16)
+    alone = ValueLearning(ValueNetwork(members=1), SPREAD, 16, np.random.default_rng(0))
+    with torch.no_grad():
+        for all_members, own in zip(learning._network.parameters(), alone._network.parameters(), strict=True):
+            all_members.copy_(all_members[:1].expand_as(all_members))
+            own.copy_(all_members[:1])
+    before = [p.detach().clone() for p in alone._network.parameters()]
+    rounds = [a_round(16, rng) for _ in range(4)]
+    for one in (learning, alone):
+        for given in rounds:
+            one.add(*given)
+        one.fit(1.0)
+    moved = [(p - start).flatten(1).norm(dim=1) for p, start in zip(learning._network.parameters(), before, strict=True)]
+    whole = torch.stack(moved).norm(dim=0)
+    own = torch.stack([(p - start).norm() for p, start in zip(alone._network.parameters(), before, strict=True)]).norm()
+    assert all(not torch.equal(p[a], p[b]) for p in learning._network.weights for a in range(4) for b in range(a))
+    assert whole.tolist() == pytest.approx([own.item()] * 4, rel=0.15)
+
+
 def test_values_spread_backwards_along_a_visit():
     """State A leads to B without points, B to 10 points and the end: by backups alone A comes to the value of B. No visit was played on."""
     n, learning = 32, learner(32)

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 import torch
-from positions import tables
+from positions import chances_by_width, tables
 
 from agents.features.value_features import LOGIT, SIZE, value_features
 from agents.learning.value_network import MEMBERS, POINTS, WIDTHS, Value, ValueNetwork
-from snooker_env.planning import Positions, StrokeSearch, prospects_of, spread_of
+from snooker_env.planning import Positions, StrokeSearch, spread_of
 from snooker_env.tasks import LEVELS
 
 SPREAD = spread_of(LEVELS["professional"])
@@ -59,7 +59,7 @@ def test_the_network_has_the_layers_that_the_file_says():
         assert u[member] == pytest.approx(POINTS * np.log1p(np.exp(x[:, 1])), rel=1e-4)
 
 
-def test_the_members_start_apart_and_learn_from_batches_of_their_own():
+def test_the_members_start_apart_and_each_reads_its_own_rows():
     made = network()
     assert all(not torch.equal(w[a], w[b]) for w in made.weights for a in range(MEMBERS) for b in range(a))
     seen = torch.from_numpy(np.random.default_rng(0).normal(0, 1, (MEMBERS, 30, SIZE)).astype(np.float32))
@@ -74,7 +74,7 @@ def test_the_members_start_apart_and_learn_from_batches_of_their_own():
 
 def test_at_first_the_chance_is_the_likeliest_pots_and_what_follows_hardly_differs():
     at = some()
-    likeliest = prospects_of(at, SPREAD, (25.0, 0.15, 0.05, 0.01), most=16)[1].max(axis=1)
+    likeliest = chances_by_width(at, SPREAD).max(axis=1)
     for seed in range(4):
         p, u = by_torch(network(seed), value_features(at, SPREAD))
         assert np.abs(p - likeliest).max() < 0.03 and all(np.corrcoef(one, likeliest)[0, 1] > 0.999 for one in p)
