@@ -78,7 +78,7 @@ class Settings:
     fidelity: str = option("", "of the simulation: fast, standard, reference or euler:N [the recipe's]")
     physics: str = option("", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]")
     imitate: int = option(-1, "positions of pre-training, by expert iteration or imitation; -1: the recipe's number")
-    start: str = option("", "initial weights: a model of the same agent, its .zip or run folder (read as plain data)")
+    start: str = option("", "initial weights: a model with the same network, its .zip or run folder (read as plain data)")
     set: tuple = option((), "change hyperparameters, for example gamma=0", nargs="+")
     eval_visits: int = option(500, f"visits of the final evaluation, each on a held-out table of its own, at most {HELD_OUT}")
     checkpoint_every: int = option(100_000, "shots between two checkpoints")

@@ -15,6 +15,7 @@ runs() { # name, then the options of train.py
     for noise in none amateur club; do echo "value-$noise --noise $noise"; done
     for k in 0 1 2 3 4; do echo "fore-$k --agent ppo_foresight --seed $k"; done
     for k in 0 1 2 3 4; do echo "mask-$k --agent ppo_mask --steps 1000000 --seed $k"; done
+    echo "mask5M-0 --agent ppo_mask"
     for k in 0 1 2 3 4; do echo "gamma0-$k --agent ppo_foresight --set gamma=0 --seed $k"; done
     for fidelity in fast reference; do echo "$fidelity-0 --agent ppo_foresight --fidelity $fidelity"; done
     for physics in match marlow; do echo "$physics-0 --agent ppo_foresight --physics ${physics/marlow/paper,mu_bb=marlow}"; done
@@ -25,6 +26,7 @@ runs() { # name, then the options of train.py
     for k in 0 1 2; do echo "lineup-$k --agent ppo_mask --layout line_up --steps 300000 --seed $k"; done
 }
 later() { # these start from the weights of earlier runs
+    echo "longer-0 --start $folder/value-0 --imitate 0 --steps 3500000 --set learning_rate=lin_5e-4"
     for k in 0 1 2; do echo "curriculum-$k --agent ppo_mask --start $folder/lineup-$k --steps 700000 --seed $k"; done
 }
 
@@ -77,15 +79,18 @@ evaluate noise --layouts held_out --agent \
 
 evaluate planner --layouts held_out --noise professional amateur club --against lookahead lookahead_foresight best_pot ppo_mask --agent \
     "planner=planner@$folder/value-?" lookahead lookahead_foresight best_pot ghost_ball "ppo_value=$folder/value-?" ppo_mask
-evaluate planner_parts --layouts held_out line_up colours random:3 --noise professional club --against lookahead --agent \
+evaluate model_free --layouts held_out --noise professional --against best_pot ppo_mask_5M --agent \
+    "ppo_value=$folder/value-?" "ppo_value_5M=$folder/longer-0" "ppo_mask_5M=$folder/mask5M-0" best_pot
+evaluate planner_parts --layouts held_out=1000 line_up=300 colours=300 random:3=300 --noise professional club --against lookahead --agent \
     "planner=planner@$folder/value-?" "planner_value=planner_value@$folder/value-?" "planner_policy=planner_policy@$folder/value-?" lookahead
-evaluate planner_budgets --layouts held_out=400 --noise professional --against lookahead_2000 --agent \
+[[ -n ${LIST:-} ]] || git show f19a568:agents/players/search.py | sed "s/from \.\.features/from agents.features/" > "$folder/search_before.py"
+PYTHONPATH=$folder evaluate planner_budgets --layouts held_out=400 --noise professional --against search search_before --agent \
     "planner_30=planner_30@$folder/value-0" "planner_60=planner_60@$folder/value-0" "planner=planner@$folder/value-0" \
-    "planner_500=planner_500@$folder/value-?" "planner_2000=planner_2000@$folder/value-0" lookahead_2000
-evaluate planner_noise --layouts held_out=500 --agent "none=planner@$folder/value-none" "professional=planner@$folder/value-0" \
-    "amateur=planner@$folder/value-amateur" "club=planner@$folder/value-club" lookahead --against lookahead
+    "planner_500=planner_500@$folder/value-?" "planner_2000=planner_2000@$folder/value-0" search search_before=search_before:Search
+evaluate planner_noise --layouts held_out=500 --against lookahead --agent "none=planner@$folder/value-none" \
+    "professional=planner@$folder/value-0" "amateur=planner@$folder/value-amateur" "club=planner@$folder/value-club" lookahead
 evaluate planner_rekeyed --layouts held_out=500 --noise professional --rekey --against lookahead --agent \
     "planner=planner@$folder/value-0" lookahead
-evaluate planner_147 --layouts break_off=50 --noise none --agent "planner_2000=planner_2000@$folder/value-none" lookahead_2000
+evaluate planner_147 --layouts break_off=50 --noise none --against search --agent "planner_2000=planner_2000@$folder/value-none" search
 module agents.value_quality --agent "planner@$folder/value-0" --visits 1000 --layouts held_out line_up colours random:3 \
     --noise professional club --json agents/results/value_quality.json --markdown agents/results/value_quality.md

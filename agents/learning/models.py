@@ -5,6 +5,7 @@ from pathlib import Path
 
 from snooker_env.checks import refuse
 
+from .hyperparameters import ACTION_OPTIONS
 from .model_files import read
 
 PRETRAINED = Path(__file__).parents[1] / "pretrained"
@@ -37,13 +38,20 @@ def load_trained(path, field):
 
 
 def load_weights(model, path):
-    """Load the weights of another model of the same agent into ``model``; ``model.start`` records its origin. Raises ValueError."""
+    """Load the weights of another model with the same network and actions into ``model``; ``model.start`` records its origin.
+
+    The other's network may have more: the one of ppo_value holds that of ppo_mask, and beside it the value of positions. Raises
+    ValueError.
+    """
     other = load_trained(path, "start")
-    if other.recipe != model.recipe:
-        raise refuse("start", str(path), f"must be a model of {model.recipe}, not of {other.recipe}")
-    if other.action_space != model.action_space:
-        raise refuse("start", str(path), f"must be a model with actions {model.action_space}, not {other.action_space}")
-    model.policy.load_state_dict(other.policy.state_dict())
+    if not isinstance(other.policy, type(model.policy)):
+        raise refuse("start", str(path), f"must be a model of {model.recipe}, or of another agent with its network, not of {other.recipe}")
+    spaces = other.action_space == model.action_space
+    if not spaces or any(other.env_options.get(key) != model.env_options.get(key) for key in ACTION_OPTIONS):
+        told = [{key: m.env_options[key] for key in ACTION_OPTIONS if key in m.env_options} for m in (model, other)]
+        raise refuse("start", str(path), f"must be a model with actions {told[0]}, not {told[1]}")
+    weights = other.policy.state_dict()
+    model.policy.load_state_dict({name: weights[name] for name in model.policy.state_dict()})
     model.start = {"model": str(path), "shots": other.num_timesteps, "imitated": other.imitated, "start": other.start}
 
 

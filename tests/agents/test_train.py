@@ -313,6 +313,9 @@ def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, capsys):
     with pytest.raises(SystemExit) as stop:
         run(tmp_path / "other", "--agent", "ppo_foresight", "--start", start)
     assert stop.value.code == 2 and "must be a model of ppo_foresight" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as stop:
+        run(tmp_path / "other", "--start", start, "--agent", "ppo_target")
+    assert stop.value.code == 2 and "must be a model of ppo_target" in capsys.readouterr().err
 
 
 def test_what_starts_from_a_model_does_not_imitate_again(tmp_path, capsys):

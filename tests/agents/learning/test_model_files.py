@@ -21,7 +21,7 @@ from agents.evaluation.entrants import Entrant
 from agents.features.views import training_tables
 from agents.learning.hyperparameters import Recipe, names
 from agents.learning.model_files import KEPT, packed, read
-from agents.learning.models import load_weights
+from agents.learning.models import PRETRAINED, load_weights
 from agents.players.trained import load_player
 from tests.bombs import bombed, edited, rezipped
 
@@ -199,6 +199,22 @@ def test_weights_are_handed_on(mask, plain):
         assert model.start == {"model": str(file), "shots": 77, "imitated": 300, "start": None}
         its = MaskablePPO.load(mask, device="cpu").policy
         assert all(torch.equal(a, b) for a, b in zip(model.policy.parameters(), its.parameters(), strict=True))
+
+
+def test_the_policy_of_a_judged_model_is_handed_on():
+    """``ppo_value`` holds the network of ``ppo_mask``, which goes on from it; the other way the value would be missing."""
+    judged, models = PRETRAINED / "ppo_value.zip", []
+    for name in ("ppo_mask", "ppo_value"):
+        recipe = Recipe.of(name)
+        tables = training_tables(2, threads=1, **recipe.env_kwargs)
+        models.append(recipe.new_model(tables, 9))
+        tables.close()
+    load_weights(models[0], judged)
+    its = read(judged, "start").policy.state_dict()
+    assert all(torch.equal(its[name], weights) for name, weights in models[0].policy.state_dict().items())
+    assert models[0].start["model"] == str(judged) and models[0].recipe == "ppo_mask"
+    with pytest.raises(ValueError, match=r"start = '.*ppo_mask.zip': must be a model of ppo_value, or .* not of ppo_mask"):
+        load_weights(models[1], PRETRAINED / "ppo_mask.zip")
 
 
 def test_a_model_of_another_maker_is_recognised(tmp_path):
