@@ -26,7 +26,7 @@ runs() { # name, then the options of train.py
     for k in 0 1 2; do echo "lineup-$k --agent ppo_mask --layout line_up --steps 300000 --seed $k"; done
 }
 later() { # these start from the weights of earlier runs
-    echo "longer-0 --start $folder/value-0 --imitate 0 --steps 3500000 --set learning_rate=lin_5e-4"
+    echo "taught-0 --agent ppo_mask --start $folder/value-0 --fidelity fast --set learning_rate=lin_5e-4"
     for k in 0 1 2; do echo "curriculum-$k --agent ppo_mask --start $folder/lineup-$k --steps 700000 --seed $k"; done
 }
 
@@ -62,7 +62,7 @@ evaluate() { # name of the output, then the options of agents.evaluate
 }
 module agents.curves "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" \
     "ppo_mask=$folder/mask-?" "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?"
-evaluate main --against ghost_ball ppo_foresight_gamma0 --picture agents/pictures/destinations.png --agent \
+evaluate main --against ghost_ball ppo_foresight_gamma0 --agent \
     "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" ghost_ball lookahead_foresight ppo_mask "ppo_mask_1M=$folder/mask-?" \
     geometric random
 evaluate aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
@@ -77,20 +77,22 @@ evaluate physics --layouts held_out --noise professional --physics paper match p
 evaluate noise --layouts held_out --agent \
     "none=$folder/none-?" "professional=$folder/fore-0" "amateur=$folder/amateur-?" "club=$folder/club-?"
 
-evaluate planner --layouts held_out --noise professional amateur club --against lookahead lookahead_foresight best_pot ppo_mask --agent \
-    "planner=planner@$folder/value-?" lookahead lookahead_foresight best_pot ghost_ball "ppo_value=$folder/value-?" ppo_mask
+evaluate planner --layouts held_out --noise professional club --against lookahead lookahead_foresight best_pot ppo_mask \
+    --picture agents/pictures/destinations.png --agent "planner=planner@$folder/value-?" best_pot ghost_ball lookahead \
+    lookahead_foresight "ppo_value=$folder/value-?" ppo_mask
 evaluate model_free --layouts held_out --noise professional --against best_pot ppo_mask_5M --agent \
-    "ppo_value=$folder/value-?" "ppo_value_5M=$folder/longer-0" "ppo_mask_5M=$folder/mask5M-0" best_pot
-evaluate planner_parts --layouts held_out=1000 line_up=300 colours=300 random:3=300 --noise professional club --against lookahead --agent \
-    "planner=planner@$folder/value-?" "planner_value=planner_value@$folder/value-?" "planner_policy=planner_policy@$folder/value-?" lookahead
+    "ppo_mask_taught=$folder/taught-0" "ppo_value=$folder/value-?" "ppo_mask_5M=$folder/mask5M-0" best_pot
+evaluate planner_parts --layouts held_out=600 line_up=300 colours=300 random:3=300 --noise professional club --against lookahead --agent \
+    "planner=planner@$folder/value-[012]" "planner_value=planner_value@$folder/value-[012]" \
+    "planner_policy=planner_policy@$folder/value-[012]" lookahead
 [[ -n ${LIST:-} ]] || git show f19a568:agents/players/search.py | sed "s/from \.\.features/from agents.features/" > "$folder/search_before.py"
-PYTHONPATH=$folder evaluate planner_budgets --layouts held_out=400 --noise professional --against search search_before --agent \
+PYTHONPATH=$folder evaluate planner_budgets --layouts held_out=300 --noise professional --against search search_before --agent \
     "planner_30=planner_30@$folder/value-0" "planner_60=planner_60@$folder/value-0" "planner=planner@$folder/value-0" \
     "planner_500=planner_500@$folder/value-?" "planner_2000=planner_2000@$folder/value-0" search search_before=search_before:Search
-evaluate planner_noise --layouts held_out=500 --against lookahead --agent "none=planner@$folder/value-none" \
+evaluate planner_noise --layouts held_out=400 --against lookahead --agent "none=planner@$folder/value-none" \
     "professional=planner@$folder/value-0" "amateur=planner@$folder/value-amateur" "club=planner@$folder/value-club" lookahead
 evaluate planner_rekeyed --layouts held_out=500 --noise professional --rekey --against lookahead --agent \
     "planner=planner@$folder/value-0" lookahead
 evaluate planner_147 --layouts break_off=50 --noise none --against search --agent "planner_2000=planner_2000@$folder/value-none" search
-module agents.value_quality --agent "planner@$folder/value-0" --visits 1000 --layouts held_out line_up colours random:3 \
+module agents.value_quality --agent "planner@$folder/value-0" --visits 800 --layouts held_out line_up colours random:3 \
     --noise professional club --json agents/results/value_quality.json --markdown agents/results/value_quality.md
