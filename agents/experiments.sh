@@ -82,17 +82,17 @@ evaluate planner --layouts held_out --noise professional club --against lookahea
     lookahead_foresight "ppo_value=$folder/value-?" ppo_mask
 evaluate model_free --layouts held_out --noise professional --against best_pot ppo_mask_5M --agent \
     "ppo_mask_taught=$folder/taught-0" "ppo_value=$folder/value-?" "ppo_mask_5M=$folder/mask5M-0" best_pot
-evaluate planner_parts --layouts held_out=600 line_up=300 colours=300 random:3=300 --noise professional club --against lookahead --agent \
+evaluate planner_parts --layouts held_out=400 line_up=200 colours=200 random:3=200 --noise professional club --against lookahead --agent \
     "planner=planner@$folder/value-[012]" "planner_value=planner_value@$folder/value-[012]" \
     "planner_policy=planner_policy@$folder/value-[012]" lookahead
 [[ -n ${LIST:-} ]] || git show f19a568:agents/players/search.py | sed "s/from \.\.features/from agents.features/" > "$folder/search_before.py"
-PYTHONPATH=$folder evaluate planner_budgets --layouts held_out=300 --noise professional --against search search_before --agent \
+PYTHONPATH=$folder evaluate planner_budgets --layouts held_out=200 --noise professional --against search search_before --agent \
     "planner_30=planner_30@$folder/value-0" "planner_60=planner_60@$folder/value-0" "planner=planner@$folder/value-0" \
     "planner_500=planner_500@$folder/value-?" "planner_2000=planner_2000@$folder/value-0" search search_before=search_before:Search
-evaluate planner_noise --layouts held_out=400 --against lookahead --agent "none=planner@$folder/value-none" \
+evaluate planner_noise --layouts held_out=300 --against lookahead --agent "none=planner@$folder/value-none" \
     "professional=planner@$folder/value-0" "amateur=planner@$folder/value-amateur" "club=planner@$folder/value-club" lookahead
 evaluate planner_rekeyed --layouts held_out=500 --noise professional --rekey --against lookahead --agent \
     "planner=planner@$folder/value-0" lookahead
 evaluate planner_147 --layouts break_off=50 --noise none --against search --agent "planner_2000=planner_2000@$folder/value-none" search
-module agents.value_quality --agent "planner@$folder/value-0" --visits 800 --layouts held_out line_up colours random:3 \
-    --noise professional club --json agents/results/value_quality.json --markdown agents/results/value_quality.md
+module agents.value_quality --agent "planner@$folder/value-0" --visits 500 --layouts held_out line_up colours random:3 \
+    --noise professional club --markdown agents/results/value_quality.md

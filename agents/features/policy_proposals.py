@@ -14,8 +14,7 @@ from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS
 from .pot_features import with_pots
 
 TEMPERATURE = 4.0
-"""Of the policy's scores: above 1, so that strokes which it likes less are tried too. Chosen on tables of their own: from 2 to 4 a
-professional's planner gains about 5 points of 103 a visit; 3.5 to 5 are alike, 8 is worse; for a club player all are alike."""
+"""Of the policy's scores: above 1, so that strokes which it likes less are tried too (``python -m benchmarks.temperature``)."""
 _SPEEDS, _SIDES, _TOPS = np.array(SPEEDS), np.array(SIDES), np.array(TOPS)
 _STEP = np.gradient(np.log(_SPEEDS))
 """Width of a cell in the logarithm of the speed."""
