@@ -29,6 +29,9 @@ later() { # these start from the weights of earlier runs
     echo "taught-0 --agent ppo_mask --start $folder/value-0 --fidelity fast --set learning_rate=lin_5e-4"
     for k in 0 1 2; do echo "curriculum-$k --agent ppo_mask --start $folder/lineup-$k --steps 700000 --seed $k"; done
 }
+last() { # this one from those of a later one
+    echo "again-0 --agent ppo_mask --start $folder/taught-0 --fidelity fast --steps 3000000 --set learning_rate=lin_5e-4"
+}
 
 train() {
     local name=$1
@@ -40,8 +43,8 @@ train() {
     echo "$(date +%H:%M) $name"
 }
 export -f train
-grep -qE "^(${ONLY:-.*})" <<< "$(runs; later)" || { echo "ONLY='$ONLY' names no run" >&2; exit 2; } # no pipe: grep -q leaves early
-for list in runs later; do
+grep -qE "^(${ONLY:-.*})" <<< "$(runs; later; last)" || { echo "ONLY='$ONLY' names no run" >&2; exit 2; } # no pipe: grep -q leaves early
+for list in runs later last; do
     if [[ -z ${LIST:-} ]]; then
         mkdir -p "$folder"
         "$list" | { grep -E "^(${ONLY:-.*})" || [[ $? == 1 ]]; } | xargs -d '\n' -r -P "$jobs" -I{} bash -c 'train {}'
@@ -81,7 +84,7 @@ evaluate planner --layouts held_out --noise professional club --against lookahea
     --picture agents/pictures/destinations.png --agent "planner=planner@$folder/value-?" best_pot ghost_ball lookahead \
     lookahead_foresight "ppo_value=$folder/value-?" ppo_mask
 evaluate model_free --layouts held_out --noise professional --against best_pot ppo_mask_5M --agent \
-    "ppo_mask_taught=$folder/taught-0" "ppo_value=$folder/value-?" "ppo_mask_5M=$folder/mask5M-0" best_pot
+    "ppo_mask_taught=$folder/again-0" "ppo_mask_taught_once=$folder/taught-0" "ppo_value=$folder/value-?" "ppo_mask_5M=$folder/mask5M-0" best_pot
 evaluate planner_parts --layouts held_out=400 line_up=200 colours=200 random:3=200 --noise professional club --against lookahead --agent \
     "planner=planner@$folder/value-[012]" "planner_value=planner_value@$folder/value-[012]" \
     "planner_policy=planner_policy@$folder/value-[012]" lookahead
