@@ -13,6 +13,7 @@ export folder
 runs() { # name, then the options of train.py
     for k in 0 1 2 3 4; do echo "value-$k --seed $k"; done
     for noise in none amateur club; do echo "value-$noise --noise $noise"; done
+    for n in 9600 38400; do echo "curve-$n --imitate $n --steps 16384"; done
     for k in 0 1 2 3 4; do echo "fore-$k --agent ppo_foresight --seed $k"; done
     for k in 0 1 2 3 4; do echo "mask-$k --agent ppo_mask --steps 1000000 --seed $k"; done
     echo "mask5M-0 --agent ppo_mask"
@@ -92,6 +93,8 @@ evaluate planner_parts --layouts held_out=400 line_up=200 colours=200 random:3=2
 PYTHONPATH=$folder evaluate planner_budgets --layouts held_out=200 --noise professional --against search search_before --agent \
     "planner_30=planner_30@$folder/value-0" "planner_60=planner_60@$folder/value-0" "planner=planner@$folder/value-0" \
     "planner_500=planner_500@$folder/value-?" "planner_2000=planner_2000@$folder/value-0" search search_before=search_before:Search
+evaluate planner_curve --layouts held_out=400 --noise professional --against lookahead --agent "positions_9600=planner@$folder/curve-9600" \
+    "positions_38400=planner@$folder/curve-38400" "positions_153600=planner@$folder/value-0" lookahead
 evaluate planner_noise --layouts held_out=300 --against lookahead --agent "none=planner@$folder/value-none" \
     "professional=planner@$folder/value-0" "amateur=planner@$folder/value-amateur" "club=planner@$folder/value-club" lookahead
 evaluate planner_rekeyed --layouts held_out=500 --noise professional --rekey --against lookahead --agent \

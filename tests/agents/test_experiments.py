@@ -23,7 +23,7 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
     lines = [shlex.split(line) for line in done.stdout.splitlines()]
     runs = [line[2:] for line in lines if line[1] == "train.py"]
     comparisons, curves = ([line[3:] for line in lines if line[2] == f"agents.{name}"] for name in ("evaluate", "curves"))
-    assert len(runs) > 25 and len(comparisons) == 14 and len(curves) == 1 and len(runs) + 16 == len(lines)
+    assert len(runs) > 25 and len(comparisons) == 15 and len(curves) == 1 and len(runs) + 17 == len(lines)
     assert all(agent.partition("=")[2].startswith(f"{tmp_path}/") for agent in curves[0])
     starts = [run[run.index("--start") + 1] for run in runs if "--start" in run]
     assert [Path(start).name for start in starts] == ["value-0", "lineup-0", "lineup-1", "lineup-2", "taught-0"] and 'echo "lineup-$k ' in Path(
