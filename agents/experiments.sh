@@ -85,7 +85,7 @@ evaluate planner --layouts held_out --noise professional club --against lookahea
     --picture agents/pictures/destinations.png --agent "planner=planner@$folder/value-?" best_pot ghost_ball lookahead \
     lookahead_foresight "ppo_value=$folder/value-?" ppo_mask
 evaluate model_free --layouts held_out --noise professional --against best_pot ppo_mask_5M --agent \
-    "ppo_mask_taught=$folder/again-0" "ppo_mask_taught_once=$folder/taught-0" "ppo_value=$folder/value-?" "ppo_mask_5M=$folder/mask5M-0" best_pot
+    "ppo_mask_finetuned=$folder/again-0" "ppo_mask_finetuned_5M=$folder/taught-0" "ppo_value=$folder/value-?" "ppo_mask_5M=$folder/mask5M-0" best_pot
 evaluate planner_parts --layouts held_out=400 line_up=200 colours=200 random:3=200 --noise professional club --against lookahead --agent \
     "planner=planner@$folder/value-[012]" "planner_value=planner_value@$folder/value-[012]" \
     "planner_policy=planner_policy@$folder/value-[012]" lookahead
@@ -95,6 +95,8 @@ PYTHONPATH=$folder evaluate planner_budgets --layouts held_out=200 --noise profe
     "planner_500=planner_500@$folder/value-?" "planner_2000=planner_2000@$folder/value-0" search search_before=search_before:Search
 evaluate planner_curve --layouts held_out=400 --noise professional --against lookahead --agent "positions_9600=planner@$folder/curve-9600" \
     "positions_38400=planner@$folder/curve-38400" "positions_153600=planner@$folder/value-0" lookahead
+evaluate planner_club --layouts held_out --noise club --against lookahead lookahead_foresight --agent \
+    "planner=planner@$folder/value-club" lookahead lookahead_foresight
 evaluate planner_noise --layouts held_out=300 --against lookahead --agent "none=planner@$folder/value-none" \
     "professional=planner@$folder/value-0" "amateur=planner@$folder/value-amateur" "club=planner@$folder/value-club" lookahead
 evaluate planner_rekeyed --layouts held_out=500 --noise professional --rekey --against lookahead --agent \

@@ -27,5 +27,11 @@ judge ppo_foresight_gamma0 ppo_foresight_gamma0 7677952
 # The same view, rated by a rule of thumb (agents/players/built_in.py); "lookahead" is the built-in player of snooker_env.advice.
 judge lookahead_foresight agents.players.built_in:ForesightRule 0
 judge lookahead lookahead 0
+# The search over continuous strokes, and with what train.py learns: 153,600 positions x 64 simulated shots, 147,456 x 48 judged choices, PPO.
+judge best_pot best_pot 0
+judge lookahead_120 lookahead_120 0
+judge planner planner 18415616
+judge ppo_value ppo_value 18415616
+judge ppo_mask_finetuned ppo_mask_finetuned 26443776
 
 $bench check leaderboard/*.json && $bench table leaderboard/*.json --markdown docs/leaderboard.md

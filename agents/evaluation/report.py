@@ -105,7 +105,9 @@ def title(report):
     for axis in AXES:
         made = {str(run[axis]) for agent in report["agents"] for run in agent["runs"] if axis in run}
         if len(made) > 1 and len(p[axis]) > 1:
-            return f"How agents trained under one {axis} play under another, on {layouts}: {_listed(p[axis])}"
+            planners = all(run["from"].startswith("planner") for agent in report["agents"] for run in agent["runs"] if axis in run)
+            who = "planners" if planners else "agents"
+            return f"How {who} trained under one {axis} play under another, on {layouts}: {_listed(p[axis])}"
     under = "" if len(p["noise"]) > 1 or p["noise"] == [USUAL["noise"]] else f", noise {p['noise'][0]}"
     return f"How {_listed(agent['label'] for agent in report['agents'])} play on {layouts}{under}"
 

@@ -87,6 +87,7 @@ WEIGHTS = {
     "ppo_foresight": "7fc358b888bb3d9d96408491715de7b6f720336e5812392120b3da910105445c",
     "ppo_foresight_gamma0": "86b1104b70879a7b187cc7a73c0d6622de313f04c6952d300a9f17d33c8e4a3d",
     "ppo_mask": "dfe17966c74afe0d4d1a8cce0d121d1ba2a4ebfbe5091edff517c4f3688fcc36",
+    "ppo_mask_finetuned": "0a7876b29ed979493e44c36cb67cb9a8308a77a4b2b71bf4730ba8929f6b6fd8",
     "ppo_target": "a0d80caf6416d41fab71b6157ba3c380d2e128f98f993adf96ce37bbbe09ff7f",
     "ppo_value": "b54127bfdbdf98695a3fe38e868fc188443164050930d8edc50910f394f7150d",
     "ppo_value_amateur": "7ef577aa1f95fcac3b493f44fed38451d2b771bda8dea1ad1f018e054beed32b",

@@ -247,9 +247,10 @@ def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
 
 def test_no_two_titles_are_alike():
     titles = [report.title(report.read(file)) for file in KEPT]
-    assert len(KEPT) == 12 and len(set(titles)) == 12
+    assert len(KEPT) == 20 and len(set(titles)) == 20
     assert titles[0] == "How search and ghost_ball play on break_off, noise none"
     assert "How agents trained under one fidelity play under another, on held_out: fast, standard and reference" in titles
+    assert "How planners trained under one noise play under another, on held_out: none, professional, amateur and club" in titles
 
 
 def test_the_command_writes_the_markdown_beside(tmp_path, capsys):
