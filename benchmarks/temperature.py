@@ -1,6 +1,7 @@
 """At which temperature should a policy propose the planner's strokes? Points at several, on tables that are kept for such choices.
 
-    python -m benchmarks.temperature [--temperatures 2 4] [--models ppo_value] [--noise LEVEL] [--visits N] [--json FILE] [--out FOLDER]
+    python -m benchmarks.temperature [--temperatures 2 4] [--models ppo_value] [--noise LEVEL] [--visits N]
+        [--seed 0] [--json FILE] [--out FOLDER]
 
 Opened tables of their own seeds: no training sees them, and no table of results is played on them. All meet the same execution errors.
 """
@@ -12,14 +13,14 @@ from snooker_env.benchmark import play_visits
 from ._common.command import Command, at_least, run, save_json
 
 FIRST_SEED = 3_000_000
-"""Seed of the first table for choices; those of results begin at 1,000,000."""
+"""Seed of the first table for choices; those of results begin at 1,000,000. ``--seed`` K takes the K-th million after it."""
 
 
-def points(model, temperature, noise, visits):
+def points(model, temperature, noise, visits, seed):
     """Points of each visit of the planner with that model."""
     usual, policy_proposals.TEMPERATURE = policy_proposals.TEMPERATURE, temperature
     try:
-        strokes = play_visits(player_of(f"planner@{model}"), visits, layout="opened", noise=noise, first_seed=FIRST_SEED)
+        strokes = play_visits(player_of(f"planner@{model}"), visits, layout="opened", noise=noise, first_seed=FIRST_SEED + 1_000_000 * seed)
     finally:
         policy_proposals.TEMPERATURE = usual
     return strokes.a_visit(strokes.points)
@@ -27,7 +28,7 @@ def points(model, temperature, noise, visits):
 
 def main():
     """Play and print."""
-    parser = Command("temperature", __doc__)
+    parser = Command("temperature", __doc__, seed=0)
     parser.add_argument("--temperatures", nargs="+", type=float, default=(2.0, 3.0, 4.0, 6.0), help="of the policy's scores [2 3 4 6]")
     parser.add_argument("--models", nargs="+", default=("ppo_value",), help="pre-trained models or run folders [ppo_value]")
     parser.add_argument("--noise", default="professional", help="execution errors [professional]")
@@ -40,7 +41,7 @@ def main():
     for model in args.models:
         first = None
         for temperature in args.temperatures:
-            made = points(model, temperature, args.noise, args.visits)
+            made = points(model, temperature, args.noise, args.visits, args.seed)
             first = made if first is None else first
             more = made - first
             found[f"{model} {temperature:g}"] = made.tolist()
