@@ -21,9 +21,10 @@ FIDELITIES = (*_CODES, "euler:N")
 MAX_EULER_STEPS = 10_000_000
 
 # Errors measured against the oracle of the tests, over the larger incoming speed: reference below 1e-9; standard below 1e-6 in 99 % of
-# impacts and below 1e-5 in all.
+# impacts and below 1e-5 in all. At a cushion the errors differ less from impact to impact, so that a larger tolerance keeps the same promise.
 _REFERENCE = Accuracy(tol=1e-13, delta=1e-13, creep=1e-5, order=20)
 _STANDARD = Accuracy(tol=5e-8, delta=1e-7, creep=1e-3, order=12)
+_STANDARD_CUSHION = _STANDARD._replace(tol=1.5e-7)
 # Without the cloth's reaction the error at a cushion would be 7 % of the speed, so "fast" includes it, and solves to a few per mille.
 _LOOSE = Accuracy(tol=1e-4, delta=1e-5, creep=1e-2, order=8)
 
@@ -183,7 +184,7 @@ def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, series):
         (vx + R * (wy * sin_t - wz * cos_t)) / closing, (-vy * sin_t + vz * cos_t + R * wx) / closing,
         (vx - R * wy) / closing, (vy + R * wx) / closing, 1.0,
     )  # fmt: skip
-    accuracy = _REFERENCE if fidelity == REFERENCE else _STANDARD if fidelity == STANDARD else _LOOSE
+    accuracy = _REFERENCE if fidelity == REFERENCE else _STANDARD_CUSHION if fidelity == STANDARD else _LOOSE
     x, status = solve(Problem(inertia.cushion(sin_t, cos_t), start, Law(mu_c, 0.0, 0.0), mu_s, e), accuracy, series)
     f1, f2, g1, g2, p, lift = x.F1 * closing, x.F2 * closing, x.G1 * closing, x.G2 * closing, x.p * closing, x.Z * closing
     q = 2.5 / R
