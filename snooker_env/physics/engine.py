@@ -75,10 +75,14 @@ def _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, be
     for j in range(n):
         if j == i or state[j] == GONE:
             continue
-        s = inf
-        if not (still and state[j] == REST) and may_meet(motion, i, j, 2.0 * R + TOUCH):
-            a, b = (i, j) if i < j else (j, i)
-            s = pair_time(motion, state, a, b, t, 2.0 * R)
+        if (still and state[j] == REST) or not may_meet(motion, i, j, 2.0 * R + TOUCH):
+            if pair[i, j] < inf:
+                pair[i, j] = pair[j, i] = inf
+                if best_ball[j] == i:
+                    _rescan(pair, best_time, best_ball, j)
+            continue
+        a, b = (i, j) if i < j else (j, i)
+        s = pair_time(motion, state, a, b, t, 2.0 * R)
         pair[i, j] = pair[j, i] = s
         if s < time:
             time, ball = s, j
