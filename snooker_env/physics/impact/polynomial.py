@@ -7,7 +7,7 @@ Both methods of integration write their step in this form into the array ``serie
 from ..._jit import kernel
 from .inertia import Impulses
 
-ROW = 16
+ROW = 24
 WORK = 21 * ROW
 """The size of ``series``: a step of order 20, the highest of ``contact.py``."""
 F1, F2, G1, G2, P, WORK_DONE, LIFT, CLOSING = range(8)

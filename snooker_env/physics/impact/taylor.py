@@ -25,12 +25,13 @@ from math import exp, log, sqrt
 import numpy as np
 
 from ..._jit import kernel
+from ..._lanes import lanes, lanes_at, put_lanes
 from .coulomb import friction_coefficient
 from .inertia import K_CLOTH
 from .polynomial import CLOSING, F1, F2, G1, G2, LIFT, ROW, WORK_DONE, P
 
-S, A1, A2, E1, E2, B, N, M = range(8, 16)
-"""Columns of ``series`` behind those of ``polynomial.py``: s, a, e, B, mu_s N, and the part m of mu that varies."""
+A1, A2, E1, E2, _E, _BN, S, M = 8, 9, 10, 11, 12, 16, 20, 21
+"""Columns of ``series`` behind those of ``polynomial.py``: a and e, (e, e), (B, B, mu_s N, mu_s N), s, and the part m of mu that varies."""
 
 _LEAST_ORDER = 4
 """The lowest order at which the series may end: below it two terms may be small by chance. Doubled or halved: no change above rounding in
@@ -80,14 +81,15 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
     if starts:  # b_1 = B_0 e_0 = drive - K_CLOTH mu_s N_0 e_0
         size0 -= K_CLOTH * load0
     g1, g2 = -load0 * e1_0, -load0 * e2_0  # G'
-    series[S], series[A1], series[A2], series[E1] = s0, a1_0, a2_0, e1_0
-    series[E2], series[B], series[N], series[M] = e2_0, size0, load0, m0
+    put_lanes(series, A1, lanes(a1_0, a2_0, e1_0, e2_0))
+    series[S], series[M] = s0, m0
     tol = min(tol, _HOVER * s0)
     per_s, per_size = 1.0 / s0, 1.0 / size0
     h1, h2 = a1_0 * per_s, a2_0 * per_s  # a_0 / s_0
     x1, x2 = e1_0 * per_size, e2_0 * per_size  # e_0 over the factor of e_k
     power = closing0 * s0  # W'
     size = last = t = t2 = t_power = 0.0
+    zeros, half = lanes(0.0, 0.0, 0.0, 0.0), lanes(0.5, 0.5, 0.5, 0.5)
     for k in range(1, order + 1):
         m = ROW * k
         r = _PART_OF_ONE[k]
@@ -104,7 +106,6 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
         closing = (d_n * p - d_a * f2) - d_b * g2
         series[m + F1], series[m + F2], series[m + G1], series[m + G2] = f1, f2, g1, g2
         series[m + P], series[m + WORK_DONE], series[m + LIFT], series[m + CLOSING] = p, power, 0.0, closing
-        series[m + A1], series[m + A2] = a1, a2
 
         # The order is high enough if the last two terms at the end of the impact are within tol.
         if k == 1:  # the duration of the impact if the slip keeps changing at this rate
@@ -124,30 +125,27 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
                 t_power *= t2
 
         # The sums in brackets, over the orders i and k - i from 1 to k - 1; for even k the middle term first.
-        squares = cs = ee = be1 = be2 = ne1 = ne2 = 0.0  # [a.a - s s]/2, [closing s], [e.e]/2, [B e], [N e]
+        squares, friction, ss, cs = zeros, zeros, 0.0, 0.0  # [a.a]/2 and [e.e]/2, [B e] and [N e], [s s]/2, [closing s]
         i = ROW * (k >> 1)
         if k & 1 == 0:
-            e1, e2 = series[i + E1], series[i + E2]
-            squares = 0.5 * (series[i + A1] * series[i + A1] + series[i + A2] * series[i + A2] - series[i + S] * series[i + S])
+            ae = lanes_at(series, i + A1)
+            squares = half * ae * ae
+            friction = lanes_at(series, i + _BN) * lanes_at(series, i + _E)
+            ss = 0.5 * series[i + S] * series[i + S]
             cs = series[i + CLOSING] * series[i + S]
-            ee = 0.5 * (e1 * e1 + e2 * e2)
-            be1, be2 = series[i + B] * e1, series[i + B] * e2
-            ne1, ne2 = series[i + N] * e1, series[i + N] * e2
             i -= ROW
         while i > 0:
             j = (m - i) & _POSITIVE
-            e1, e2, d1, d2 = series[i + E1], series[i + E2], series[j + E1], series[j + E2]
-            squares += series[i + A1] * series[j + A1] + series[i + A2] * series[j + A2] - series[i + S] * series[j + S]
+            squares = squares + lanes_at(series, i + A1) * lanes_at(series, j + A1)
+            friction = friction + lanes_at(series, i + _BN) * lanes_at(series, j + _E) + lanes_at(series, j + _BN) * lanes_at(series, i + _E)
+            ss += series[i + S] * series[j + S]
             cs += series[i + CLOSING] * series[j + S] + series[j + CLOSING] * series[i + S]
-            ee += e1 * d1 + e2 * d2
-            be1 += series[i + B] * d1 + series[j + B] * e1
-            be2 += series[i + B] * d2 + series[j + B] * e2
-            ne1 += series[i + N] * d1 + series[j + N] * e1
-            ne2 += series[i + N] * d2 + series[j + N] * e2
             i -= ROW
+        ee = squares[2] + squares[3]
+        be1, be2, ne1, ne2 = friction[0], friction[1], friction[2], friction[3]
 
         # The rates of order k: p' = s, F' = -mu a, W' = closing s, mu_s N, and from b = B e the direction e for G'.
-        s = (squares * per_s + h1 * a1) + h2 * a2
+        s = ((squares[0] + squares[1] - ss) * per_s + h1 * a1) + h2 * a2
         f1, f2 = -mu0 * a1, -mu0 * a2
         if m0 > 0.0:
             varying = k * s * m0
@@ -178,8 +176,11 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
         v2 += q2
         across = v2 * x1 - v1 * x2
         e1, e2 = -ee * e1_0 - across * e2_0, -ee * e2_0 + across * e1_0
-        series[m + S], series[m + E1], series[m + E2], series[m + N] = s, e1, e2, load
-        series[m + B] = v1 * e1_0 + v2 * e2_0 + scale * ee
+        b = v1 * e1_0 + v2 * e2_0 + scale * ee
+        series[m + S] = s
+        put_lanes(series, m + A1, lanes(a1, a2, e1, e2))
+        put_lanes(series, m + _E, lanes(e1, e2, e1, e2))
+        put_lanes(series, m + _BN, lanes(b, b, load, load))
         g1, g2 = -((load0 * e1 + ne1) + load * e1_0), -((load0 * e2 + ne2) + load * e2_0)
 
     # The order was not high enough: the time at which the last but one term, or the last, equals tol.
