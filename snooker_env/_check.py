@@ -1,6 +1,8 @@
 """How is bad input reported? One ValueError that names the field, the value and what is allowed."""
 
 from collections.abc import Collection
+from contextlib import suppress
+from math import isinf, nan
 from typing import Any
 
 import numpy as np
@@ -92,37 +94,39 @@ def number(field: str, value: Any, low: float = -np.inf, high: float = np.inf, *
     >>> number("speed", 2, 0, 10)
     2.0
     """
-    left, right = "(" if open_low or low == -np.inf else "[", ")" if high == np.inf else "]"
-    bounds = f"must be a finite number in {left}{low:g}, {high:g}{right}"
-    if isinstance(value, (bool, np.bool_, str, bytes)) or value is None:
-        raise refuse(field, value, bounds)
-    if isinstance(value, (np.ndarray, np.generic)) and (value.ndim or value.dtype.kind not in "iuf" or np.ma.is_masked(value)):
-        raise refuse(field, value, bounds)
-    try:
-        x = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise refuse(field, value, bounds) from None
-    if not np.isfinite(x) or x < low or x > high or (open_low and x == low):
-        raise refuse(field, value, bounds)
+    x = nan
+    if isinstance(value, (np.ndarray, np.generic)):
+        if value.ndim == 0 and value.dtype.kind in "iuf" and not np.ma.is_masked(value):
+            x = float(value)
+    elif not isinstance(value, (bool, str, bytes)) and value is not None:
+        with suppress(TypeError, ValueError, OverflowError):
+            x = float(value)
+    if not low <= x <= high or isinf(x) or (open_low and x == low):
+        left, right = "(" if open_low or low == -np.inf else "[", ")" if high == np.inf else "]"
+        raise refuse(field, value, f"must be a finite number in {left}{low:g}, {high:g}{right}")
     return x
+
+
+def _wanted(shape):
+    """A shape as text, with letters for the lengths that are free."""
+    free = iter("bn" if shape.count(-1) == 2 else "n")
+    return "(" + ", ".join(next(free) if s == -1 else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
 
 
 def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, unit: str = "") -> Floats:
     """A finite float64 array of the given shape (-1: any length), no number beyond ``most`` [unit]; always a new C-ordered copy."""
-    free = iter("bn" if shape.count(-1) == 2 else "n")
-    want = "(" + ", ".join(next(free) if s == -1 else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
     try:
         raw = np.asarray(value)
     except (TypeError, ValueError):
-        raise refuse(field, value, f"must be real numbers of shape {want}") from None
+        raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}") from None
     if raw.dtype.kind not in "iuf" or (isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value)):
-        raise refuse(field, value, f"must be real numbers of shape {want}")
+        raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}")
     if raw.dtype.itemsize > 8:
         with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused below
             raw = raw.astype(np.float64)
     a = np.array(raw, dtype=np.float64, order="C")
-    if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
-        raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {want}")
+    if a.shape != shape and (a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True))):
+        raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {_wanted(shape)}")
     sound = np.isfinite(a) if most == np.inf else np.abs(a) <= most
     if not sound.all():
         at = tuple(int(k) for k in np.argwhere(~sound)[0])

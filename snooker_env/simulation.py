@@ -1,6 +1,7 @@
 """How does one simulate shots? One shot or many: checked input in, ``Shot`` and ``ShotBatch`` out. Single impacts are in ``impacts``."""
 
 import os
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -11,7 +12,7 @@ from ._shots import count
 from ._types import Batches, Bools, Fidelity, FlagRows, Flags, Floats, Solver, Vectors
 from .physics import cloth, engine
 from .physics.arrays import Balls, Ends, Log, Setup
-from .physics.events import EventKind, Status
+from .physics.events import LOG_FULL, OK, EventKind, Status
 from .physics.impact import contact
 from .physics.parameters import FASTEST, MOST_SPIN, Physics, PhysicsLike
 from .physics.table import Table, TableLike
@@ -123,12 +124,13 @@ def play(
     while True:
         state = [a[None].copy() for a in (positions, velocities, spins, on_table)]
         path_size = 2 * capacity + len(positions) + 2 if path else 0
-        out = _run(state, physics, table, fidelity, max_events, capacity, path_size)
-        if out.status[0] != Status.LOG_FULL:
+        out = _run(state, physics, table, fidelity, max_events, capacity, path_size, space=_kept_space(capacity, path_size))
+        if out.status[0] != LOG_FULL:
             break
         capacity *= 4
     events = out.log(0)
-    _raise_unless_ok(out, 0, events)
+    if out.status[0] != OK:
+        raise _failure(out, 0, events)
     segments = out.segments[0, : out.n_segments[0]].copy()
     return Shot(state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, segments, physics, table)
 
@@ -202,8 +204,8 @@ def simulate_batch(
     count(len(r))
     out = _run((r, v, w, here), physics, table, solver, max_events, _FIRST_LOG if events else 0, 0, threads)
     logs = [out.log(k) for k in range(len(r))] if events else None
-    for k in np.flatnonzero(out.status != int(Status.OK)).tolist():
-        if out.status[k] == Status.LOG_FULL:  # rare: the log is longer than the first guess, so the shot is simulated again with more room
+    for k in np.flatnonzero(out.status != OK).tolist():
+        if out.status[k] == LOG_FULL:  # rare: the log is longer than the first guess, so the shot is simulated again with more room
             r0, v0, w0, on = (part[k] for part in start)
             one = play(r0, v0, w0, on, physics, table, solver, max_events, path=False, counted=False)
             r[k], here[k], out.potted[k], out.duration[k] = one.positions, one.on_table, one.potted, one.duration
@@ -211,7 +213,7 @@ def simulate_batch(
             if logs is not None:
                 logs[k] = one.events
         else:
-            _raise_unless_ok(out, k, logs[k] if logs else None)
+            raise _failure(out, k, logs[k] if logs else None)
     return ShotBatch(r, out.potted, here, out.duration, out.n_events, logs)
 
 
@@ -227,25 +229,38 @@ class _Run:
     segments: np.ndarray
 
     def log(self, k):
-        events = np.zeros(self.n_events[k], EVENT)
-        m = min(self.n_events[k], self.event_time.shape[1])
-        events["time"][:m] = self.event_time[k, :m]
-        for c, name in enumerate(("kind", "i", "j")):
-            events[name][:m] = self.event_what[k, :m, c]
-        return events[:m]
+        m = min(int(self.n_events[k]), self.event_time.shape[1])
+        events, what = np.empty(m, EVENT), self.event_what[k, :m]
+        events["time"], events["kind"], events["i"], events["j"] = self.event_time[k, :m], what[:, 0], what[:, 1], what[:, 2]
+        return events
 
 
-def _run(state, physics, table, fidelity, max_events, log_size, path_size, threads=1):
-    """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place)."""
+def _log_space(b, log_size, path_size):
+    """Arrays for the logs of b shots: times, kinds and balls of the events, and paths."""
+    return np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT))
+
+
+_KEPT = threading.local()
+
+
+def _kept_space(log_size, path_size):
+    """``_log_space`` of one shot, the same at every call of a thread where the sizes are: to make it takes longer than most shots."""
+    if log_size > _FIRST_LOG:  # rare, and large
+        return _log_space(1, log_size, path_size)
+    if getattr(_KEPT, "sizes", None) != (log_size, path_size):
+        _KEPT.sizes, _KEPT.space = (log_size, path_size), _log_space(1, log_size, path_size)
+    return _KEPT.space
+
+
+def _run(state, physics, table, fidelity, max_events, log_size, path_size, threads=1, space=None):
+    """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place); ``space``: of ``_log_space``."""
     b, n = state[0].shape[:2]
-    out = _Run(
-        np.zeros((b, n), np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b),
-        np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT)),
-    )  # fmt: skip
+    ends = [np.zeros(b, np.int64) for _ in range(3)]
+    out = _Run(np.zeros((b, n), np.int64), *ends, np.zeros(b), *(space or _log_space(b, log_size, path_size)))
     positions, velocities, spins, on_table = state
     balls, setup = (
         Balls(positions, velocities, spins, on_table, out.potted),
-        Setup(physics.pack(), table.noses, table.jaws, table.falls, *fidelity),
+        Setup(physics.packed, table.noses, table.jaws, table.falls, *fidelity),
     )
     log, ends = Log(out.event_time, out.event_what, out.segments), Ends(out.status, out.n_events, out.n_segments, out.duration)
 
@@ -262,10 +277,8 @@ def _run(state, physics, table, fidelity, max_events, log_size, path_size, threa
     return out
 
 
-def _raise_unless_ok(out, k, events):
-    status = out.status[k]
-    if status == Status.OK:
-        return
+def _failure(out, k, events):
+    """The error for shot k, which did not end well."""
     last = ""
     if events is not None and len(events):
         time, kind, i, j = events[-1].tolist()
@@ -273,5 +286,5 @@ def _raise_unless_ok(out, k, events):
     why = {
         Status.TOO_MANY_EVENTS: "did not come to rest in time; a ball may be held against another: allow more max_events",
         Status.IMPACT_UNSOLVED: "holds an impact that did not end; try another fidelity, or less extreme friction",
-    }[Status(status)]
-    raise SimulationError(f"shot {k} {why} (after {out.n_events[k]} events{last})")
+    }[Status(out.status[k])]
+    return SimulationError(f"shot {k} {why} (after {out.n_events[k]} events{last})")

@@ -6,6 +6,7 @@ Sources: [MJP14] Mathavan, Jackson & Parkin, Sports Eng. (2014); [MJP10] the sam
 
 import dataclasses
 from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -175,7 +176,13 @@ class Physics:
         >>> sn.Physics.preset("match", e_c=0.9).e_c
         0.9
         """
-        return cls._replaced(PRESETS[choice("physics", name, PRESETS)], fields)
+        choice("physics", name, PRESETS)
+        return cls._replaced(PRESETS[name], fields) if fields else cls._whole(name)
+
+    @classmethod
+    @cache  # a frozen object, and made in every call of ``simulate`` that names it
+    def _whole(cls, name):
+        return cls._replaced(PRESETS[name], {})
 
     @classmethod
     def of(cls, physics: "PhysicsLike" = None) -> "Physics":
@@ -268,6 +275,11 @@ class Physics:
         >>> sn.Physics().pack().shape
         (17,)
         """
+        return self.packed.copy()
+
+    @cached_property
+    def packed(self) -> Floats:
+        """The same array at every access, for kernels, which only read it."""
         return np.array([
             self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law,
             self.e_c, self.e_c_knee, self.e_c_power, self.mu_c, self.sin_theta, self.e_c if self.e_j is None else self.e_j, self.nap,

@@ -313,10 +313,10 @@ class Table:
                 f'must be {own} on table "{self.name}", which is made for it: write physics={{"R": {own}}}, or give a Table of your own'
             )
             raise refuse("physics.R", R, allowed)
-        positions = np.array(positions, np.float64, order="C")
+        positions = np.ascontiguousarray(positions, np.float64)
         many = positions.ndim == 3
         places = positions if many else positions[None]
-        here = np.ones(places.shape[:2], bool) if on_table is None else np.array(on_table, np.bool_, order="C", ndmin=2)
+        here = np.ones(places.shape[:2], bool) if on_table is None else np.ascontiguousarray(np.atleast_2d(on_table), np.bool_)
         width, *pair = self._narrowest
         if width - 2 * R < PLAY:  # it would bounce between them infinitely often in a finite time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
