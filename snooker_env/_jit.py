@@ -13,27 +13,21 @@ import numba
 from numba.core.registry import CPUDispatcher
 
 from ._cache import CACHE_FOLDER, Kept, may_be_kept
+from ._inner import OPTIONS, Inner
 from ._notices import Cost
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-_INNER: dict[str, Any] = _OPTIONS | {"_nrt": False, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
+_INNER: dict[str, Any] = _OPTIONS | OPTIONS
 _INLINED: dict[str, Any] = _INNER | {"inline": "always"}
 
 ENTRIES: list[Any] = []
 """All entry kernels of this process, in the order in which they were made."""
 
 
-class _Inner(CPUDispatcher):
-    """What ``kernel`` makes: machine code without the wrapper for calls from Python, which would take a sixth of all compiling."""
-
-    def __call__(self, *args, **kwargs):
-        raise TypeError(f"{self.py_func.__qualname__} is an inner kernel: only kernels can call it")
-
-
 def _inner(function, options):
     made = numba.njit(**options)(function)
     if isinstance(made, CPUDispatcher):  # with NUMBA_DISABLE_JIT it is the function itself
-        made.__class__ = _Inner
+        made.__class__ = Inner
     return made
 
 

@@ -1,0 +1,68 @@
+"""How is an inner kernel compiled? To LLVM's intermediate code, which its callers take in: no machine code is made of it alone.
+
+numba makes machine code of every function that it compiles, together with all that the function calls. For kernels that only kernels call
+it is never run, and it takes a quarter of the time of a first shot. So an inner kernel has a library that is complete when it has been
+optimised, and a caller finds it under an entry point that is only a name.
+
+This uses parts of numba that are not public. With a numba that lacks them, inner kernels are compiled as numba does it: the results are
+the same, later.
+"""
+
+from typing import Any
+
+from numba.core import codegen, compiler
+from numba.core.registry import CPUDispatcher
+
+_PARTS = (
+    (codegen.JITCodeLibrary, ("_finalize_final_module", "_finalize_dynamic_globals", "_verify_declare_only_symbols")),
+    (compiler.CompileResult, ("_replace", "entry_point")),
+    (CPUDispatcher, ("add_overload",)),
+)
+KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names)
+"""Whether this numba has the parts."""
+
+
+class _Library(codegen.JITCodeLibrary):
+    """Optimised code to be linked into that of callers."""
+
+    def _finalize_final_module(self):
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        self._finalized = True
+
+
+class _Compiler(compiler.Compiler):
+    """Compiles one inner kernel."""
+
+    def __init__(self, typingctx, targetctx, library, args, return_type, flags, locals):
+        made = targetctx.codegen()
+        flags = flags.copy()
+        flags.no_compile = True
+        super().__init__(typingctx, targetctx, _Library(made, "inner kernel"), args, return_type, flags, locals)
+
+
+class EntryPoint:
+    """What stands for the machine code that an inner kernel does not have."""
+
+
+class Inner(CPUDispatcher):
+    """What ``_jit.kernel`` makes of a function: other kernels can call it, and Python cannot."""
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """Raise TypeError."""
+        raise TypeError(f"{self.py_func.__qualname__} is an inner kernel: only kernels can call it")
+
+    if KNOWN:
+
+        def add_overload(self, cres: Any) -> None:
+            """Keep what was compiled for one signature."""
+            cres = cres._replace(entry_point=EntryPoint())
+            cres.target_context.insert_user_function(cres.entry_point, cres.fndesc, [cres.library])
+            self.overloads[tuple(cres.signature.args)] = cres
+
+
+OPTIONS: dict[str, Any] = {"_nrt": False, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
+"""Options of ``numba.njit`` for inner kernels. Without ``_nrt`` they must not make arrays, and need not count references to the arrays that
+they are given, which would take a fifth of the time of a shot."""
+if KNOWN:
+    OPTIONS["pipeline_class"] = _Compiler
