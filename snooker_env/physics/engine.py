@@ -281,10 +281,8 @@ def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws,
     n = positions.shape[1]
     setup = Setup(phys, noses, jaws, falls, fidelity, n_steps)
     paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, FLIGHT)))
-    forecast = Forecast(
-        np.full((n, n), inf), np.full(n, inf), np.full(n, -1), np.full(n, inf), np.zeros(n, np.int64), np.full(n, -1)
-    )  # fmt: skip
-    series = np.empty(WORK)
+    forecast = Forecast(np.zeros((n, n)), np.zeros(n), np.zeros(n, np.int64), np.zeros(n), np.zeros(n, np.int64), np.zeros(n, np.int64))
+    series = np.zeros(WORK)
     for k in range(start, stop):
         balls, log = Balls(positions[k], velocities[k], spins[k], on_table[k], potted[k]), Log(time[k], what[k], segments[k])
         status[k], n_events[k], n_segments[k], duration[k] = run(balls, setup, max_events, log, paths, forecast, series)

@@ -7,7 +7,7 @@ unchanged.
 from math import hypot, sqrt
 
 from ..._check import refuse
-from ..._jit import kernel
+from ..._jit import inlined, kernel
 from ..._types import Fidelity, Solver
 from ..parameters import P_E_C, P_E_KNEE, P_E_POWER, P_MU_BB_EXTRA, P_MU_BB_FADE, P_MU_BB_LEAST, P_MU_C, P_MU_S, P_R, P_SIN
 from . import euler, inertia
@@ -103,7 +103,7 @@ def _friction_impulse_free(xa, za, ya, law, e):
     return -pt * xa / s, -pt * za / s, pn
 
 
-@kernel
+@inlined
 def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps, series):
     """Two balls in the contact frame (X tangent, Y from C to O, Z up) that approach each other."""
     R = phys[P_R]

@@ -6,13 +6,15 @@ Symbols as in ``inertia.py`` and ``impulse.py``. Contact A slips, sticks, or cre
 from math import exp, hypot, sqrt
 from typing import NamedTuple
 
+import numpy as np
+
 from ..._jit import kernel
 from .inertia import K_CLOTH, Contact, Impulses, Slips, slips_after
 
-SLIP, STICK, CREEP = 0, 1, 2
+SLIP, STICK, CREEP = (np.int64(k) for k in range(3))  # typed: with literals numba would compile every callee once for each
 """States of contact A. SLIP: friction is opposite to the slip. STICK: friction holds the slip at zero. CREEP: friction cannot hold it, but
 the slip is too small to be integrated; it has the direction of the driving forces."""
-SLIDES, STARTS, GRIPS = 0, 1, 2
+SLIDES, STARTS, GRIPS = (np.int64(k) for k in range(3))
 """States of the cloth contact. SLIDES: friction is opposite to the slip. STARTS: the slip is zero and about to start; friction is opposite
 to the driving force. GRIPS: friction holds the slip at zero."""
 

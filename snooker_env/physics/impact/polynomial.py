@@ -4,13 +4,15 @@ Both methods of integration write their step in this form into the array ``serie
 ``series[ROW * k + column]``. The first seven columns are the state, the eighth is the closing speed, the others are work space.
 """
 
+import numpy as np
+
 from ..._jit import kernel
 from .inertia import Impulses
 
 ROW = 24
 WORK = 21 * ROW
 """The size of ``series``: a step of order 20, the highest of ``contact.py``."""
-F1, F2, G1, G2, P, WORK_DONE, LIFT, CLOSING = range(8)
+F1, F2, G1, G2, P, WORK_DONE, LIFT, CLOSING = (np.int64(k) for k in range(8))  # typed, as in ``coulomb.py``
 """Columns: the fields of ``Impulses`` in their order, and the closing speed."""
 
 _MOST_TRIALS = 60
