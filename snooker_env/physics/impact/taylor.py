@@ -89,20 +89,21 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
     x1, x2 = e1_0 * per_size, e2_0 * per_size  # e_0 over the factor of e_k
     power = closing0 * s0  # W'
     size = last = t = t2 = t_power = 0.0
+    s_last = closing_last = s_first = closing_first = 0.0
     zeros, half = lanes(0.0, 0.0, 0.0, 0.0), lanes(0.5, 0.5, 0.5, 0.5)
+    ae_first = e_first = bn_first = ae_last = e_last = bn_last = zeros
     for k in range(1, order + 1):
         m = ROW * k
         r = _PART_OF_ONE[k]
         # The terms of order k of the integrated quantities: the rates of order k - 1 over k.
         p = s * r
         power *= r
-        a1, a2 = (k1 * r) * f1 + (c1 * r) * g1, (d_a * p + (k2 * r) * f2) + (c2 * r) * g2
-        v1, v2 = (c1 * r) * f1, d_b * p + (c2 * r) * f2  # b without the cloth's friction,
-        q1, q2 = (K_CLOTH * r) * g1, (K_CLOTH * r) * g2  # and what that adds
         f1 *= r
         f2 *= r
         g1 *= r
         g2 *= r
+        a1, a2 = k1 * f1 + c1 * g1, (d_a * p + k2 * f2) + c2 * g2
+        v1, v2 = c1 * f1 + K_CLOTH * g1, (d_b * p + c2 * f2) + K_CLOTH * g2  # b
         closing = (d_n * p - d_a * f2) - d_b * g2
         series[m + F1], series[m + F2], series[m + G1], series[m + G2] = f1, f2, g1, g2
         series[m + P], series[m + WORK_DONE], series[m + LIFT], series[m + CLOSING] = p, power, 0.0, closing
@@ -115,9 +116,9 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
             t_power = t2 * t
         if k >= _LEAST_ORDER - 1:
             if k & 1:
-                last = abs(a1) + abs(a2) + abs(v1 + q1) + abs(v2 + q2) + abs(power)
+                last = abs(a1) + abs(a2) + abs(v1) + abs(v2) + abs(power)
             else:
-                size = abs(a1) + abs(a2) + abs(v1 + q1) + abs(v2 + q2) + abs(power)
+                size = abs(a1) + abs(a2) + abs(v1) + abs(v2) + abs(power)
                 if (size * t + last) * t_power <= tol:
                     return k, t
                 if k == order or size > _HUGE:
@@ -134,13 +135,20 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
             ss = 0.5 * series[i + S] * series[i + S]
             cs = series[i + CLOSING] * series[i + S]
             i -= ROW
-        while i > 0:
+        while i > ROW:
             j = (m - i) & _POSITIVE
             squares = squares + lanes_at(series, i + A1) * lanes_at(series, j + A1)
             friction = friction + lanes_at(series, i + _BN) * lanes_at(series, j + _E) + lanes_at(series, j + _BN) * lanes_at(series, i + _E)
             ss += series[i + S] * series[j + S]
             cs += series[i + CLOSING] * series[j + S] + series[j + CLOSING] * series[i + S]
             i -= ROW
+        if k == 2:
+            ae_first, e_first, bn_first, s_first, closing_first = ae_last, e_last, bn_last, s_last, closing_last
+        elif k > 2:
+            squares = squares + ae_first * ae_last
+            friction = friction + bn_first * e_last + bn_last * e_first
+            ss += s_first * s_last
+            cs += closing_first * s_last + closing_last * s_first
         ee = squares[2] + squares[3]
         be1, be2, ne1, ne2 = friction[0], friction[1], friction[2], friction[3]
 
@@ -167,20 +175,19 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
             scale = size0 + (K_CLOTH * load0) * r
             per_size = 1.0 / scale
             x1, x2 = e1_0 * per_size, e2_0 * per_size
-            v1, v2 = (c1 * r) * f1 - be1, (d_b * s + c2 * f2) * r - be2
-            q1, q2 = -(K_CLOTH * r) * (ne1 + load * e1_0), -(K_CLOTH * r) * (ne2 + load * e2_0)
-        else:
-            v1 -= be1
-            v2 -= be2
-        v1 += q1  # scale e_k + B_k e_0
-        v2 += q2
+            v1 = (c1 * f1 - K_CLOTH * (ne1 + load * e1_0)) * r  # b_(k+1) without the part of e_k
+            v2 = (d_b * s + c2 * f2 - K_CLOTH * (ne2 + load * e2_0)) * r
+        v1 -= be1  # scale e_k + B_k e_0
+        v2 -= be2
         across = v2 * x1 - v1 * x2
         e1, e2 = -ee * e1_0 - across * e2_0, -ee * e2_0 + across * e1_0
         b = v1 * e1_0 + v2 * e2_0 + scale * ee
         series[m + S] = s
-        put_lanes(series, m + A1, lanes(a1, a2, e1, e2))
-        put_lanes(series, m + _E, lanes(e1, e2, e1, e2))
-        put_lanes(series, m + _BN, lanes(b, b, load, load))
+        s_last, closing_last = s, closing
+        ae_last, e_last, bn_last = lanes(a1, a2, e1, e2), lanes(e1, e2, e1, e2), lanes(b, b, load, load)
+        put_lanes(series, m + A1, ae_last)
+        put_lanes(series, m + _E, e_last)
+        put_lanes(series, m + _BN, bn_last)
         g1, g2 = -((load0 * e1 + ne1) + load * e1_0), -((load0 * e2 + ne2) + load * e2_0)
 
     # The order was not high enough: the time at which the last but one term, or the last, equals tol.
