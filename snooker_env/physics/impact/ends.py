@@ -39,7 +39,8 @@ def _end_of_compression(series, degree, span, closing, near):
     bend = (closing - first - slope * span) / (span * span)
     root = slope * slope - 4.0 * bend * first
     guess = 2.0 * first / (sqrt(root) - slope) if root > 0.0 and slope < 0.0 else 0.5 * span
-    return time_of(series, degree, CLOSING, 0.0, 0.0, span, guess, near)
+    # The work is stationary there: its error is that of the time squared.
+    return time_of(series, degree, CLOSING, 0.0, 0.0, span, guess, sqrt(near * span))
 
 
 @kernel
