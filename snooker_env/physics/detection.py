@@ -85,13 +85,14 @@ def _rolls_onto(dx, dy, vx, vy, ax, ay, d):
 
 
 @kernel
-def may_meet(motion, i, j, d):
-    """Whether the paths of balls i and j in their present phases can come within d of each other [m]: a quick test of their bounds.
+def may_meet(lo_x, hi_x, lo_y, hi_y, motion, j):
+    """Whether the path of ball j in its present phase has a place in the rectangle [m]: a quick test of its bounds.
 
-    (Here and below: indices, no rows. numba counts the references to a row, which takes longer than the arithmetic.)
+    (Here and below: indices, no rows. numba counts the references to a row, which takes longer than the arithmetic. And ``&`` instead of
+    ``and``: one branch instead of four.)
     """
-    beside = (motion[i, LO_X] <= motion[j, HI_X] + d) & (motion[j, LO_X] <= motion[i, HI_X] + d)
-    return beside & (motion[i, LO_Y] <= motion[j, HI_Y] + d) & (motion[j, LO_Y] <= motion[i, HI_Y] + d)  # one branch instead of four
+    beside = (lo_x <= motion[j, HI_X]) & (motion[j, LO_X] <= hi_x)
+    return beside & (lo_y <= motion[j, HI_Y]) & (motion[j, LO_Y] <= hi_y)
 
 
 @kernel

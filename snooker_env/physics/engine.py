@@ -71,11 +71,13 @@ def _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, be
     """Ball i has a new motion at time t: predict all its events, and correct the rows of its partners."""
     n = pair.shape[0]
     still = state[i] == REST
+    d = 2.0 * R + TOUCH
+    lo_x, hi_x, lo_y, hi_y = motion[i, LO_X] - d, motion[i, HI_X] + d, motion[i, LO_Y] - d, motion[i, HI_Y] + d
     time, ball = inf, -1
     for j in range(n):
         if j == i or state[j] == GONE:
             continue
-        if (still and state[j] == REST) or not may_meet(motion, i, j, 2.0 * R + TOUCH):
+        if (still and state[j] == REST) or not may_meet(lo_x, hi_x, lo_y, hi_y, motion, j):
             if pair[i, j] < inf:
                 pair[i, j] = pair[j, i] = inf
                 if best_ball[j] == i:
