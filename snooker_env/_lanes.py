@@ -1,9 +1,9 @@
 """How does a kernel compute with four numbers at once? A type for four float64 side by side: one instruction where the processor has AVX.
 
-``lanes(a, b, c, d)`` makes it, ``lanes_at(array, i)`` loads it and ``put_lanes(array, i, x)`` stores it; ``+`` and ``*`` work on each of the
-four, and ``x[k]`` takes one, with k a constant. Every operation is the IEEE one of its lane, so the results are those of four separate
-numbers, on any processor. (The compiler's own search for such sums finds them too, but it gathers them from single stores, which costs
-what is gained: a load waits for stores of another width.)
+``lanes(a, b, c, d)`` makes it, ``lanes_at(array, i)`` loads it and ``put_lanes(array, i, x)`` stores it; ``+`` and ``*`` work on each of
+the four, and ``x[k]`` takes one, with k a constant. Every operation is the IEEE one of its lane, so the results are those of four separate
+numbers, on any processor. (The compiler finds such sums itself if asked, ``NUMBA_SLP_VECTORIZE``, but it stores the numbers one by one, and
+a load of four waits for that: nothing is gained.)
 
 Without numba (``NUMBA_DISABLE_JIT``) the same source works on small numpy arrays.
 """

@@ -53,7 +53,8 @@ def test_speed_times_restitution_rises_for_all_constants(law):
     speeds = np.unique(np.concatenate((SPEEDS, law["e_c_knee"] * np.array((1 - 1e-6, 1.0, 1 + 1e-6)))))
     e = restitution(physics, speeds)
     assert ((e > 0.0) & (e <= law["e_c"])).all()
-    assert (np.diff(speeds * e) > 0.0).all()
+    apart = np.diff(speeds) > 1e-14 * speeds[1:]  # of nearer ones the products may round to the same number
+    assert (np.diff(speeds * e)[apart] > 0.0).all() and (np.diff(speeds * e) >= -1e-15 * speeds[1:]).all()
 
 
 def test_the_law_is_what_the_text_says():

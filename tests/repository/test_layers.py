@@ -19,11 +19,13 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
-BASE = {"_jit", "_check", "_files", "_shots", "_types", "geometry"}
+BASE = {"_jit", "_lanes", "_check", "_files", "_shots", "_types", "geometry"}
 ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
-    "_jit": {"_cache", "_notices"},
+    "_inner": set(),
+    "_lanes": set(),
+    "_jit": {"_cache", "_notices", "_inner"},
     "_registration": set(),
     "_autoregister": set(),
     "_types": set(),
@@ -44,7 +46,7 @@ ALLOWED = {
     "advice": BASE | {"physics", "simulation", "game", "tasks", "planning", "envs"},
     "envs": BASE | {"physics", "simulation", "game", "tasks", "planning", "render", "replays"},
     "replays": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
-    "render": BASE - {"_jit"} | {"physics", "game.balls", "impacts", "simulation"},
+    "render": BASE - {"_jit", "_lanes"} | {"physics", "game.balls", "impacts", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
     "match": {"_types", "envs", "tasks"},
     "widget": {"_check", "replays"},
@@ -62,6 +64,7 @@ OUTSIDE = {
     "imageio_ffmpeg": {"replays"},
     "anywidget": {"widget"},
     "traitlets": {"widget"},
+    "llvmlite": {"_lanes"},
 }
 OUTSIDE |= {name: {"play"} for name in ("hmac", "http", "secrets", "socket", "urllib", "webbrowser")}  # the network, as well
 OUTSIDE |= {name: {"benchmark"} for name in ("datetime", "platform", "queue", "shlex")}

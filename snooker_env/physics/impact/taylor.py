@@ -138,7 +138,9 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
         while i > ROW:
             j = (m - i) & _POSITIVE
             squares = squares + lanes_at(series, i + A1) * lanes_at(series, j + A1)
-            friction = friction + lanes_at(series, i + _BN) * lanes_at(series, j + _E) + lanes_at(series, j + _BN) * lanes_at(series, i + _E)
+            friction = (
+                friction + lanes_at(series, i + _BN) * lanes_at(series, j + _E) + lanes_at(series, j + _BN) * lanes_at(series, i + _E)
+            )
             ss += series[i + S] * series[j + S]
             cs += series[i + CLOSING] * series[j + S] + series[j + CLOSING] * series[i + S]
             i -= ROW
