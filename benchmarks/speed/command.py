@@ -4,6 +4,7 @@
         [--json FILE] [--out FOLDER]
     python -m benchmarks.speed --profile
     python -m benchmarks.speed --against pooltool [--peer-shots 100]
+    python -m benchmarks.speed --against COMMIT
 
 Times are kernel times on one core, each shot (or impact) timed by itself: one kernel plays the whole set in order, each shot once, and
 reads the processor's cycle counter before and after each (``clock.py``). The set is played ``--repeats`` times after one unseen
@@ -11,8 +12,8 @@ time; a shot's time is its median over these passes. "set" (a set of impacts in 
 quickest of their repeats. Where there is no x86 counter, each shot is called from Python ``--repeats`` times, its best time taken and the
 call's own cost taken off. An event is one entry of the shot's log. Errors are against ``reference``, in units of the incoming speed.
 
-``breakdown``: see ``breakdown.py``; ``start``: ``first_shot.py``; ``growth``, with its picture: ``growth.py``; ``--against``
-(needs the network): ``against_pooltool.py``. With ``--profile`` or ``--against`` and no ``--parts``, only these are done.
+``breakdown``: see ``breakdown.py``; ``start``: ``first_shot.py``; ``growth``, with its picture: ``growth.py``; ``--against pooltool``
+(needs the network): ``against_pooltool.py``; ``--against COMMIT``: ``against_commit.py``. With ``--profile`` or ``--against`` and no ``--parts``, only these are done.
 """
 
 import tempfile
@@ -34,7 +35,7 @@ from snooker_env.physics.table import Table
 from snooker_env.simulation import _run
 
 from .._common.command import Command, at_least, save_json
-from . import against_pooltool, breakdown, clock, first_shot, growth
+from . import against_commit, against_pooltool, breakdown, clock, first_shot, growth
 
 R = 0.02625
 IMPACT_FIDELITIES = ("fast", "standard", "reference", "euler:200", "euler:1000", "euler:10000")
@@ -279,6 +280,16 @@ def measure_against(n, repeats, seed=0):
     return found
 
 
+def measure_against_commit(commit, n, repeats, seed=0):
+    """The same shots by the code of a commit and by this tree, in turn."""
+    found = against_commit.compare(commit, n, repeats, seed)
+    print(f"\n{commit} and this tree in turn, {against_commit.ROUNDS} times; medians over {n} shots, one core; `standard`")
+    print(f"  {'':40s} {'before':>9s} {'now':>9s}    ratio")
+    for name, row in found.items():
+        print(f"  {name:40s} {row['before']:9.2f} {row['now']:9.2f} {row['ratio']:8.3f}")
+    return found
+
+
 def _simulate_seconds(p, v, w):
     t = time.perf_counter()
     sn.simulate(p, v, w)
@@ -292,7 +303,9 @@ def main():
     parser.add_argument("--repeats", type=at_least(1), default=7, help="passes over a set")
     parser.add_argument("--parts", nargs="+", choices=PARTS, help="only these")
     parser.add_argument("--profile", action="store_true", help="the breakdown by function")
-    parser.add_argument("--against", choices=["pooltool"], help="play the same shots with this peer, in a venv of its own")
+    parser.add_argument(
+        "--against", metavar="PEER", help="pooltool, in a venv of its own, or a commit: play the same shots with it in turn"
+    )
     parser.add_argument("--peer-shots", type=at_least(1), default=100, help="shots of each kind for the peer")
     parser.add_argument("--largest-batch", type=at_least(1), default=65_536)
     options = parser.options()
@@ -328,8 +341,13 @@ def main():
     problem = None
     if options.against:
         try:
-            figures["against pooltool"] = measure_against(options.peer_shots, options.repeats, options.seed)
-        except against_pooltool.PeerError as why:
+            if options.against == "pooltool":
+                figures["against pooltool"] = measure_against(options.peer_shots, options.repeats, options.seed)
+            else:
+                figures[f"against {options.against}"] = measure_against_commit(
+                    options.against, options.shots, options.repeats, options.seed
+                )
+        except (against_pooltool.PeerError, against_commit.CommitError) as why:
             problem = f"\n{why}"
     save_json(options.json, figures)
     if problem:

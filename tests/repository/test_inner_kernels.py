@@ -1,0 +1,52 @@
+"""What is compiled of an inner kernel? No machine code of its own; and with a numba whose parts are others, what numba makes by itself."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import snooker_env
+from snooker_env import _inner
+from snooker_env.physics import engine
+
+PACKAGE = Path(snooker_env.__file__).parent
+SHOT = """
+import json
+import snooker_env as sn
+from snooker_env import _inner
+from snooker_env.physics import cloth
+shot = sn.simulate([(0.0, -1.0), (0.05, 0.5)], [(0.1, 3.0), (0.0, 0.0)], [(9.0, 0.0, 4.0), (0.0, 0.0, 0.0)])
+machine = [type(one.entry_point).__name__ for one in cloth.begin.overloads.values()]
+print(json.dumps([_inner.KNOWN, machine, shot.positions.tolist(), shot.duration, len(shot.events)]))
+"""
+
+
+def test_inner_kernels_are_only_linked():
+    snooker_env.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)])
+    assert _inner.KNOWN
+    for made in engine._predict.overloads.values():  # none if the engine came from the cache
+        assert isinstance(made.entry_point, _inner.EntryPoint)
+
+
+@pytest.mark.slow
+def test_without_the_parts_of_numba_the_results_are_the_same(tmp_path):
+    """Both kinds of compiling from an empty cache: half a minute each."""
+    results = []
+    for k, known in enumerate((True, False)):
+        tree = tmp_path / str(k)
+        shutil.copytree(PACKAGE, tree / "snooker_env", ignore=shutil.ignore_patterns("__pycache__"))
+        file = tree / "snooker_env" / "_inner.py"
+        text = file.read_text()
+        assert text.count("KNOWN = all(") == 1
+        if not known:
+            file.write_text(text.replace("KNOWN = all(", "KNOWN = False and all("))
+        environment = os.environ | {"PYTHONPATH": str(tree), "NUMBA_CACHE_DIR": str(tmp_path / f"cache{k}"), "SNOOKER_ENV_QUIET": "1"}
+        done = subprocess.run([sys.executable, "-c", SHOT], env=environment, cwd=tree, capture_output=True, text=True, check=True)
+        results.append(json.loads(done.stdout))
+    assert results[0][:2] == [True, ["EntryPoint"]]
+    assert results[1][0] is False and "EntryPoint" not in results[1][1]
+    assert results[0][2:] == results[1][2:]
