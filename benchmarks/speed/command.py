@@ -13,7 +13,8 @@ quickest of their repeats. Where there is no x86 counter, each shot is called fr
 call's own cost taken off. An event is one entry of the shot's log. Errors are against ``reference``, in units of the incoming speed.
 
 ``breakdown``: see ``breakdown.py``; ``start``: ``first_shot.py``; ``growth``, with its picture: ``growth.py``; ``--against pooltool``
-(needs the network): ``against_pooltool.py``; ``--against COMMIT``: ``against_commit.py``. With ``--profile`` or ``--against`` and no ``--parts``, only these are done.
+(needs the network): ``against_pooltool.py``; ``--against COMMIT``: ``against_commit.py``. With ``--profile`` or ``--against`` and no
+``--parts``, only these are done.
 """
 
 import tempfile
