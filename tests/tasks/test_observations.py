@@ -7,6 +7,7 @@ from gymnasium.utils.env_checker import data_equivalence
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import N_BALLS, BallOn
 from snooker_env.tasks import observations
+from tests.refusals import refused
 from tests.tables import INFO, LAYOUTS, drawn, frame_env, viewed
 
 
@@ -104,10 +105,9 @@ def test_masked_observations_hold_the_flat_one_and_the_available_choices(options
 
 def test_masked_observations_need_discrete_actions():
     for make in (SnookerEnv, frame_env):
-        with pytest.raises(ValueError, match=r"^observation = 'masked': must be \"flat\" or \"balls\" with action=\"box\": a Box has no masks$"):
-            make(observation="masked")
-    with pytest.raises(ValueError, match="^masks = None: must be the available choices"):
-        observations.shaped("masked", np.zeros((2, 121), np.float32))
+        says = 'must be "flat" or "balls" with action="box": a Box has no masks'
+        refused(lambda make=make: make(observation="masked"), "observation", "'masked'", says)
+    refused(lambda: observations.shaped("masked", np.zeros((2, 121), np.float32)), "masks", "None", "must be the available choices")
 
 
 def test_infos_have_the_same_keys_and_types_at_all_times():

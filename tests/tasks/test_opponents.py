@@ -11,6 +11,7 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
 from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.tasks.saved_models import SavedModel
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_POINTS, Crew
