@@ -28,9 +28,11 @@ from pathlib import Path
 from commands.lifecycle import command, needs
 
 with needs("agents.train_rllib"):
-    logging.getLogger("ray").setLevel(logging.ERROR)  # before the import, which warns of RLlib's own parts
     import ray
     import torch
+
+    for part in ("ray", "ray.rllib"):  # before RLlib is imported, which warns of its own parts
+        logging.getLogger(part).setLevel(logging.ERROR)
 
     import snooker_env
     from commands.files import write_atomic
