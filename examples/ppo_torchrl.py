@@ -88,7 +88,9 @@ def main(argv=None):
     optimiser = torch.optim.Adam(loss.parameters(), lr=LEARNING_RATE)
 
     updates, played, points, began = -(-given.steps // (STEPS * TABLES)), 0, 0.0, time.perf_counter()
-    collector = Collector(envs, actor, frames_per_batch=STEPS * TABLES, total_frames=updates * STEPS * TABLES, auto_register_policy_transforms=True)
+    collector = Collector(
+        envs, actor, frames_per_batch=STEPS * TABLES, total_frames=updates * STEPS * TABLES, auto_register_policy_transforms=True
+    )
     for update, rollout in enumerate(collector):
         for group in optimiser.param_groups:  # falls to nearly 0
             group["lr"] = LEARNING_RATE * (1.0 - update / updates)

@@ -228,7 +228,8 @@ def main(argv=None):
             parser.error(f"out = {str(out)!r}: must be a folder that can be written ({error.strerror})")
         if progress.shots >= settings.steps:
             print(f"All {progress.shots:,} shots are played: nothing left to train.")
-            return judge(out, settings, progress)
+            judge(out, settings, progress)
+            return 0
         snooker_env.warmup()  # before the runners start: each would compile everything for itself
         torch.set_num_threads(1)
         ending.callback(ray.shutdown)
