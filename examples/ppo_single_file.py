@@ -1,6 +1,6 @@
 """How is PPO written in one file? Masked PPO on the native vector environment, top to bottom, with Gymnasium, NumPy and PyTorch alone.
 
-    python examples/ppo_single_file.py --steps 300000 --out runs/single.npz
+    python -m examples.ppo_single_file --steps 300000 --out runs/single.npz
     python -m agents.evaluate --agent runs/single.npz
 
 The masks come from ``envs.call("action_masks")``. The tables are made with ``autoreset_mode="SameStep"``: the observation after the end of

@@ -1,7 +1,7 @@
 """How does TorchRL train on this environment? PPO in one file: its collector, advantage and loss on the native vector environment.
 
     pip install -e ".[torchrl]"
-    python examples/ppo_torchrl.py --steps 300000 --out runs/torchrl.npz
+    python -m examples.ppo_torchrl --steps 300000 --out runs/torchrl.npz
     python -m agents.evaluate --agent runs/torchrl.npz
 
 ``observation="masked"`` gives the masks that ``MaskedCategorical`` reads. TorchRL takes a vector environment only with

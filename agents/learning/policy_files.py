@@ -80,7 +80,7 @@ def read_policy(path, field):
         return _described(about, layers)
     except Exception as error:  # any error of zip, NumPy or JSON on a file of another kind
         wanted = "must be a policy's .npz: weights of layers from the flat observation to the choices, and what they are about"
-        raise refuse(field, str(path), f"{wanted} ({str(error)[:200]})") from None
+        raise refuse(field, str(path), f"{wanted} ({' '.join(str(error).split())[:200]})") from None
 
 
 def _number_of_layers(names):

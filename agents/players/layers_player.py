@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from snooker_env.tasks import OBSERVATION_SIZE
+
 
 class LayersPlayer:
     """A policy of plain layers as a player: its greedy (deterministic) choices.
@@ -34,5 +36,5 @@ class LayersPlayer:
         return found
 
     def _scores(self, tables, observations, going):
-        masks = tables.action_masks()[going]
-        return np.where(masks, self.model.policy(observations[going]), -np.inf)
+        masks = tables.action_masks()[going]  # in a frame its own entries follow those of a visit
+        return np.where(masks, self.model.policy(observations[going, :OBSERVATION_SIZE]), -np.inf)

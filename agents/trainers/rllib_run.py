@@ -186,7 +186,7 @@ def train(out, settings, progress, algorithm, stop):
         found = algorithm.train()["env_runners"]
         progress.shots, progress.updates = int(found["num_env_steps_sampled_lifetime"]), progress.updates + 1
         progress.seconds = before + time.perf_counter() - began
-        points, rate = found["episode_return_mean"], progress.shots / progress.seconds
+        points, rate = found.get("episode_return_mean", float("nan")), progress.shots / progress.seconds
         print(f"RLlib: {progress.shots:,} of {settings.steps:,} shots, {points:.2f} points a visit, {rate:.0f} shots/s", flush=True)
         if progress.shots - saved >= settings.checkpoint_every:
             save(out, settings, progress, algorithm)

@@ -47,6 +47,15 @@ def test_a_policy_plays_the_available_choice_that_scores_highest(tmp_path):
     assert np.allclose(other, np.maximum(rows @ first.T + shift, 0) @ last.T + end) and not np.allclose(other, scores)
 
 
+def test_it_plays_frames_as_an_opponent(tmp_path):
+    """By what a frame's observation has in common with a visit's."""
+    write_policy(tmp_path / "p.npz", WEIGHTS, **ABOUT)
+    tables = SnookerVectorEnv(3, threads=1, task="frame", layout="random:1", action="discrete", opponent=str(tmp_path / "p.npz"))
+    tables.reset(seed=1)
+    played = sum(tables.step(tables.action_masks().argmax(axis=1))[-1]["opponent_strokes"].sum() for _ in range(5))
+    assert played > 3
+
+
 def test_it_is_evaluated_like_any_other_agent(tmp_path, capsys):
     """As a file and as a run's folder, with what its file says of its training."""
     folder = tmp_path / "mine-0"

@@ -35,16 +35,22 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
     assert set(results["evaluation"]) == {"trained", "untrained", "ghost_ball", "random"} and results["versions"]["ray"]
     kept, original = [], run.algorithm_of
 
+    def of_runners(made):
+        return made.env_runner_group.foreach_env_runner(
+            lambda runner: runner.module.get_state()["pi.net.mlp.0.bias"], local_env_runner=False
+        )
+
     def watched(settings, seed):
         made = original(settings, seed)
         restore = made.restore_from_path
-        made.restore_from_path = lambda path: (restore(path), kept.append((settings, seed, config.layers_of(made))))
+        made.restore_from_path = lambda path: (restore(path), kept.append((settings, seed, config.layers_of(made), of_runners(made))))
         return made
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run, "algorithm_of", watched)
         assert run.main(["--resume", "--steps", "16000", "--runners", "2", "--out", str(out), *SHORT[2:]]) == 0
-    ((settings, seed, weights),) = kept
+    ((settings, seed, weights, there),) = kept
+    assert len(there) == 2 and all(np.array_equal(bias, weights[-1][1]) for bias in there)  # the runners play with them too
     assert settings == replace(run.Settings(), steps=16000, runners=2, envs=16, eval_visits=4, checkpoint_every=8000) and seed == run.SEEDS
     assert all(
         np.array_equal(a, b) for mine, its in zip(first.policy.weights, weights, strict=True) for a, b in zip(mine, its, strict=True)
