@@ -26,6 +26,8 @@ SETTINGS = {
     "grad_clip_by": "global_norm",
 }  # fmt: skip
 """Those of ``hyperparams/ppo_mask.yml``, as far as RLlib has them; RLlib's own clipping of the value's loss and its KL penalty are off."""
+PATIENCE = 600.0
+"""Seconds in which a runner must give its sample. RLlib's own minute is too short for a busy machine, or for runners that have to compile."""
 MEMORY = 2**28
 """Bytes of Ray's object store: a sample of 8,192 shots takes 10 MB."""
 
@@ -72,7 +74,7 @@ def algorithm_of(settings, seed):
         .environment(ENV, env_config=options)
         .env_runners(
             num_env_runners=settings.runners, num_envs_per_env_runner=settings.envs, gym_env_vectorize_mode="vector_entry_point",
-            rollout_fragment_length="auto",
+            rollout_fragment_length="auto", sample_timeout_s=PATIENCE,
         )
         .learners(num_learners=0)
         .training(**SETTINGS)

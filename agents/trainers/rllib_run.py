@@ -49,7 +49,7 @@ with needs("agents.train_rllib"):
     from ..learning.policy_files import read_policy, write_policy
     from ..players.built_in import GhostBall, Random
     from ..players.layers_player import LayersPlayer
-    from .rllib_config import ACTIVATION, BATCH, GAMMA, algorithm_of, layers_of, started
+    from .rllib_config import ACTIVATION, BATCH, GAMMA, PATIENCE, algorithm_of, layers_of, started
 
 STATE, UNTRAINED, RESULTS = "state.json", "untrained.npz", "results.json"
 _CHECKPOINT = re.compile(r"checkpoint-\d+(\.tmp)?")
@@ -183,7 +183,10 @@ def train(out, settings, progress, algorithm, stop):
     """Updates until all shots are played or a signal comes, with checkpoints and a line for each update."""
     saved, before, began = progress.shots, progress.seconds, time.perf_counter()
     while progress.shots < settings.steps and stop.signal is None:
-        found = algorithm.train()["env_runners"]
+        found = algorithm.train().get("env_runners")
+        if not found or "num_env_steps_sampled_lifetime" not in found:  # RLlib goes on without a sample
+            save(out, settings, progress, algorithm)
+            raise SystemExit(f"agents.train_rllib: no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots")
         progress.shots, progress.updates = int(found["num_env_steps_sampled_lifetime"]), progress.updates + 1
         progress.seconds = before + time.perf_counter() - began
         points, rate = found.get("episode_return_mean", float("nan")), progress.shots / progress.seconds

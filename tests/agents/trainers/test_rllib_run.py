@@ -105,6 +105,20 @@ def test_wrong_options_are_refused_in_one_line_before_anything_starts(tmp_path, 
     assert not (tmp_path / "run").exists()
 
 
+def test_an_update_without_a_sample_ends_the_run_in_one_line(tmp_path):
+    """What was played before is kept."""
+
+    class Silent:
+        def train(self):
+            return {"learners": {}}
+
+    saved = []
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit, match=r"no env runner gave a sample in 600 s; saved at 7 shots"):
+        patch.setattr(run, "save", lambda *parts: saved.append(parts))
+        run.train(tmp_path, run.Settings(), run.Progress(shots=7), Silent(), run.Stop())
+    assert len(saved) == 1
+
+
 def test_folders_that_do_not_fit_are_refused(tmp_path, capsys):
     def refused(*options):
         with pytest.raises(SystemExit) as stop:
