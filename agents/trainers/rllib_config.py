@@ -27,7 +27,7 @@ SETTINGS = {
 }  # fmt: skip
 """Those of ``hyperparams/ppo_mask.yml``, as far as RLlib has them; RLlib's own clipping of the value's loss and its KL penalty are off."""
 PATIENCE = 600.0
-"""Seconds in which a runner must give its sample. RLlib's own minute is too short for a busy machine, or for runners that have to compile."""
+"""Seconds in which a runner must give its sample: RLlib's own minute is too short for a busy machine."""
 MEMORY = 2**28
 """Bytes of Ray's object store: a sample of 8,192 shots takes 10 MB."""
 
