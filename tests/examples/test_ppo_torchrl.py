@@ -12,7 +12,7 @@ example = needed("examples.ppo_torchrl")
 
 
 def test_a_rollout_is_what_single_tables_play():
-    """The first observation of the next visit follows the end of one. The last one of a visit is 0: TorchRL 0.14 looks for it under another
+    """The first observation of the next visit follows the end of one. The last one of a visit is 0: TorchRL 0.14 expects it under another
     name if observations are a dict. Nothing is learned from it, as visits are terminated and never truncated."""
     tables = example.tables("club", 5)
     torch.manual_seed(0)
