@@ -10,7 +10,7 @@ import os
 import sys
 import threading
 
-EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render"}
+EXTRAS = {"matplotlib": "test", "scipy": "test", "pygame": "render", "ray": "rllib"}
 """The extra of pyproject.toml that brings a package which is not in [train]."""
 OUR_OWN = ("agents", "commands", "snooker_env", "train", "benchmarks")
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)

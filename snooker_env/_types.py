@@ -15,6 +15,8 @@ Singles: TypeAlias = NDArray[np.float32]
 Ints: TypeAlias = NDArray[np.int64]
 Words: TypeAlias = NDArray[np.uint64]
 Bools: TypeAlias = NDArray[np.bool_]
+Masks: TypeAlias = NDArray[np.int8]
+"""Available choices as observations hold them: 1 or 0."""
 
 # What callers may pass: arrays, or nested sequences with as many levels as the array would have dimensions. A str is none of these.
 Real: TypeAlias = float | np.floating[Any] | np.integer[Any]
@@ -42,7 +44,7 @@ Solver: TypeAlias = tuple[int, int]
 PhysicsName: TypeAlias = Literal["paper", "match"]
 TableName: TypeAlias = Literal["match", "tight", "uk8", "pool9", "carom"]
 NoiseName: TypeAlias = Literal["none", "professional", "amateur", "club", "robot", "olympiad"]
-ObservationKind: TypeAlias = Literal["flat", "balls"]
+ObservationKind: TypeAlias = Literal["flat", "balls", "masked"]
 RenderMode: TypeAlias = Literal["human", "rgb_array", "ansi"]
 MissRule: TypeAlias = Literal["off", "clear_path", "attempt"]
 
@@ -50,7 +52,8 @@ MissRule: TypeAlias = Literal["off", "clear_path", "attempt"]
 Action: TypeAlias = Any
 """For a Box space an array or sequence of numbers (k,), for ``action="discrete"`` an int."""
 Observation: TypeAlias = Any
-"""float32 (k,) with ``observation="flat"``; with "balls" a dict of float32 arrays, "balls" (22, 5) and "state" (k,)."""
+"""float32 (k,) with ``observation="flat"``; with "balls" a dict of float32 arrays, "balls" (22, 5) and "state" (k,);
+with "masked" a dict of "observations", float32 (k,), and "action_mask", int8 (choices,)."""
 
 
 class Environment(Protocol):

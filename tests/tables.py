@@ -27,6 +27,18 @@ def table_state(env, places, ball_on, points=0, **fields):
     env.set_state(state | {"in_hand": False, "over": False} | fields)
 
 
+def viewed(observation):
+    """The options of an environment with that kind of observation: masks are of discrete actions."""
+    return {"observation": observation} | ({"action": "discrete"} if observation == "masked" else {})
+
+
+def drawn(env, rng, spread=1.0):
+    """A random action for one table: within ``spread`` of the middle, or one of the available choices."""
+    if env.options.action == "discrete":
+        return int(rng.choice(np.flatnonzero(env.action_masks())))
+    return rng.uniform(-spread, spread, env.action_space.shape)
+
+
 def frame_env(**options):
     return SnookerEnv(**{"task": "frame", "aim": "target", "decision": True, "placement": True} | options)
 

@@ -12,7 +12,7 @@ from snooker_env import Options, SnookerVectorEnv
 from snooker_env.checks import number, refuse
 
 from ..learning.hyperparameters import ACTION_OPTIONS, value_of
-from ..learning.models import PRETRAINED, file_of, pretrained
+from ..learning.models import POLICY, PRETRAINED, file_of, pretrained
 from ..players.by_name import NAMES, is_player, player_of
 from ..players.trained import load_any
 
@@ -54,7 +54,7 @@ class Entrant:
         if is_player(runs[0]):
             return cls(label or runs[0].rpartition(":")[2], tuple(runs), frames=frames)
         path = Path(runs[0])
-        return cls(label or (path.parent if path.name == "model.zip" else path).stem, tuple(runs), trust, options, frames)
+        return cls(label or (path.parent if path.name in ("model.zip", POLICY) else path).stem, tuple(runs), trust, options, frames)
 
     def trained(self):
         """How each run was trained, as far as its files say: a dict a run, {} for a player that was not trained."""

@@ -95,7 +95,10 @@ class PlainView:
 
     def __call__(self, tables, observations, rows=None):
         """The view of the tables ``rows``, from their flat observations."""
-        return shaped_observations(self._kind, observations)
+        masks = None
+        if self._kind == "masked":
+            masks = tables.action_masks() if rows is None else tables.action_masks()[rows]
+        return shaped_observations(self._kind, observations, masks)
 
     def masks(self, tables):
         """Which choices may be played."""

@@ -2,7 +2,8 @@
 
 Additional keys: ``algo`` (the algorithm; the file is named after the agent), ``view`` (the observation: pots or foresight), ``imitation``
 (positions of pre-training by imitation), ``expert`` (true: expert iteration in its place) and ``first_aim_std`` (exploration of the aim at
-the start). ``learning_rate: lin_X`` falls linearly from X to nearly 0.
+the start). They may stand under ``agent`` instead: the Zoo itself then trains with the same file, if the policy is one of SB3's own.
+``learning_rate: lin_X`` falls linearly from X to nearly 0.
 """
 
 import ast
@@ -73,8 +74,8 @@ class Recipe:
 
         Algorithm, policy, network, view and action belong together: a change of them needs a recipe of its own.
         """
-        found = yaml.safe_load((FOLDER / f"{choice('agent', name, names())}.yml").read_text(encoding="utf-8"))[ENV_ID]
-        found = {"view": "pots", "imitation": 0, "expert": False, "first_aim_std": None} | found
+        written = yaml.safe_load((FOLDER / f"{choice('agent', name, names())}.yml").read_text(encoding="utf-8"))
+        found = {"view": "pots", "imitation": 0, "expert": False, "first_aim_std": None} | written[ENV_ID] | written.get("agent", {})
         changed = _changes(changes, [key for key, value in found.items() if key == "env_kwargs" or (key in KINDS and value is not None)])
         usual = found["env_kwargs"]
         found |= changed | given

@@ -8,6 +8,8 @@ from snooker_env.checks import refuse
 from .hyperparameters import ACTION_OPTIONS
 from .model_files import read
 
+POLICY = "policy.npz"
+"""The file of a policy that another trainer made, see ``policy_files``."""
 PRETRAINED = Path(__file__).parents[1] / "pretrained"
 CHECKPOINT = "checkpoint.pkl"
 """A run's folder holds it from the first save on."""
@@ -20,7 +22,8 @@ def pretrained():
 
 def file_of(path, field):
     """The model's file for a path to a file or a run's folder. Raises ValueError, naming ``field``."""
-    file = path / "model.zip" if path.is_dir() else path
+    here = [path / name for name in ("model.zip", POLICY)] if path.is_dir() else [path]
+    file = next((file for file in here if file.is_file()), here[0])
     if not file.is_file():
         unfinished = (path / CHECKPOINT).is_file()
         ends = f"; this run has not ended, continue it with: python train.py --resume --out {path}" if unfinished else ""

@@ -17,6 +17,8 @@ from ..features.views import view_of
 from ..learning.hyperparameters import ACTION_OPTIONS
 from ..learning.model_files import Trained, read
 from ..learning.models import file_of, load_trained
+from ..learning.policy_files import read_policy
+from .layers_player import LayersPlayer
 
 UNKNOWN = dict.fromkeys(("layout", "noise", "fidelity", "physics"), "unknown")
 """The training record of a model that ``train.py`` did not make."""
@@ -74,8 +76,9 @@ def player_options(env_options):
 
 
 def load_player(path, field="agent"):
-    """A ``ModelPlayer`` of ``train.py`` from its .zip or the run's folder. Raises ValueError, naming ``field``."""
-    return _player(load_trained(path, field))
+    """The player of a model of ``train.py``, its .zip or the run's folder, or of another trainer's policy. ValueError, naming ``field``."""
+    file = file_of(path, field)
+    return LayersPlayer(read_policy(file, field)) if file.suffix == ".npz" else _player(load_trained(path, field))
 
 
 def _player(trained):
@@ -83,8 +86,10 @@ def _player(trained):
 
 
 def load_any(path, trust, options):
-    """A ``ModelPlayer`` of ``train.py`` or, with ``trust``, of any other model of Stable-Baselines3 or sb3-contrib, see ``load_other``."""
+    """As ``load_player`` or, with ``trust``, of any other model of Stable-Baselines3 or sb3-contrib, see ``load_other``."""
     file = file_of(path, "agent")
+    if file.suffix == ".npz":
+        return load_player(file)
     trained = read(file, "agent")
     return load_other(file, trust, options) if trained is None else _player(trained)
 

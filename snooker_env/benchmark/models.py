@@ -26,7 +26,7 @@ class FittingModel:
     options : dict
         Options of ``FREE`` with which its actions are read.
     observation : str
-        Kind of its observation: "flat" or "balls".
+        Kind of its observation: "flat", "balls" or "masked".
     frame : bool
         Whether its observation is that of a frame.
 
@@ -121,7 +121,7 @@ class FittingModel:
         return network
 
 
-_VIEW = "must be a model trained on the observation of a visit, flat or balls, and nothing else"
+_VIEW = "must be a model trained on the observation of a visit, flat, balls or masked, and nothing else"
 
 
 class ForeignModelPlayer:
@@ -177,7 +177,8 @@ class ForeignModelPlayer:
         """
         masks = {"action_masks": tables.action_masks()[going]} if self._masked else {}
         actions = np.zeros(tables.action_space.shape, tables.action_space.dtype)
-        seen = shaped(self._kind, observations[going])
+        shown = tables.action_masks()[going] if self._kind == "masked" else None
+        seen = shaped(self._kind, observations[going], shown)
         actions[going] = self._network.predict(seen, deterministic=True, **masks)[0]
         return actions
 

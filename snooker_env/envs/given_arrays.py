@@ -1,6 +1,6 @@
 """Which arrays may a step write its results into? Checks the argument ``out`` of the vector environment."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,10 +13,10 @@ OUTPUTS = {"observations": "observations", "rewards": "rewards", "terminations":
 DTYPES: dict[str, type[np.generic]] = {"observations": np.float32, "rewards": np.float64, "terminations": np.bool_, "truncations": np.bool_}
 
 
-def arrays_given(out: Any, names: Collection[str], n: int, size: int, boxes: dict[str, tuple[int, ...]] | None) -> dict[str, NDArray[Any]]:
+def arrays_given(out: Any, names: Collection[str], n: int, size: int, boxes: Mapping[str, Any] | None) -> dict[str, NDArray[Any]]:
     """The given arrays of n tables, by their names in ``StepOutput``; ``size``: numbers in a flat observation.
 
-    ``boxes``: the shapes of the parts of dict observations, which are written later; None for flat observations. Raises ValueError for an
+    ``boxes``: the spaces of the parts of dict observations, which are written later; None for flat observations. Raises ValueError for an
     array that results cannot be written into.
     """
     if out is None:
@@ -30,8 +30,8 @@ def arrays_given(out: Any, names: Collection[str], n: int, size: int, boxes: dic
         if name == "observations" and boxes is not None:
             if not isinstance(a, dict) or set(a) != set(boxes):
                 raise refuse('out["observations"]', type(a).__name__, "must be a dict of " + " and ".join(f'"{part}"' for part in boxes))
-            for part, shape in boxes.items():
-                _check_out(f"observations.{part}", a[part], shape, np.float32)
+            for part, box in boxes.items():
+                _check_out(f"observations.{part}", a[part], box.shape, box.dtype.type)
             continue
         if any(np.may_share_memory(a, other) for other in found.values()):
             raise refuse_what(f'out["{name}"]', "an array", "must not share memory with another one that is given")

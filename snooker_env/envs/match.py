@@ -19,7 +19,7 @@ from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.matches import Matches
-from ..tasks.options import Options, options_of
+from ..tasks.options import Options, observation_space_of, options_of
 from ..tasks.rewards import frame_reward
 from ..tasks.tables import Crew
 from .one_table import ShowsBalls
@@ -146,8 +146,7 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
         self.tables.two_players = True
         self.possible_agents = list(PLAYERS)
         self.agents = []
-        replaced = self.options.rules.misses
-        self.observation_spaces = {name: observations.space(self.options.observation, frame=True, replaced=replaced) for name in PLAYERS}
+        self.observation_spaces = {name: observation_space_of(self.options) for name in PLAYERS}
         self.action_spaces = {name: copy.deepcopy(self.options.rules.actions.space) for name in PLAYERS}  # each with its own generator
         self.np_random, _ = seeding.np_random()
         self._seeded = False
@@ -213,7 +212,8 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
             As in the observation space; new arrays.
         """
         rows = self.tables.observe(np.zeros(1, np.int64), PLAYERS.index(agent))
-        return observations.shaped(self.options.observation, rows[0])
+        masks = self.action_mask(agent) if self.options.observation == "masked" else None
+        return observations.shaped(self.options.observation, rows[0], masks)
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
         """Return the available choices of a player, with ``action="discrete"``.

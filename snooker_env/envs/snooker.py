@@ -11,9 +11,9 @@ from .._types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.kinds import TABLES
-from ..tasks.options import Options, options_of
+from ..tasks.options import Options, observation_space_of, options_of
 from ..tasks.stroke import ShotBuffers
-from ..tasks.tables import Crew, Tables
+from ..tasks.tables import Crew, StepOutput, Tables
 from .one_table import OneTable
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import HasHistory, Record
@@ -75,9 +75,9 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     black lets the other player begin below 0.
 
     ## Observation space
-    ``observation="flat"`` (default): ``Box(-1, 1, (121,), float32)``, the 22 rows of 5 numbers of the table of balls,
-    then the 11 numbers of the state. ``observation="balls"``: ``Dict(balls=(22, 5), state=(11,))``, the same numbers (for SB3's
-    "MultiInputPolicy").
+    ``observation="flat"`` (default): ``Box(-1, 1, (121,), float32)``, the 22 rows of 5 numbers of the table of balls, then the 11 numbers
+    of the state. "balls": ``Dict(balls=(22, 5), state=(11,))``, the same numbers. "masked", with ``action="discrete"``:
+    ``Dict(observations=(121,), action_mask=(540,))``, the flat ones and ``action_masks()`` as int8 (for RLlib and TorchRL).
 
     | column of balls | value | entry of state | value |
     |---|---|---|---|
@@ -142,7 +142,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | layout | "default" | see Starting state |
     | action | "box" | "box", "discrete" |
     | aim | "absolute" | "absolute", "target" |
-    | observation | "flat" | "flat", "balls" |
+    | observation | "flat" | "flat", "balls", "masked" |
     | noise | "none" | "professional", "amateur", "club", "robot", "olympiad", or a dict of ``snooker_env.tasks.Noise`` |
     | reward | "points" | see Rewards |
     | elevation, placement | False | longer box actions |
@@ -240,9 +240,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         self.tables: Tables = TABLES[self.options.task](self.options.rules, 1)
         """The one table: ``tasks.tables.Tables``."""
         self.action_space: Any = self.options.rules.actions.space
-        self.observation_space: Any = observations.space(
-            self.options.observation, frame=self.options.task != "visit", replaced=self.options.rules.misses
-        )  # fmt: skip
+        self.observation_space: Any = observation_space_of(self.options)
         if render_mode is not None:
             choice("render_mode", render_mode, self.metadata["render_modes"])
         self.render_mode = render_mode
@@ -295,7 +293,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         self.tables.reset(np.array([start is None]), out, self._crew(), **breakers)
         if self.render_mode == "human":
             self._show()
-        return observations.shaped(self.options.observation, out.observations[0]), self.tables.info(out, 0)
+        return self._shaped(out), self.tables.info(out, 0)
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Play one shot; in a frame, also all strokes of the opponent after it.
@@ -345,8 +343,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         except BaseException:
             tables.interrupted()
             raise
-        observation = observations.shaped(self.options.observation, out.observations[0])
-        return observation, float(out.rewards[0]), bool(out.terminated[0]), bool(out.truncated[0]), tables.info(out, 0)
+        return self._shaped(out), float(out.rewards[0]), bool(out.terminated[0]), bool(out.truncated[0]), tables.info(out, 0)
 
     def action_masks(self) -> Bools:
         """Return the available choices, with ``action="discrete"``; sb3-contrib's maskable algorithms call this method.
@@ -372,6 +369,9 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.tables.action_masks()[0]
+
+    def _shaped(self, out: StepOutput) -> Observation:
+        return observations.shaped(self.options.observation, out.observations[0], out.masks[0] if len(out.masks) else None)
 
     def _crew(self) -> Crew:
         return Crew(self._record.buffers, (self.np_random,), self._watch)

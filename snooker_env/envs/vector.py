@@ -358,13 +358,12 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
 
     def _given(self, out: Any, names: Collection[str]) -> dict[str, Any]:
         """The validated arrays to write into."""
-        flat = self.options.observation == "flat"
-        boxes = None if flat else {part: box.shape for part, box in self.observation_space.spaces.items()}
+        boxes = None if self.options.observation == "flat" else self.observation_space.spaces
         return arrays_given(out, names, self.num_envs, self.tables.SIZE, boxes)
 
     def _shaped(self, written, out):
         """The observations in the environment's kind, in the arrays of ``out`` if these are given."""
-        made = observations.shaped(self.options.observation, written.observations)
+        made = observations.shaped(self.options.observation, written.observations, written.masks)
         if out is not None and "observations" in out and self.options.observation != "flat":
             for name, array in out["observations"].items():
                 array[...] = made[name]
@@ -373,7 +372,7 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
 
     def _final(self, out, done):
         """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
-        rows = observations.shaped(self.options.observation, out.last_observations)
+        rows = observations.shaped(self.options.observation, out.last_observations, out.last_masks)
         each = rows if self.options.observation == "flat" else ({name: rows[name][k] for name in rows} for k in range(self.num_envs))
         final = np.fromiter(each, object, self.num_envs)
         final[~done] = None

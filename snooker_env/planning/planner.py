@@ -15,6 +15,7 @@ from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..tasks.box_actions import Actions
 from ..tasks.noise import Noise, NoiseLike
+from ..tasks.observations import OBSERVATIONS
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
 from ..tasks.tables import I_FIRST, I_PENALTY, StepOutput
@@ -96,7 +97,7 @@ class Planner:
     ):
         rules = options_in(env_or_options).rules
         errors = rules.noise if noise is None else Noise.of(noise)
-        self._rules = replace(rules, noise=errors, reward=REWARDS[0], opponent=None, one_stroke=False)
+        self._rules = replace(rules, noise=errors, reward=REWARDS[0], opponent=None, one_stroke=False, observation=OBSERVATIONS[0])
         self._threads = Threads(min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024))
         self._visits, self._watched = Visits(self._rules, 0), WatchedVisits(self._rules, 0)
         self._lock = threading.Lock()

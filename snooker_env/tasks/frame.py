@@ -227,9 +227,12 @@ class Frames(Tables):
             self._reply(playing, out, crew)
             crew(playing, lambda which, _: self._finish(which, out))
         if same_step:
-            self._start(np.flatnonzero(out.terminated | out.truncated), out, crew)
+            ended = np.flatnonzero(out.terminated | out.truncated)
+            crew(ended, lambda which, _: self.show_masks(which, out.last_masks))  # of the table as it lies, before the next rack
+            self._start(ended, out, crew)
         elif anew:
             self._start(np.flatnonzero(waiting), out, crew)
+        crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _finish(self, which, out):
         frame_kernels.finish(
@@ -255,6 +258,7 @@ class Frames(Tables):
         self.begun[wanted] = False  # until the opponent has played, if he breaks
         self._start(np.flatnonzero(wanted), out, crew, breakers)
         crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out, fresh=False))
+        crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _start(self, which, out, crew, breakers=None):
         """New frames, with the opponent's first visit if he breaks."""

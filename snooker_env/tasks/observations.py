@@ -5,14 +5,15 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
-from .._check import choice
+from .._check import choice, refuse
 from .._jit import kernel
-from .._types import Observation, ObservationKind, Singles
+from .._types import Bools, Masks, Observation, ObservationKind, Singles
 from ..game.balls import N_BALLS, REDS_MASK, VALUES, bits, count
 from ..geometry import HALF_LENGTH, HALF_WIDTH
+from .declarations import STROKE_CHOICES
 
-OBSERVATIONS = ("flat", "balls")
-"""The kinds of observations: "flat", one array; "balls", a dict of two arrays."""
+OBSERVATIONS = ("flat", "balls", "masked")
+"""The kinds of observations: "flat", one array; "balls", a dict of two; "masked", a dict of the flat one and the available choices."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
 """Columns of the table of balls: x / 0.889 m and y / 1.7845 m (0 when off the table), 1 if on the table, value / 7, 1 if it may be struck
 first (a ball on).
@@ -50,23 +51,26 @@ REPLACED_SIZE = N_BALLS * len(REPLACED_COLUMNS)
 """Numbers that a miss rule adds to it (66): the layout that "replace" restores."""
 
 
-def space(kind: ObservationKind, *, frame: bool = False, replaced: bool = False) -> spaces.Box | spaces.Dict:
+def space(kind: ObservationKind, *, frame: bool = False, replaced: bool = False, choices: int = STROKE_CHOICES) -> spaces.Box | spaces.Dict:
     """Return the observation space.
 
     Parameters
     ----------
-    kind : {"flat", "balls"}
-        "flat": a Box with shape (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,).
+    kind : {"flat", "balls", "masked"}
+        "flat": a Box with shape (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,); "masked": a Dict of the boxes
+        "observations", that of "flat", and "action_mask" (choices,), int8 in {0, 1}.
     frame : bool, optional
         Whether the 19 entries of a frame or match follow the eleven of a visit: shapes (140,) and (30,). Default False.
     replaced : bool, optional
         Whether the layout that "replace" restores follows, as in a frame with a miss rule: 66 more numbers, (206,) in all, or the box
         "replaced" (22, 3). Default False.
+    choices : int, optional
+        Number of discrete actions, the length of "action_mask". Default 540, those that only choose a stroke.
 
     Returns
     -------
     gymnasium.spaces.Box or gymnasium.spaces.Dict
-        The space of float32 numbers in [-1, 1].
+        The space of float32 numbers in [-1, 1], and of the mask.
 
     Raises
     ------
@@ -87,7 +91,10 @@ def space(kind: ObservationKind, *, frame: bool = False, replaced: bool = False)
     if kind == "balls":
         parts: dict[str, spaces.Space[Any]] = {"balls": balls, "state": state}
         return spaces.Dict(parts | {"replaced": spaces.Box(-1.0, 1.0, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)} if more else parts)
-    return spaces.Box(-1.0, 1.0, (BALLS_SIZE + entries + more,), np.float32)
+    flat = spaces.Box(-1.0, 1.0, (BALLS_SIZE + entries + more,), np.float32)
+    if kind == "masked":
+        return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})
+    return flat
 
 
 @kernel
@@ -109,21 +116,29 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
     row[BALLS_SIZE + 10] = points / 155.0
 
 
-def shaped(kind: ObservationKind, rows: Singles) -> Observation:
+def shaped(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = None) -> Observation:
     """Convert flat observations to a kind of observations.
 
     Parameters
     ----------
-    kind : {"flat", "balls"}
+    kind : {"flat", "balls", "masked"}
         The kind.
     rows : numpy.ndarray
         float32 (..., k), with k = 121 in a visit, 140 in a frame, 206 in a frame with a miss rule.
+    masks : numpy.ndarray, optional
+        int8 or bool (..., choices): the available choices, for "masked" alone. Default None.
 
     Returns
     -------
     numpy.ndarray or dict
         With "flat": ``rows`` itself. With "balls": a dict of new arrays, "balls" (..., 22, 5), "state" (..., 11 or 30) and, with a
-        miss rule, "replaced" (..., 22, 3).
+        miss rule, "replaced" (..., 22, 3). With "masked": a dict of ``rows`` itself, "observations", and of "action_mask", int8: ``masks``
+        itself, or a new array if they are bool.
+
+    Raises
+    ------
+    ValueError
+        With "masked" and no masks.
 
     Examples
     --------
@@ -134,6 +149,10 @@ def shaped(kind: ObservationKind, rows: Singles) -> Observation:
     """
     if kind == "flat":
         return rows
+    if kind == "masked":
+        if masks is None:
+            raise refuse("masks", None, 'must be the available choices, with the kind "masked"')
+        return {"observations": rows, "action_mask": masks.astype(np.int8, copy=False)}
     lead = rows.shape[:-1]
     balls = rows[..., :BALLS_SIZE].reshape(*lead, N_BALLS, _COLUMNS)
     parts = {"balls": np.array(balls), "state": np.array(rows[..., BALLS_SIZE:FRAME_SIZE])}

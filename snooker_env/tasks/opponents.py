@@ -75,9 +75,12 @@ class AskedOpponent:
     def _wishes(self, rules, seen, generators, frames, which):
         many = getattr(self.policy, "many", None)
         if many is None:
-            return [self.policy(observations.shaped(rules.observation, row.copy()), rng) for row, rng in zip(seen, generators, strict=True)]
+            rows = [row.copy() for row in seen]
+            shown = frames.action_masks(which) if rules.observation == "masked" else [None] * len(rows)
+            views = [observations.shaped(rules.observation, row, mask) for row, mask in zip(rows, shown, strict=True)]
+            return [self.policy(view, rng) for view, rng in zip(views, generators, strict=True)]
         masks = frames.action_masks(which) if isinstance(rules.actions, Choices) else None
-        wished = many(observations.shaped(rules.observation, seen), generators, masks)
+        wished = many(observations.shaped(rules.observation, seen, masks), generators, masks)
         if not hasattr(wished, "__len__") or len(wished) != len(which):
             raise refuse("opponent's actions", wished, f"must be {len(which)}, one for each table that waits")
         return wished
@@ -118,9 +121,12 @@ class SavedPolicy:
         """The actions of all tables with these observations; ``masks``: of discrete actions, or None."""
         if self._network is None:
             self._network = self._load()
-        if self._network.observation_space == observations.space(self.kind):
+        own = self._network.observation_space
+        if self.kind == "masked":  # one of strokes alone does not see what else may be chosen
+            observation = observation | {"action_mask": observation["action_mask"][..., : self._network.action_space.n]}
+        if own in self._views(False):
             observation = visit_part(observation)
-        elif self.replaced and self._network.observation_space == observations.space(self.kind, frame=True):
+        elif self.replaced and own in self._views(True):
             observation = without_replaced(observation)
         if isinstance(self.actions, Choices):
             masked = {"action_masks": masks[:, : self._network.action_space.n]} if self._masked and masks is not None else {}
@@ -129,13 +135,21 @@ class SavedPolicy:
         missing = self.actions.size - actions.shape[1]
         return np.append(actions, np.zeros((len(actions), missing), actions.dtype), axis=1) if missing else actions
 
-    def _load(self):
-        seen = [observations.space(self.kind), observations.space(self.kind, frame=True)]
-        seen += [observations.space(self.kind, frame=True, replaced=True)] if self.replaced else []
-        discrete, actions = isinstance(self.actions, Choices), self.actions
+    def _sizes(self):
+        """The sizes of the actions of models that fit."""
+        actions = self.actions
         most = actions.choices if isinstance(actions, Choices) else actions.size
-        strokes = CHOICES if discrete else actions.size - actions.decision - actions.declares
-        sizes = [most] if actions.nominate else sorted({strokes, most})  # a nomination cannot be left out
+        strokes = CHOICES if isinstance(actions, Choices) else actions.size - actions.decision - actions.declares
+        return [most] if actions.nominate else sorted({strokes, most})  # a nomination cannot be left out
+
+    def _views(self, frame, *, replaced=False):
+        """The observation spaces of models of frames, or of visits, that fit."""
+        sizes = self._sizes() if self.kind == "masked" else [0]
+        return [observations.space(self.kind, frame=frame, replaced=replaced, choices=size) for size in sizes]
+
+    def _load(self):
+        seen = self._views(False) + self._views(True) + (self._views(True, replaced=True) if self.replaced else [])
+        discrete, sizes = isinstance(self.actions, Choices), self._sizes()
         fitting: list[tuple[str, Any]] = [("Discrete", str(size)) if discrete else ("Box", [size]) for size in sizes]
         saved = SavedModel.of(self.path, "opponent")
         if saved.action[0] != fitting[0][0]:
@@ -169,6 +183,8 @@ def asked(opponent: Opponent, frames: "Frames", which: Ints, generators: Sequenc
 
 def visit_part(observation: Observation) -> Observation:
     """The part of a frame's observations that the visit task has too."""
+    if isinstance(observation, dict) and "action_mask" in observation:
+        return observation | {"observations": visit_part(observation["observations"])}
     if isinstance(observation, dict):
         return {"balls": observation["balls"], "state": observation["state"][..., : len(observations.STATE_ENTRIES)]}
     return observation[..., : observations.SIZE]
@@ -176,6 +192,8 @@ def visit_part(observation: Observation) -> Observation:
 
 def without_replaced(observation: Observation) -> Observation:
     """A frame's observations without the layout that "replace" restores."""
+    if isinstance(observation, dict) and "action_mask" in observation:
+        return observation | {"observations": without_replaced(observation["observations"])}
     if isinstance(observation, dict):
         return {"balls": observation["balls"], "state": observation["state"]}
     return observation[..., : observations.FRAME_SIZE]

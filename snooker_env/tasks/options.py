@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any, Literal
 
 import numpy as np
+from gymnasium import spaces
 
 from .._check import choice, integer, number, refuse, refuse_what, truth
 from .._types import Fidelity, Floats, MissRule, ObservationKind, Solver
@@ -19,10 +20,10 @@ from ..geometry import BALL_RADIUS
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
+from . import observations
 from .box_actions import AIMS, Actions
 from .discrete_actions import Choices
 from .noise import Noise, NoiseLike
-from .observations import OBSERVATIONS
 from .opponents import Opponent, OpponentLike, opponent_of
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
 from .table_fit import fitted, table_of
@@ -108,8 +109,9 @@ class Options:
         of frames add more.
     aim : {"absolute", "target"}, optional
         Reference direction of the aim in a box action: +x (default), or the best potting line.
-    observation : {"flat", "balls"}, optional
-        "flat" (default): one array. "balls": a dict of two arrays.
+    observation : {"flat", "balls", "masked"}, optional
+        "flat" (default): one array. "balls": a dict of two arrays. "masked", with ``action="discrete"``: a dict of the flat array and the
+        available choices.
     noise : str, dict or Noise, optional
         Execution errors: the name of a level, or standard deviations, see ``snooker_env.tasks.Noise``. Default "none".
     reward : {"points", "points_and_fouls", "pots", "legal", "win", "frames"}, optional
@@ -209,7 +211,8 @@ class Options:
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
             layout = f"break_off:{rule_set(self.game).reds}"
         plan = fitted(layout, table)
-        choice("observation", self.observation, OBSERVATIONS)
+        if choice("observation", self.observation, observations.OBSERVATIONS) == "masked" and not isinstance(actions, Choices):
+            raise refuse("observation", self.observation, 'must be "flat" or "balls" with action="box": a Box has no masks')
         truth("trust", self.trust)
         choice("reward", self.reward, {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}[self.task])
         one_stroke = truth("one_stroke", self.one_stroke)
@@ -309,6 +312,13 @@ AGENTS = (
     "concede", "claim", "lot",
 )  # fmt: skip
 """Options of the agent alone."""
+
+
+def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:
+    """The observation space of a game with these options."""
+    rules = options.rules
+    choices = rules.actions.choices if isinstance(rules.actions, Choices) else 0
+    return observations.space(options.observation, frame=options.task != "visit", replaced=rules.misses, choices=choices)
 
 
 def options_of(options: Options | None, given: Mapping[str, Any]) -> Options:

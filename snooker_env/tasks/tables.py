@@ -10,7 +10,7 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 
 from .._jit import kernel
-from .._types import Bools, Floats, Ints, Singles, Words
+from .._types import Bools, Floats, Ints, Masks, Singles, Words
 from ..game.balls import N_BALLS, BallOn, balls_on, mask_of_present
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import stream_of
@@ -92,8 +92,11 @@ class StepOutput:
     last_reals: Floats
     last_counts: Ints
     """The same for the episodes that ended where new ones were started; otherwise without rows."""
+    masks: Masks
+    last_masks: Masks
+    """(n, choices) The available choices, likewise; without rows unless the observations hold them."""
 
-    def __init__(self, n: int, size: int, reals: Sequence[str], counts: Sequence[str], *, last: bool = False):
+    def __init__(self, n: int, size: int, reals: Sequence[str], counts: Sequence[str], *, last: bool = False, choices: int = 0):
         self.observations = np.zeros((n, size), np.float32)
         self.rewards = np.zeros(n)
         self.terminated, self.truncated = np.zeros(n, np.bool_), np.zeros(n, np.bool_)
@@ -101,6 +104,7 @@ class StepOutput:
         m = n if last else 0
         self.last_observations = np.zeros((m, size), np.float32)
         self.last_reals, self.last_counts = np.zeros((m, len(reals))), np.zeros((m, len(counts)), np.int64)
+        self.masks, self.last_masks = (np.zeros((rows if choices else 0, choices), np.int8) for rows in (n, m))
 
     @property
     def rows(self) -> tuple[Singles, Floats, Ints, Singles, Floats, Ints]:
@@ -186,7 +190,9 @@ class Tables(ABC):
 
     def output(self, *, last: bool = False, given: Mapping[str, Any] | None = None) -> StepOutput:
         """New arrays for the results of a step or reset, except for those ``given`` by name."""
-        out = StepOutput(self.n, self.SIZE, self.REALS, self.COUNTS, last=last)
+        masked = self.rules.actions if self.rules.observation == "masked" else None
+        choices = masked.choices if isinstance(masked, Choices) else 0
+        out = StepOutput(self.n, self.SIZE, self.REALS, self.COUNTS, last=last, choices=choices)
         for name, array in (given or {}).items():
             array[...] = 0
             setattr(out, name, array)
@@ -229,6 +235,11 @@ class Tables(ABC):
         options = self.packed[0] if isinstance(actions, Choices) else STROKES_ONLY
         discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
         return out
+
+    def show_masks(self, which: Ints, masks: Masks) -> None:
+        """Write the available choices on the tables ``which`` into their rows of ``masks``; nothing if it has no rows."""
+        if len(masks) and len(which):
+            masks[which] = self.action_masks(which)
 
     def ended(self) -> Bools:
         """Which tables have no stroke left to play: bool (n,)."""

@@ -105,9 +105,12 @@ class Visits(Tables):
                 self._play(playing, actions, out, buffers)
                 crew.saw(playing, buffers, True)
             if same_step:
-                self._begin(which[out.terminated[which] | out.truncated[which]], out)
+                ended = which[out.terminated[which] | out.truncated[which]]
+                self.show_masks(ended, out.last_masks)  # of the table as it lies, before the next one is dealt
+                self._begin(ended, out)
             elif anew:
                 self._begin(which[waiting[which]], out)
+            self.show_masks(which, out.masks)
 
         crew(np.arange(self.n), play)
 
@@ -138,6 +141,7 @@ class Visits(Tables):
         def begin(which, buffers):
             self._begin(which[wanted[which]], out)
             self._begin(which[~wanted[which]], out, fresh=False)
+            self.show_masks(which, out.masks)
 
         self.begun[wanted] = True
         crew(np.arange(self.n), begin)

@@ -50,6 +50,10 @@ ELSEWHERE = {
     "agents.tournament": "tests/agents/evaluation/test_tournament.py",
     "examples/fit_your_data.py": "tests/examples/test_fit.py",
     "examples.self_play": "tests/examples/test_self_play.py",
+    "examples.ppo_single_file": "tests/examples/test_ppo_single_file.py",
+    "examples.ppo_torchrl": "tests/examples/test_ppo_torchrl.py",
+    "agents.train_rllib": "tests/agents/trainers/test_rllib_run.py",
+    "rl_zoo3.train": "tests/agents/trainers/test_rl_zoo.py",
 }
 """Module or file -> the test that runs it."""
 

@@ -47,7 +47,7 @@ def test_the_reader_of_commands_sees_every_kind():
     assert commands(text) == [("a.b", ["--c", "1"]), ("d.py", []), ("e", ["--f"])]
 
 
-@pytest.mark.parametrize("name", sorted(set(GIVEN) - set(NOT_RUN) - {"pytest", "sphinx", "venv"}))
+@pytest.mark.parametrize("name", sorted(set(GIVEN) - set(NOT_RUN) - {"pytest", "sphinx", "venv", "rl_zoo3.train"}))
 def test_commands_have_the_options_that_are_given(name):
     """They stand in the source of the command, or in what all commands of its kind share: in quotes, or as fields of a dataclass."""
     top = name.split("/")[0] if name.endswith(".py") else name.split(".")[0]

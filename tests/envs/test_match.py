@@ -41,6 +41,36 @@ def test_pettingzoo_checks_its_interface_with_observations_of_balls(capsys):
     assert "Passed API test" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("options", [{}, {"nominate": True, "concede": True, "claim": True, "lot": True}, {"frames": 3}])
+def test_pettingzoo_checks_its_interface_with_masked_observations(options, capsys):
+    """Its random players take the mask from the observation. Dict observations are warned of, and PettingZoo's own key has no plural."""
+    with pytest.warns(UserWarning, match="Observation"):
+        api_test(sn.match_env(action="discrete", observation="masked", layout="random:3", **options), num_cycles=80)
+    assert "Passed API test" in capsys.readouterr().out
+
+
+def test_masked_observations_of_both_players_hold_their_masks():
+    """All 0 for the player whose turn it is not, and for both at the end, as in the infos."""
+    env, plain = (sn.match_env(action="discrete", observation=kind, layout="random:0", noise="club") for kind in ("masked", "flat"))
+    env.reset(seed=2), plain.reset(seed=2)
+    rng, turns = np.random.default_rng(0), set()
+    while True:
+        for name in env.possible_agents:
+            seen, mask = env.observe(name), env.action_mask(name)
+            assert np.array_equal(seen["observations"], plain.observe(name)) and env.observation_space(name).contains(seen)
+            assert seen["action_mask"].dtype == np.int8 and np.array_equal(seen["action_mask"], mask)
+            assert np.array_equal(mask, env.infos[name]["action_mask"]) and np.array_equal(mask, plain.action_mask(name))
+            over = any(env.terminations.values())
+            assert mask.any() == (name == env.agent_selection and not over)
+            seen["action_mask"][:] = 1  # it is the caller's own
+        if over:
+            break
+        turns.add(env.agent_selection)
+        action = int(rng.choice(np.flatnonzero(env.action_mask(env.agent_selection))))
+        env.step(action), plain.step(action)
+    assert len(turns) == 2
+
+
 def test_pettingzoo_checks_its_seeds(strict):
     seed_test(lambda: sn.match_env(aim="target", noise="club", layout="random:3"), num_cycles=60)
 

@@ -39,8 +39,9 @@ def equal(a, b):
         {"aim": "target", "noise": "club", "layout": "random:5"},
         {"aim": "target", "observation": "balls", "layout": "random:5", "reward": "points_and_fouls"},
         {"aim": "target", "max_episode_steps": 2, "layout": "random:3"},
+        {"action": "discrete", "observation": "masked", "max_episode_steps": 2, "layout": "random:3"},
     ],
-    ids=["flat", "balls", "limit"],
+    ids=["flat", "balls", "limit", "masked"],
 )
 def test_it_gives_what_dummy_vec_env_gives(options):
     """Observations, rewards, ends, infos, terminal observations, episodes: all but the clock."""
@@ -51,6 +52,7 @@ def test_it_gives_what_dummy_vec_env_gives(options):
     for _ in range(40):
         a = rng.uniform(-1, 1, (6, 4)).astype(np.float32)
         a[:, 1:4] *= 0.2
+        a = rng.integers(0, 135, 6) if "action" in options else a
         (o, r, d, infos), (o2, r2, d2, infos2) = ours.step(a), theirs.step(a)
         assert equal(o, o2) and equal(r, r2) and equal(d, d2)
         for k in range(6):

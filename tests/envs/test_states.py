@@ -11,7 +11,7 @@ from gymnasium.utils.env_checker import data_equivalence
 
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BallOn
-from tests.tables import jsonable
+from tests.tables import drawn, jsonable, viewed
 
 
 def shots(env, n=5):
@@ -19,7 +19,7 @@ def shots(env, n=5):
     out = []
     rng = np.random.default_rng(8)
     for _ in range(n):
-        out.append(env.reset() if env.over else env.step(rng.uniform(-0.3, 0.3, env.action_space.shape)))
+        out.append(env.reset() if env.over else env.step(drawn(env, rng, 0.3)))
     return pickle.dumps(jsonable(out)), env.points, env.positions.tobytes(), json.dumps(env.get_state())
 
 
@@ -28,13 +28,13 @@ def midway(seed=0, **arguments):
     env = SnookerEnv(**{"aim": "target", "noise": "club", "layout": "random:6"} | arguments)
     for k in range(seed, seed + 200):
         env.reset(seed=k)
-        env.step(np.array([0.0, 0, 0, 0, *[0.0] * (env.action_space.shape[0] - 4)]))
+        env.step(67 if env.options.action == "discrete" else np.zeros(env.action_space.shape))
         if not env.over:
             return env
     raise AssertionError("no pot in 200 shots")
 
 
-@pytest.mark.parametrize("arguments", [{}, {"observation": "balls"}, {"placement": True, "elevation": True}])
+@pytest.mark.parametrize("arguments", [{}, {"observation": "balls"}, {"placement": True, "elevation": True}, viewed("masked")])
 def test_a_saved_state_plays_on_bit_for_bit(arguments):
     env = midway(**arguments)
     text = json.dumps(env.get_state())

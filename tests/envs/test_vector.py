@@ -15,7 +15,8 @@ from gymnasium.vector import AutoresetMode
 import snooker_env as sn
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.tasks import stroke
+from snooker_env.tasks import OBSERVATIONS, stroke
+from tests.tables import viewed
 
 MODES = list(AutoresetMode)
 
@@ -41,6 +42,8 @@ def same(a, b):
 
 def actions_of(env, rng, aim):
     """Random actions; with a target mostly such that some pots come."""
+    if env.options.action == "discrete":
+        return np.array([rng.choice(np.flatnonzero(mask)) for mask in env.action_masks()])
     a = rng.uniform(-1.0, 1.0, env.action_space.shape).astype(np.float32)
     if aim == "target":
         a[:, 1:4] *= 0.2
@@ -78,8 +81,9 @@ def check_equal(n, mode, steps, *, threads=None, seed=3, **options):
         {"aim": "target", "noise": "olympiad", "layout": "pots:easy", "physics": "match", "table": "tight"},
         {"aim": "target", "max_episode_steps": 2, "layout": "random:3", "observation": "balls"},
         {"noise": {"aim_deg": 0.3}, "layout": "snookered", "fidelity": "fast"},
+        {"action": "discrete", "observation": "masked", "layout": "random:2", "noise": "club", "max_episode_steps": 2},
     ],
-    ids=["plain", "noise", "balls", "match", "limit", "snookered"],
+    ids=["plain", "noise", "balls", "match", "limit", "snookered", "masked"],
 )
 def test_it_equals_sync_vector_env(mode, options):
     ends, cut, scored = check_equal(9, mode, 60, **options)
@@ -155,11 +159,11 @@ def test_wrong_masks_are_refused(mask):
 # The contract
 
 
-@pytest.mark.parametrize("observation", ["flat", "balls"])
+@pytest.mark.parametrize("observation", OBSERVATIONS)
 @pytest.mark.parametrize("mode", MODES)
 def test_what_is_returned_is_the_callers_own(observation, mode):
     """Spoiling every array that was returned changes nothing that comes later."""
-    options = {"observation": observation, "autoreset_mode": mode, "noise": "club", "layout": "random:3", "max_episode_steps": 3}
+    options = {**viewed(observation), "autoreset_mode": mode, "noise": "club", "layout": "random:3", "max_episode_steps": 3}
     clean, spoiled = native(8, **options), native(8, **options)
     want, got = clean.reset(seed=1), spoiled.reset(seed=1)
 
@@ -171,9 +175,10 @@ def test_what_is_returned_is_the_callers_own(observation, mode):
             for value in x:
                 spoil(value)
         elif isinstance(x, np.ndarray):
-            x[...] = True if x.dtype == bool else 1
+            x[...] = True if x.dtype == bool else 1 - x if x.dtype == np.int8 else 1
 
-    a = np.random.default_rng(0).uniform(-1, 1, (10, 8, 4))
+    rng = np.random.default_rng(0)
+    a = rng.integers(0, 135, (10, 8)) if observation == "masked" else rng.uniform(-1, 1, (10, 8, 4))
     for k in range(10):
         assert same(want, got)
         done = (want[2] | want[3]).copy() if len(want) == 5 else np.zeros(8, bool)
@@ -186,8 +191,40 @@ def test_what_is_returned_is_the_callers_own(observation, mode):
                 spoil(part)
             done[:] = True
         want, got = clean.step(a[k]), spoiled.step(mine)
-        mine[:] = 9.0
+        mine[:] = 9
     assert same(want, got)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("threads", [1, 3])
+def test_masks_in_observations_are_those_of_the_tables(mode, threads):
+    """Those of ``action_masks()`` in the next step, and of the table as it lay at the end, for every table and any number of threads."""
+    env = native(70, action="discrete", observation="masked", layout="random:2", noise="club", autoreset_mode=mode, threads=threads)
+    alone = [SnookerEnv(action="discrete", observation="masked", layout="random:2", noise="club") for _ in range(70)]
+    seen, rng, ends = env.reset(seed=4)[0], np.random.default_rng(0), 0
+    for one, k in zip(alone, range(70), strict=True):
+        one.reset(seed=4 + k)
+    done = np.zeros(70, bool)
+    for _ in range(8):
+        if mode == AutoresetMode.DISABLED and done.any():
+            seen, _ = env.reset(options={"reset_mask": done.copy()})
+            for k in np.flatnonzero(done):
+                alone[k].reset()
+        assert seen["action_mask"].dtype == np.int8 and np.array_equal(seen["action_mask"], env.action_masks())
+        a = actions_of(env, rng, None)
+        seen, _, terminated, truncated, infos = env.step(a)
+        for k, one in enumerate(alone):
+            if mode == AutoresetMode.NEXT_STEP and done[k]:
+                assert same({name: part[k] for name, part in seen.items()}, one.reset()[0])
+                continue
+            own, _, ended, *_ = one.step(int(a[k]))
+            if mode == AutoresetMode.SAME_STEP and ended:
+                assert same(infos["final_obs"][k], own)
+                own = one.reset()[0]
+                ends += 1
+            assert same({name: part[k] for name, part in seen.items()}, own)
+        done = terminated | truncated
+    assert (ends > 100) == (mode == AutoresetMode.SAME_STEP)
 
 
 def test_spaces_types_and_metadata():

@@ -19,9 +19,10 @@ N = 4
 OPTIONS = [
     {},
     {"action": "discrete", "layout": "random:3", "noise": "club"},
+    {"action": "discrete", "observation": "masked", "layout": "random:2", "task": "frame"},
     {"aim": "target", "placement": True, "observation": "balls", "table": "tight", "render_mode": "ansi", "layout": "break_off"},
 ]
-IDS = ["plain", "discrete", "target"]
+IDS = ["plain", "discrete", "masked", "target"]
 METHODS = {"get_state", "action_masks", "has_wrapper_attr"}
 """What takes a call and changes nothing."""
 

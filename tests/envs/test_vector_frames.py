@@ -43,6 +43,17 @@ OPTIONS = {
     "ghost_ball breaks": FULL | {"opponent": "ghost_ball", "max_episode_steps": 4},
     "callable": FULL | {"opponent": policy, "layout": "random:0", "max_strokes": 15},
     "discrete": {"opponent": "random", "layout": "colours", "action": "discrete", "noise": "amateur", "max_strokes": 30},
+    "masked": {
+        "opponent": "ghost_ball",
+        "layout": "random:1",
+        "action": "discrete",
+        "observation": "masked",
+        "nominate": True,
+        "concede": True,
+        "miss": "clear_path",
+        "max_strokes": 20,
+    },
+    "masked, alone": {"layout": "random:1", "action": "discrete", "observation": "masked", "max_strokes": 12, "max_episode_steps": 9},
     "discrete, ghost_ball": {"opponent": "ghost_ball", "layout": "random:2", "action": "discrete", "max_episode_steps": 5},
 }
 
@@ -239,6 +250,18 @@ def test_arrays_that_share_memory_are_refused():
     env.reset(seed=1)
     with pytest.raises(ValueError, match="must not share memory"):
         env.step(np.zeros((4, 4)), out={"terminations": both, "truncations": both})
+
+
+def test_masked_observations_are_written_too():
+    env, plain = (native(3, action="discrete", observation="masked", autoreset_mode=AutoresetMode.SAME_STEP) for _ in range(2))
+    out = {"observations": {"observations": np.zeros((3, 121), np.float32), "action_mask": np.zeros((3, 540), np.int8)}}
+    got, _ = env.reset(seed=1, out=out)
+    assert got is out["observations"] and same(got, plain.reset(seed=1)[0])
+    for choice in (0, 67, 400):
+        given, want = env.step(np.full(3, choice), out=out), plain.step(np.full(3, choice))
+        assert given[0] is out["observations"] and all(same(x, y) for x, y in zip(given, want, strict=True))
+    out["observations"]["action_mask"] = np.zeros((3, 540), bool)
+    refused(lambda: env.reset(out=out), 'out["observations.action_mask"]', "array of bool and shape (3, 540)", "must be a C-contiguous")
 
 
 def test_observations_of_balls_are_written_too():

@@ -12,13 +12,14 @@ from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import YELLOW, BallOn
 from snooker_env.tasks import observations
 from snooker_env.tasks.options import NAMES
-from tests.tables import frame_env
+from tests.tables import frame_env, viewed
 
 
 @pytest.mark.parametrize("observation", observations.OBSERVATIONS)
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
 def test_gymnasium_checks_it(observation, opponent):
-    env = gymnasium.make("Snooker-v0", task="frame", opponent=opponent, observation=observation, layout="random:2", decision=True)
+    decision = observation != "masked"  # which is of discrete actions
+    env = gymnasium.make("Snooker-v0", task="frame", opponent=opponent, **viewed(observation), layout="random:2", decision=decision)
     check_env(env.unwrapped, skip_render_check=True)
     assert env.spec.to_json() and gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())).spec == env.spec
 
@@ -30,6 +31,9 @@ def test_the_spaces_grow_and_those_of_a_visit_do_not():
     assert frame_env(observation="balls").observation_space["state"].shape == (30,)
     assert "replaced" not in frame_env(observation="balls").observation_space.spaces
     assert frame_env(observation="balls", miss="clear_path").observation_space["replaced"].shape == (22, 3)
+    discrete = {"action": "discrete", "observation": "masked", "decision": False, "placement": False}
+    masked = frame_env(**discrete, nominate=True, concede=True, miss="clear_path").observation_space
+    assert masked["observations"].shape == (206,) and masked["action_mask"].shape == (7 * 540 + 1,)
     assert frame_env(decision=False, placement=False).action_space.shape == (4,)
     assert len(observations.FRAME_ENTRIES) == 19
 

@@ -7,19 +7,20 @@ from gymnasium.utils.env_checker import data_equivalence
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import N_BALLS, BallOn
 from snooker_env.tasks import observations
-from tests.tables import INFO, LAYOUTS
+from tests.refusals import refused
+from tests.tables import INFO, LAYOUTS, drawn, frame_env, viewed
 
 
 @pytest.mark.parametrize("observation", observations.OBSERVATIONS)
 def test_what_is_returned_is_the_callers_own(observation):
     """Spoiling every array and info that was returned changes nothing that comes later."""
-    clean, spoiled = (SnookerEnv(observation=observation, noise="club", layout="random:3") for _ in range(2))
+    clean, spoiled = (SnookerEnv(**viewed(observation), noise="club", layout="random:3") for _ in range(2))
     want, got = clean.reset(seed=2), spoiled.reset(seed=2)
     rng = np.random.default_rng(0)
     for _ in range(8):
         assert data_equivalence(want, got, exact=True)
         for array in got[0].values() if isinstance(got[0], dict) else [got[0]]:
-            array[:] = 0.123
+            array[:] = 1 - array if array.dtype == np.int8 else 0.123
         got[-1].clear()
         state = spoiled.get_state()
         state["positions"][0][0] = 0.5
@@ -29,7 +30,7 @@ def test_what_is_returned_is_the_callers_own(observation):
         if clean.over:
             want, got = clean.reset(), spoiled.reset()
         else:
-            action = rng.uniform(-1, 1, 4)
+            action = drawn(clean, rng)
             want, got = clean.step(action), spoiled.step(action)
 
 
@@ -61,6 +62,52 @@ def test_observations_say_where_the_balls_lie_and_what_is_on(layout):
             if flat.over:
                 break
             a, b = flat.step(np.zeros(4))[0], rows.step(np.zeros(4))[0]
+
+
+OF_FRAMES = {"task": "frame", "opponent": "random", "max_strokes": 40}
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {}, {"layout": "colours", "noise": "club"}, {"layout": "random:0"}, OF_FRAMES | {"layout": "random:1"},
+        OF_FRAMES | {"nominate": True, "concede": True, "claim": True, "lot": True, "miss": "clear_path"},
+        OF_FRAMES | {"task": "match", "frames": 3, "layout": "random:0"},
+    ],
+    ids=["opened", "colours", "black", "frame", "all that is said", "match"],
+)  # fmt: skip
+def test_masked_observations_hold_the_flat_one_and_the_available_choices(options):
+    """Also at the end of an episode, where at least one choice stays available: no learner divides by nothing."""
+    flat, masked = (SnookerEnv(action="discrete", observation=kind, **options) for kind in ("flat", "masked"))
+    assert set(masked.observation_space.spaces) == {"observations", "action_mask"}
+    assert masked.observation_space["observations"] == flat.observation_space
+    assert masked.observation_space["action_mask"].shape == (masked.action_space.n,)
+    rng, kinds, ends = np.random.default_rng(0), set(), 0
+    for seed in range(12):
+        a, b = flat.reset(seed=seed)[0], masked.reset(seed=seed)[0]
+        done = False
+        while True:
+            assert np.array_equal(a, b["observations"]) and a.dtype == b["observations"].dtype
+            assert b["action_mask"].dtype == np.int8 and np.array_equal(b["action_mask"], masked.action_masks())
+            assert np.array_equal(flat.action_masks(), masked.action_masks()) and masked.observation_space.contains(b)
+            assert b["action_mask"].any()
+            kinds.add(b["action_mask"].tobytes())
+            if done:
+                ends += 1
+                break
+            action = drawn(flat, rng)
+            a, reward, terminated, truncated, info = flat.step(action)
+            b, *others = masked.step(action)
+            assert others == [reward, terminated, truncated, info]
+            done = terminated or truncated
+    assert ends == 12 and len(kinds) > 1
+
+
+def test_masked_observations_need_discrete_actions():
+    for make in (SnookerEnv, frame_env):
+        says = 'must be "flat" or "balls" with action="box": a Box has no masks'
+        refused(lambda make=make: make(observation="masked"), "observation", "'masked'", says)
+    refused(lambda: observations.shaped("masked", np.zeros((2, 121), np.float32)), "masks", "None", "must be the available choices")
 
 
 def test_infos_have_the_same_keys_and_types_at_all_times():

@@ -11,6 +11,7 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
 from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.tasks.saved_models import SavedModel
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_POINTS, Crew
@@ -149,6 +150,53 @@ def test_a_saved_model_may_play(tmp_path, task, name):
             runs.append(out)
             assert one.options.rules.opponent.policy._network is not None
         assert data_equivalence(runs[0], runs[1], exact=True) and data_equivalence(runs[0], runs[2], exact=True)
+
+
+@pytest.mark.parametrize(("own", "nominate"), [({}, False), ({"task": "frame"}, False), ({"task": "frame", "nominate": True}, True)])
+def test_a_saved_model_that_sees_masks_may_play(tmp_path, own, nominate):
+    """One of visits, with 540 choices, plays in a frame with more; its choices are those of the same model without a mask in its view."""
+    contrib = pytest.importorskip("sb3_contrib")
+    masked = {"action": "discrete", "observation": "masked"}
+    made = contrib.MaskablePPO("MultiInputPolicy", SnookerEnv(**masked, **own), seed=1, device="cpu")
+    made.save(tmp_path / "model.zip")
+    options = {"task": "frame", "layout": "random:2", "concede": True, "nominate": nominate, "miss": "clear_path", **masked}
+    size = made.action_space.n
+    if nominate:
+        options["concede"] = False
+    env = SnookerEnv(opponent=str(tmp_path / "model.zip"), trust=True, **options)
+    policy = env.options.rules.opponent.policy
+    env.reset(seed=2)
+    rows = SnookerVectorEnv(5, threads=1, **options).reset(seed=3)[0]
+    numbers = made.observation_space["observations"].shape[0]
+    seen = {"observations": rows["observations"][:, :numbers], "action_mask": rows["action_mask"][:, :size]}
+    want = made.predict(seen, deterministic=True, action_masks=seen["action_mask"])[0]
+    assert np.array_equal(policy.many(rows, [None] * 5, rows["action_mask"].astype(bool)), want)
+    for _ in range(4):
+        env.step(int(env.action_masks().argmax()))
+
+
+def test_callables_see_masks(tmp_path):
+    """One table after the other, and all that wait at once."""
+    kept = []
+
+    def one(observation, rng):
+        assert observation["observations"].shape == (140,) and observation["action_mask"].dtype == np.int8
+        kept.append(observation)
+        return int(rng.choice(np.flatnonzero(observation["action_mask"])))
+
+    class Many:
+        def many(self, seen, generators, masks):
+            assert np.array_equal(seen["action_mask"], masks)
+            return [one({name: part[k] for name, part in seen.items()}, rng) for k, rng in enumerate(generators)]
+
+    runs = []
+    for opponent in (one, Many()):
+        env = SnookerVectorEnv(6, threads=1, task="frame", action="discrete", observation="masked", layout="random:1", opponent=opponent)
+        out = [env.reset(seed=1)[0]]
+        for _ in range(5):
+            out.append(env.step(env.action_masks().argmax(axis=1))[0])
+        runs.append(out)
+    assert len(kept) > 20 and all(data_equivalence(a, b, exact=True) for a, b in zip(*runs, strict=True))
 
 
 CONSENT = "holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come with trust=True"

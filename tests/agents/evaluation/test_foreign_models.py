@@ -26,6 +26,7 @@ def foreign(tmp_path_factory):
         (SAC, "MlpPolicy", "sac", {"elevation": True}), (DQN, "MlpPolicy", "dqn", {"action": "discrete"}),
         (MaskablePPO, "MlpPolicy", "mask", {"action": "discrete"}), (RecurrentPPO, "MlpLstmPolicy", "recurrent", {}),
         (PPO, "MlpPolicy", "frame", {"task": "frame"}),
+        (MaskablePPO, "MultiInputPolicy", "masked", {"action": "discrete", "observation": "masked"}),
     ):  # fmt: skip
         maker(policy, SnookerEnv(**options), seed=4, device="cpu").save(folder / f"{name}.zip")
     return folder
@@ -35,18 +36,18 @@ def foreign(tmp_path_factory):
     ("name", "options", "read"),
     [
         ("ppo", {"aim": "target"}, {"aim": "target"}), ("balls", {}, {}), ("sac", {"elevation": True}, {"elevation": True}),
-        ("dqn", {}, {"action": "discrete"}), ("mask", {}, {"action": "discrete"}),
+        ("dqn", {}, {"action": "discrete"}), ("mask", {}, {"action": "discrete"}), ("masked", {}, {"action": "discrete"}),
     ],
 )  # fmt: skip
 def test_a_foreign_model_plays_what_it_would_play_itself(foreign, name, options, read):
-    maker = {"ppo": PPO, "balls": PPO, "sac": SAC, "dqn": DQN, "mask": MaskablePPO}[name]
+    maker = {"ppo": PPO, "balls": PPO, "sac": SAC, "dqn": DQN, "mask": MaskablePPO, "masked": MaskablePPO}[name]
     model, player = maker.load(foreign / f"{name}.zip", device="cpu"), load_any(foreign / f"{name}.zip", True, options)
     assert player.options == read and player.foreign
     tables = SnookerVectorEnv(3, layout="held_out", threads=1, **read)
-    seen_by_it = SnookerVectorEnv(3, layout="held_out", threads=1, observation="balls" if name == "balls" else "flat", **read)
+    seen_by_it = SnookerVectorEnv(3, layout="held_out", threads=1, observation=name if name in ("balls", "masked") else "flat", **read)
     observations, _ = tables.reset(seed=0)
     its, _ = seen_by_it.reset(seed=0)
-    masks = {"action_masks": tables.action_masks()} if name == "mask" else {}
+    masks = {"action_masks": tables.action_masks()} if name in ("mask", "masked") else {}
     assert np.array_equal(player.act(tables, observations, np.ones(3, bool)), model.predict(its, deterministic=True, **masks)[0])
 
 
@@ -73,7 +74,7 @@ OTHER_ACTIONS = "must be a model whose actions are {}: give --options as in its 
         ("ppo", ["--trust", "--options", "placement=True"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (6,), float32)")),
         ("sac", ["--trust"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (4,), float32)")),
         ("dqn", ["--trust", "--options", "action=box"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (4,), float32)")),
-        ("frame", ["--trust"], "must be a model trained on the observation of a visit, flat or balls, and nothing else"),
+        ("frame", ["--trust"], "must be a model trained on the observation of a visit, flat, balls or masked, and nothing else"),
         ("recurrent", ["--trust"], "must be a model of MaskablePPO, TQC"),
         ("recurrent", [], "must be a model of MaskablePPO, TQC"),
     ],

@@ -1,0 +1,113 @@
+"""How is the policy of another trainer stored in a file? As the weights of its layers, an ``.npz`` of NumPy without any code.
+
+RLlib, TorchRL and a loop of one's own each save in a way of their own, most of them as pickles. Where the policy is a plain multilayer
+perceptron from the flat observation to the 540 choices, its weights are all there is to keep: ``weight_0`` (out, in) and ``bias_0`` (out,)
+of the first layer, ``weight_1`` and so on, and ``about``, JSON with the keys ``ABOUT``. ``agents.evaluate`` plays such a file.
+"""
+
+import io
+import json
+import zipfile
+from itertools import count
+from pathlib import Path
+
+import numpy as np
+
+from commands.files import write_atomic
+from snooker_env.checks import choice, integer, number, refuse
+from snooker_env.tasks import CHOICES, OBSERVATION_SIZE
+
+from .hyperparameters import SHOT_OPTIONS, TRAINING_OPTIONS
+from .model_files import Trained
+
+ACTIVATIONS = {"tanh": np.tanh, "relu": lambda x: np.maximum(x, 0.0)}
+"""Between two layers; after the last one there is none."""
+MOST = 2**27
+"""The most bytes of weights that are read: a hundred times the largest policy of this repository."""
+ABOUT = {"trainer": "RLlib", "activation": "tanh", "shots": 0, "seed": 0, "gamma": 0.95, "env_options": {}}
+"""What ``about`` says, with an example: ``env_options`` are the layout, noise, ... of the training."""
+
+
+class Layers:
+    """A multilayer perceptron: one row of scores for each row of observations.
+
+    Parameters
+    ----------
+    weights : list of (numpy.ndarray, numpy.ndarray)
+        (out, in) and (out,) of each layer, from the observation to the choices.
+    activation : {"tanh", "relu"}
+        Between two layers.
+    """
+
+    def __init__(self, weights, activation):
+        self.weights, self.activation = [tuple(np.asarray(part, np.float32) for part in layer) for layer in weights], activation
+
+    def __call__(self, rows):
+        """float32 (n, 121) -> (n, 540)."""
+        *hidden, (weight, bias) = self.weights
+        for inner, shift in hidden:
+            rows = ACTIVATIONS[self.activation](rows @ inner.T + shift)
+        return rows @ weight.T + bias
+
+
+def packed_policy(weights, **about):
+    """A policy as the bytes of its file. ``weights``: as in ``Layers``; ``about``: a value for each key of ``ABOUT``."""
+    if set(about) != set(ABOUT):
+        raise refuse("about", sorted(about), f"must have the keys {', '.join(ABOUT)}")
+    arrays = {}
+    for k, (weight, bias) in enumerate(weights):
+        arrays |= {f"weight_{k}": np.asarray(weight, np.float32), f"bias_{k}": np.asarray(bias, np.float32)}
+    file = io.BytesIO()
+    np.savez(file, about=np.array(json.dumps(about)), **arrays)
+    return file.getvalue()
+
+
+def write_policy(path, weights, **about):
+    """Write a policy's file, completely or not at all."""
+    write_atomic(Path(path), packed_policy(weights, **about))
+
+
+def read_policy(path, field):
+    """The ``Trained`` policy in a file, its network a ``Layers``. Raises ValueError, naming ``field``; nothing is unpickled."""
+    try:
+        with zipfile.ZipFile(path) as parts:
+            if sum(part.file_size for part in parts.infolist()) > MOST:
+                raise ValueError(f"it holds more than {MOST:,} bytes")
+        with np.load(path, allow_pickle=False) as arrays:
+            about = json.loads(arrays["about"].item())
+            layers = [(arrays[f"weight_{k}"], arrays[f"bias_{k}"]) for k in range(_number_of_layers(arrays.files))]
+        _check_layers(layers)
+        return _described(about, layers)
+    except Exception as error:  # any error of zip, NumPy or JSON on a file of another kind
+        wanted = "must be a policy's .npz: weights of layers from the flat observation to the choices, and what they are about"
+        raise refuse(field, str(path), f"{wanted} ({' '.join(str(error).split())[:200]})") from None
+
+
+def _number_of_layers(names):
+    return next(k for k in count() if f"weight_{k}" not in names)
+
+
+def _check_layers(layers):
+    size = OBSERVATION_SIZE
+    for k, (weight, bias) in enumerate(layers):
+        if weight.dtype != np.float32 or bias.dtype != np.float32 or weight.shape != (len(bias), size) or bias.ndim != 1:
+            raise ValueError(f"weight_{k} {weight.dtype} {weight.shape}, bias_{k} {bias.dtype} {bias.shape} after {size} numbers")
+        if not (np.isfinite(weight).all() and np.isfinite(bias).all()):
+            raise ValueError(f"layer {k} is not finite")
+        size = len(bias)
+    if not layers or size != CHOICES:
+        raise ValueError(f"the last layer gives {size} numbers and not {CHOICES}")
+
+
+def _described(about, layers):
+    if not isinstance(about, dict) or set(about) != set(ABOUT):
+        raise ValueError(f"about has not the keys {', '.join(ABOUT)}")
+    if not isinstance(about["trainer"], str) or not isinstance(about["env_options"], dict):
+        raise ValueError("about.trainer is no text, or about.env_options no object")
+    for key in about["env_options"]:
+        choice("key of about.env_options", key, (*SHOT_OPTIONS, *TRAINING_OPTIONS))
+    network = Layers(layers, choice("about.activation", about["activation"], ACTIVATIONS))
+    return Trained(
+        network, about["trainer"], "flat", about["env_options"] | {"action": "discrete"}, integer("about.shots", about["shots"], 0, 10**18),
+        number("about.gamma", about["gamma"], 0, 1), integer("about.seed", about["seed"], 0, 2**64), imitated=None, start=None,
+    )  # fmt: skip

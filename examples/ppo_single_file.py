@@ -1,0 +1,148 @@
+"""How is PPO written in one file? Masked PPO on the native vector environment, top to bottom, with Gymnasium, NumPy and PyTorch alone.
+
+    python -m examples.ppo_single_file --steps 300000 --out runs/single.npz
+    python -m agents.evaluate --agent runs/single.npz
+
+The masks come from ``envs.call("action_masks")``. The tables are made with ``autoreset_mode="SameStep"``: the observation after the end of
+a visit is the first one of the next visit, so that every step is a shot, and only the value after the end must be left out.
+"""
+
+import argparse
+import json
+import time
+from itertools import pairwise
+
+import gymnasium
+import numpy as np
+import torch
+from gymnasium.wrappers.vector import RecordEpisodeStatistics
+from torch import nn
+from torch.distributions import Categorical
+
+import snooker_env  # noqa: F401 - registers Snooker-v0
+
+TABLES, STEPS = 64, 128  # a rollout: so many shots on each of so many tables
+BATCH, EPOCHS = 2048, 4
+LEARNING_RATE, GAMMA, LAMBDA, CLIP = 1e-3, 0.95, 0.5, 0.2
+ENTROPY, VALUE, GRADIENT = 0.003, 0.01, 0.5
+
+
+class Agent(nn.Module):
+    """An actor and a critic that share nothing."""
+
+    def __init__(self, numbers, choices):
+        super().__init__()
+        self.actor = mlp(numbers, 256, 256, choices)
+        self.critic = mlp(numbers, 256, 256, 1)
+
+    def policy(self, observations, masks):
+        """The distribution of the available choices. The least float in place of -inf: 0 times it is 0, and not NaN, in the entropy."""
+        scores = self.actor(observations)
+        return Categorical(logits=scores.masked_fill(~masks, torch.finfo(scores.dtype).min), validate_args=False)
+
+    def value(self, observations):
+        """The expected sum of discounted rewards."""
+        return self.critic(observations).squeeze(-1)
+
+
+def mlp(*sizes):
+    """Linear layers with a tanh between them."""
+    layers = []
+    for a, b in pairwise(sizes):
+        layers += [nn.Linear(a, b), nn.Tanh()]
+    return nn.Sequential(*layers[:-1])
+
+
+def advantages_of(rewards, values, ends, last):
+    """Generalised advantages: (steps, tables) each; ``ends``: the visit ended in this step; ``last``: the values after the last step."""
+    found, running = torch.zeros_like(rewards), torch.zeros_like(last)
+    for t in reversed(range(len(rewards))):
+        goes_on = 1.0 - ends[t]
+        after = values[t + 1] if t + 1 < len(rewards) else last
+        running = rewards[t] + GAMMA * goes_on * after - values[t] + GAMMA * LAMBDA * goes_on * running
+        found[t] = running
+    return found
+
+
+def save(path, actor, about):
+    """The actor as plain weights, as ``python -m agents.evaluate`` reads them."""
+    layers = [layer for layer in actor if isinstance(layer, nn.Linear)]
+    arrays = {f"weight_{k}": layer.weight.detach().numpy() for k, layer in enumerate(layers)}
+    arrays |= {f"bias_{k}": layer.bias.detach().numpy() for k, layer in enumerate(layers)}
+    np.savez(path, about=np.array(json.dumps(about)), **arrays)
+
+
+def main(argv=None):
+    """Train; returns the mean points of the last 1,000 visits."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--steps", type=int, default=300_000, help="shots, rounded up to whole rollouts [300000]")
+    parser.add_argument("--seed", type=int, default=0, help="of tables, weights and exploration [0]")
+    parser.add_argument("--noise", default="professional", help="execution noise [professional]")
+    parser.add_argument("--out", default="policy.npz", help="where the policy is written [policy.npz]")
+    given = parser.parse_args(argv)
+    torch.manual_seed(given.seed)
+    torch.set_num_threads(1)
+
+    envs = gymnasium.make_vec(
+        "Snooker-v0", num_envs=TABLES, vectorization_mode="vector_entry_point", autoreset_mode="SameStep", action="discrete",
+        noise=given.noise,
+    )  # fmt: skip
+    envs = RecordEpisodeStatistics(envs, buffer_length=1000)
+    numbers, choices = envs.single_observation_space.shape[0], int(envs.single_action_space.n)
+    agent = Agent(numbers, choices)
+    optimiser = torch.optim.Adam(agent.parameters(), lr=LEARNING_RATE)
+
+    seen, masks = torch.zeros(STEPS, TABLES, numbers), torch.zeros(STEPS, TABLES, choices, dtype=torch.bool)
+    actions, logs = torch.zeros(STEPS, TABLES, dtype=torch.long), torch.zeros(STEPS, TABLES)
+    rewards, ends, values = (torch.zeros(STEPS, TABLES) for _ in range(3))
+
+    observation, _ = envs.reset(seed=given.seed)
+    updates, played, began = -(-given.steps // (STEPS * TABLES)), 0, time.perf_counter()
+    for update in range(updates):
+        for group in optimiser.param_groups:  # falls to nearly 0
+            group["lr"] = LEARNING_RATE * (1.0 - update / updates)
+
+        # the rollout
+        for t in range(STEPS):
+            seen[t] = torch.from_numpy(observation)
+            masks[t] = torch.from_numpy(np.stack(envs.unwrapped.call("action_masks")))
+            with torch.no_grad():
+                policy = agent.policy(seen[t], masks[t])
+                actions[t] = policy.sample()
+                logs[t], values[t] = policy.log_prob(actions[t]), agent.value(seen[t])
+            observation, reward, terminated, truncated, _ = envs.step(actions[t].numpy())
+            rewards[t], ends[t] = torch.from_numpy(reward), torch.from_numpy(terminated | truncated)
+        played += STEPS * TABLES
+
+        # advantages and returns
+        with torch.no_grad():
+            advantages = advantages_of(rewards, values, ends, agent.value(torch.from_numpy(observation)))
+        rows = [part.flatten(0, 1) for part in (seen, masks, actions, logs, advantages, advantages + values)]
+
+        # the update
+        for _ in range(EPOCHS):
+            for batch in torch.randperm(STEPS * TABLES).split(BATCH):
+                o, m, a, before, advantage, target = (part[batch] for part in rows)
+                policy = agent.policy(o, m)
+                ratio = (policy.log_prob(a) - before).exp()
+                advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
+                gain = torch.min(advantage * ratio, advantage * ratio.clamp(1 - CLIP, 1 + CLIP)).mean()
+                error = (agent.value(o) - target).square().mean()
+                loss = -gain + VALUE * error - ENTROPY * policy.entropy().mean()
+                optimiser.zero_grad()
+                loss.backward()
+                nn.utils.clip_grad_norm_(agent.parameters(), GRADIENT)
+                optimiser.step()
+
+        points = float(np.mean(envs.return_queue))
+        print(f"{played:,} shots, {points:.2f} points a visit, {played / (time.perf_counter() - began):.0f} shots/s", flush=True)
+
+    envs.close()
+    options = {"noise": given.noise, "layout": "opened"}
+    about = {"trainer": "single file", "activation": "tanh", "shots": played, "seed": given.seed, "gamma": GAMMA, "env_options": options}
+    save(given.out, agent.actor, about)
+    return points
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,135 @@
+"""Is the policy of another trainer kept as plain weights, played as it scores, and refused if it is anything else?"""
+
+import io
+import json
+import pickle
+import zipfile
+
+import numpy as np
+import pytest
+
+from agents.evaluation import protocol
+from agents.evaluation.entrants import Entrant
+from agents.learning import policy_files
+from agents.learning.models import POLICY
+from agents.learning.policy_files import Layers, packed_policy, read_policy, write_policy
+from agents.players.layers_player import LayersPlayer
+from agents.players.trained import load_any, load_player
+from snooker_env import SnookerVectorEnv
+
+ABOUT = {"trainer": "mine", "activation": "tanh", "shots": 12, "seed": 3, "gamma": 0.9, "env_options": {"noise": "club"}}
+RNG = np.random.default_rng(0)
+WEIGHTS = [(RNG.normal(size=(b, a)).astype(np.float32), RNG.normal(size=b).astype(np.float32)) for a, b in ((121, 32), (32, 540))]
+
+
+def arrays(**changes):
+    """The arrays of a sound file with some changed; None leaves one out."""
+    found = {f"{kind}_{k}": part for k, layer in enumerate(WEIGHTS) for kind, part in zip(("weight", "bias"), layer, strict=True)}
+    found = found | {"about": np.array(json.dumps(ABOUT))} | changes
+    return {name: part for name, part in found.items() if part is not None}
+
+
+def test_a_policy_plays_the_available_choice_that_scores_highest(tmp_path):
+    write_policy(tmp_path / "p.npz", WEIGHTS, **ABOUT)
+    player = load_player(tmp_path / "p.npz")
+    assert isinstance(player, LayersPlayer) and player.options == {"action": "discrete"} and not player.foreign
+    tables = SnookerVectorEnv(9, threads=1, action="discrete", layout="random:2")
+    rows, _ = tables.reset(seed=1)
+    (first, shift), (last, end) = WEIGHTS
+    scores = np.tanh(rows @ first.T + shift) @ last.T + end
+    masks, going = tables.action_masks(), np.arange(9) % 3 > 0
+    want = np.where(masks, scores, -np.inf).argmax(axis=1)
+    assert np.array_equal(player.act(tables, rows, going), np.where(going, want, 0)) and not masks.all() and len(set(want)) > 2
+    for (choices, shares), k in zip(player.rank(tables, rows, going), np.flatnonzero(going), strict=True):
+        assert choices[0] == want[k] and set(choices) == set(np.flatnonzero(masks[k]))
+        assert shares.sum() == pytest.approx(1.0) and (np.diff(shares) <= 0).all()
+    other = Layers(WEIGHTS, "relu")(rows)
+    assert np.allclose(other, np.maximum(rows @ first.T + shift, 0) @ last.T + end) and not np.allclose(other, scores)
+
+
+def test_it_plays_frames_as_an_opponent(tmp_path):
+    """By what a frame's observation has in common with a visit's."""
+    write_policy(tmp_path / "p.npz", WEIGHTS, **ABOUT)
+    tables = SnookerVectorEnv(3, threads=1, task="frame", layout="random:1", action="discrete", opponent=str(tmp_path / "p.npz"))
+    tables.reset(seed=1)
+    played = sum(tables.step(tables.action_masks().argmax(axis=1))[-1]["opponent_strokes"].sum() for _ in range(5))
+    assert played > 3
+
+
+def test_it_is_evaluated_like_any_other_agent(tmp_path, capsys):
+    """As a file and as a run's folder, with what its file says of its training."""
+    folder = tmp_path / "mine-0"
+    folder.mkdir()
+    write_policy(folder / POLICY, WEIGHTS, **ABOUT)
+    assert load_any(folder, False, {}).model.num_timesteps == 12
+    ends = ["--visits", "4", "--layouts", "held_out", "--noise", "club", "--resamples", "100", "--json", str(tmp_path / "r.json")]
+    assert protocol.main(["--agent", str(folder), f"same={folder / POLICY}", *ends]) == 0
+    report = json.loads((tmp_path / "r.json").read_text())
+    (run,) = report["agents"][0]["runs"]
+    wanted = {"recipe": "mine", "shots": 12, "seed": 3, "gamma": 0.9, "noise": "club", "imitated": None, "physics": "paper"}
+    assert report["agents"][0]["label"] == "mine-0" and {key: run[key] for key in wanted} == wanted
+    first, second = report["results"][:2]
+    assert (
+        first["agent"] == "mine-0"
+        and second["agent"] == "same"
+        and first["figures"]["points_a_visit"] == second["figures"]["points_a_visit"]
+    )
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"about": None}, "about"),
+        ({"about": np.array("[]")}, "about has not the keys"), ({"about": np.array("?")}, "Expecting value"),
+        ({"about": np.array(json.dumps(ABOUT | {"more": 1}))}, "about has not the keys"),
+        ({"about": np.array(json.dumps(ABOUT | {"shots": -1}))}, "about.shots = -1"),
+        ({"about": np.array(json.dumps(ABOUT | {"activation": "sin"}))}, "about.activation = 'sin': must be one of 'tanh', 'relu'"),
+        ({"about": np.array(json.dumps(ABOUT | {"env_options": {"aim": "target"}}))}, "key of about.env_options = 'aim'"),
+        ({"about": np.array(json.dumps(ABOUT | {"trainer": 3}))}, "about.trainer is no text"),
+        ({"weight_0": None}, "the last layer gives 121 numbers and not 540"), ({"weight_1": None}, "the last layer gives 32 numbers"),
+        ({"bias_1": None}, "bias_1"), ({"bias_0": np.zeros(7, np.float32)}, "weight_0 float32 (32, 121), bias_0 float32 (7,)"),
+        ({"weight_0": np.zeros((32, 120), np.float32)}, "after 121 numbers"), ({"weight_0": np.zeros((32, 121))}, "weight_0 float64"),
+        ({"bias_1": np.full(540, np.nan, np.float32)}, "layer 1 is not finite"),
+    ],
+)  # fmt: skip
+def test_what_is_no_policy_is_refused_in_one_line(tmp_path, changes, says):
+    file = tmp_path / "p.npz"
+    np.savez(file, **arrays(**changes))
+    for call in (lambda: read_policy(file, "agent"), lambda: Entrant.of(str(file)).trained(), lambda: load_player(file)):
+        with pytest.raises(ValueError) as info:
+            call()
+        text = str(info.value)
+        assert text.startswith(f"agent = {str(file)!r}: must be a policy's .npz: ") and says in text and "\n" not in text
+
+
+def test_nothing_in_a_file_is_unpickled(tmp_path):
+    class Bomb:
+        def __reduce__(self):
+            return (tmp_path.joinpath("mark").write_text, ("ran",))
+
+    hidden = np.empty(1, object)
+    hidden[0] = Bomb()
+    for name in ("weight_0", "about"):
+        np.savez(tmp_path / "p.npz", **arrays(**{name: hidden}))
+        with pytest.raises(ValueError, match=r"^agent = .*must be a policy's \.npz"):
+            read_policy(tmp_path / "p.npz", "agent")
+    (tmp_path / "q.npz").write_bytes(pickle.dumps(Bomb()))
+    with pytest.raises(ValueError, match=r"^agent = "):
+        read_policy(tmp_path / "q.npz", "agent")
+    assert not (tmp_path / "mark").exists()
+
+
+def test_a_file_that_would_fill_the_memory_is_refused_before_it_is_read(tmp_path, monkeypatch):
+    monkeypatch.setattr(policy_files, "MOST", 20_000)
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as made:
+        made.writestr("weight_0.npy", b"\0" * 10**6)
+    (tmp_path / "p.npz").write_bytes(file.getvalue())
+    with pytest.raises(ValueError, match=r"it holds more than 20,000 bytes"):
+        read_policy(tmp_path / "p.npz", "agent")
+
+
+def test_what_is_written_must_be_described():
+    with pytest.raises(ValueError, match=r"^about = .*must have the keys trainer, activation"):
+        packed_policy(WEIGHTS, trainer="mine")

@@ -1,0 +1,137 @@
+"""Does ``python -m agents.train_rllib`` train, save, go on and judge? Checkpoints, a signal, wrong options and folders."""
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from agents.learning.policy_files import read_policy
+from agents.players.trained import load_player
+from tests.trainers import needed
+
+ray = needed("ray")
+config, run = needed("agents.trainers.rllib_config"), needed("agents.trainers.rllib_run")
+ROOT = Path(__file__).parents[3]
+SHORT = ["--envs", "16", "--eval-visits", "4", "--checkpoint-every", "8000"]
+
+
+def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
+    """With one runner, then with two; the second part begins with the weights and counters of the first."""
+    out = tmp_path / "run"
+    assert run.main(["--steps", "8192", "--out", str(out), *SHORT]) == 0
+    state, first = json.loads((out / run.STATE).read_text()), read_policy(out / "policy.npz", "out")
+    progress = state["progress"]
+    assert progress["shots"] >= 8192 and progress["updates"] == 1 and (out / progress["checkpoint"]).is_dir()
+    untrained = read_policy(out / run.UNTRAINED, "out")
+    assert untrained.num_timesteps == 0 and not np.array_equal(untrained.policy.weights[0][0], first.policy.weights[0][0])
+    results = json.loads((out / run.RESULTS).read_text())
+    assert set(results["evaluation"]) == {"trained", "untrained", "ghost_ball", "random"} and results["versions"]["ray"]
+    kept, original = [], run.algorithm_of
+
+    def of_runners(made):
+        return made.env_runner_group.foreach_env_runner(
+            lambda runner: runner.module.get_state()["pi.net.mlp.0.bias"], local_env_runner=False
+        )
+
+    def watched(settings, seed):
+        made = original(settings, seed)
+        restore = made.restore_from_path
+        made.restore_from_path = lambda path: (restore(path), kept.append((settings, seed, config.layers_of(made), of_runners(made))))
+        return made
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "algorithm_of", watched)
+        assert run.main(["--resume", "--steps", "16000", "--runners", "2", "--out", str(out), *SHORT[2:]]) == 0
+    ((settings, seed, weights, there),) = kept
+    assert len(there) == 2 and all(np.array_equal(bias, weights[-1][1]) for bias in there)  # the runners play with them too
+    assert settings == replace(run.Settings(), steps=16000, runners=2, envs=16, eval_visits=4, checkpoint_every=8000) and seed == run.SEEDS
+    assert all(
+        np.array_equal(a, b) for mine, its in zip(first.policy.weights, weights, strict=True) for a, b in zip(mine, its, strict=True)
+    )
+    after = json.loads((out / run.STATE).read_text())["progress"]
+    assert after["shots"] >= progress["shots"] + 7500 and after["updates"] == 2 and after["parts"] == 2
+    assert [file.name for file in out.glob("checkpoint-*")] == [after["checkpoint"]] != [progress["checkpoint"]]
+    assert load_player(out).model.num_timesteps == after["shots"]
+    assert run.main(["--resume", "--steps", "16000", "--out", str(out)]) == 0
+    assert "nothing left to train" in capsys.readouterr().out
+    assert not ray.is_initialized()
+
+
+def test_a_signal_saves_and_the_run_goes_on(tmp_path):
+    out = tmp_path / "run"
+    command = [sys.executable, "-u", "-m", "agents.train_rllib", "--steps", "1000000", "--out", str(out), *SHORT]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        assert process.stdout is not None
+        lines = []
+        for line in process.stdout:
+            lines.append(line)
+            if re.search(r"RLlib: [\d,]+ of 1,000,000 shots", line):
+                process.send_signal(signal.SIGINT)
+                break
+        rest = process.stdout.read()
+        assert process.wait(120) == 130, "".join(lines) + rest
+    assert f"Continue with:  python -m agents.train_rllib --resume --out {out}" in rest and "Traceback" not in rest
+    progress = json.loads((out / run.STATE).read_text())["progress"]
+    assert (
+        progress["shots"] > 8000 and (out / progress["checkpoint"]).is_dir() and load_player(out).model.num_timesteps == progress["shots"]
+    )
+    began = time.monotonic()
+    while (out / "train.lock").exists() and time.monotonic() - began < 10:
+        time.sleep(0.1)
+    settings, again = run.opened(out, {"steps": 5}, True)
+    assert settings.steps == 5 and again.shots == progress["shots"]
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--steps", "0"], "steps = 0: must be an integer in [1, "), (["--runners", "0"], "runners = 0: must be an integer in [1, 1024]"),
+        (["--envs", "9000"], "envs = 9000: must be an integer in [1, 8192]"), (["--noise", "loud"], "noise = 'loud'"),
+        (["--layout", "moon"], "layout = 'moon'"), (["--layout", "held_out"], "layout = 'held_out': must be another for training"),
+        (["--eval-visits", "1"], "eval_visits = 1"), (["--resume"], "must be the folder of a run with a checkpoint"),
+    ],
+)  # fmt: skip
+def test_wrong_options_are_refused_in_one_line_before_anything_starts(tmp_path, options, says, capsys):
+    with pytest.raises(SystemExit) as stop:
+        run.main([*options, "--out", str(tmp_path / "run")])
+    assert stop.value.code == 2 and says in capsys.readouterr().err.strip().splitlines()[-1]
+    assert not (tmp_path / "run").exists()
+
+
+def test_an_update_without_a_sample_ends_the_run_in_one_line(tmp_path):
+    """What was played before is kept."""
+
+    class Silent:
+        def train(self):
+            return {"learners": {}}
+
+    saved = []
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit, match=r"no env runner gave a sample in 600 s; saved at 7 shots"):
+        patch.setattr(run, "save", lambda *parts: saved.append(parts))
+        run.train(tmp_path, run.Settings(), run.Progress(shots=7), Silent(), run.Stop())
+    assert len(saved) == 1
+
+
+def test_folders_that_do_not_fit_are_refused(tmp_path, capsys):
+    def refused(*options):
+        with pytest.raises(SystemExit) as stop:
+            run.main(["--out", str(tmp_path), *options])
+        assert stop.value.code == 2
+        return capsys.readouterr().err.strip().splitlines()[-1]
+
+    (tmp_path / "mine.txt").write_text("mine")
+    assert "is not empty (it holds mine.txt): --resume continues it, --out names another folder" in refused()
+    (tmp_path / "state.json").write_text("{}")
+    assert "must be the folder of a run with a checkpoint" in refused("--resume")
+    progress = {"shots": 5, "updates": 1, "seconds": 1.0, "parts": 1, "checkpoint": "checkpoint-000001"}
+    (tmp_path / "state.json").write_text(json.dumps({"settings": {"envs": 16}, "progress": progress}))
+    assert "checkpoint-000001 is missing" in refused("--resume")
+    (tmp_path / "checkpoint-000001").mkdir()
+    assert "envs = 32: must be 16, as in the run in" in refused("--resume", "--envs", "32")

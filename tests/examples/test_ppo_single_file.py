@@ -1,0 +1,68 @@
+"""Is the PPO of one file right, and does it learn? Its advantages, masks and file, and a short run."""
+
+import numpy as np
+import pytest
+import torch
+
+from agents.players.trained import load_player
+from examples import ppo_single_file as example
+from snooker_env import SnookerVectorEnv
+from snooker_env.benchmark import play_visits, summary
+
+
+def test_advantages_are_those_of_the_definition():
+    """Sums of discounted errors up to the end of the visit, with nothing from beyond it."""
+    torch.manual_seed(0)
+    rewards, values, last = torch.rand(7, 3), torch.rand(7, 3), torch.rand(3)
+    ends = torch.zeros(7, 3)
+    ends[2, 0] = ends[6, 1] = ends[0, 2] = ends[1, 2] = 1.0
+    found = example.advantages_of(rewards, values, ends, last)
+    after = torch.cat([values[1:], last[None]])
+    for k in range(3):
+        for t in range(7):
+            want, weight = 0.0, 1.0
+            for s in range(t, 7):
+                going = 1.0 - ends[s, k].item()
+                want += weight * (rewards[s, k] + example.GAMMA * going * after[s, k] - values[s, k]).item()
+                weight *= example.GAMMA * example.LAMBDA
+                if not going:
+                    break
+            assert found[t, k].item() == pytest.approx(want, abs=1e-5)
+
+
+def test_masked_choices_are_never_drawn_and_cost_nothing():
+    torch.manual_seed(0)
+    agent = example.Agent(121, 540)
+    masks = torch.rand(64, 540) < 0.02
+    masks[:, 7] = True
+    masks[0] = torch.arange(540) == 7
+    rows = torch.rand(64, 121, requires_grad=True)
+    policy = agent.policy(rows, masks)
+    drawn = policy.sample((50,))
+    assert masks.expand(50, 64, 540).gather(2, drawn[..., None]).all()
+    assert policy.probs[~masks].max() == 0.0 and torch.isfinite(policy.entropy()).all() and policy.entropy()[0] == 0.0
+    (policy.entropy().sum() + policy.log_prob(drawn[0]).sum()).backward()
+    assert torch.isfinite(rows.grad).all() and all(torch.isfinite(p.grad).all() for p in agent.actor.parameters())
+    none = agent.policy(rows, torch.zeros(64, 540, dtype=torch.bool))
+    assert torch.isfinite(none.entropy()).all() and torch.isfinite(none.log_prob(none.sample())).all()
+
+
+def test_it_learns_and_its_file_is_played_by_our_protocol(tmp_path, capsys):
+    before = torch.random.get_rng_state(), torch.get_num_threads()
+    points = example.main(["--steps", "57344", "--seed", "1", "--out", str(tmp_path / "p.npz")])
+    torch.random.set_rng_state(before[0]), torch.set_num_threads(before[1])
+    lines = capsys.readouterr().out.splitlines()
+    first = float(lines[0].partition(" shots, ")[2].partition(" ")[0])
+    assert len(lines) == 7 and points > 1.7 * first
+    player = load_player(tmp_path / "p.npz")
+    assert player.model.num_timesteps == 57344 and player.model.recipe == "single file" and player.model.seed == 1
+    assert summary(play_visits(player, 200))["points_a_visit"] > 6.0  # untrained: 4.6, random 2.6
+    tables = SnookerVectorEnv(5, threads=1, action="discrete")
+    rows, _ = tables.reset(seed=3)
+    agent = example.mlp(121, 256, 256, 540)
+    weights = iter(part for layer in player.model.policy.weights for part in layer)
+    with torch.no_grad():
+        for own in agent.parameters():
+            own.copy_(torch.from_numpy(next(weights)))
+        scores = agent(torch.from_numpy(rows)).numpy()
+    assert np.allclose(player.model.policy(rows), scores, atol=1e-5)
