@@ -10,7 +10,7 @@ w(a) is the width of the lateral window of the pocket at the angle a off its axi
 jaws included, to a millimetre (tests/benchmarks/test_pocket_windows.py). The window is smaller for a fast ball and larger for a slow one.
 """
 
-from math import acos, hypot
+from math import acos, cos, hypot, radians
 
 import numpy as np
 
@@ -21,6 +21,8 @@ from .balls import N_BALLS
 
 _CORNER_ANGLE, _CORNER_WINDOW = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0)  # degrees, metres
 _MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0), (0.073, 0.071, 0.063, 0.043, 0.018, 0.0)
+# Squared cosines of the last angles, less a margin far above rounding: below them a window is certainly closed.
+_CORNER_SHUT, _MIDDLE_SHUT = (cos(radians(angle)) ** 2 - 1e-9 for angle in (_CORNER_ANGLE[-1], _MIDDLE_ANGLE[-1]))
 
 POT_BALL, POT_POCKET, GHOST_X, GHOST_Y, COS_CUT, TOLERANCE = range(6)
 """Columns of a pot: object ball, pocket, place of the ghost ball [m], cosine of the cut angle, tolerance of the aim [rad]."""
@@ -79,10 +81,14 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
     """
     ux, uy = bx - ax, by - ay
     length2 = ux * ux + uy * uy
+    sure = 1.001 * d * d * length2
     for i in range(N_BALLS):
         if not on_table[i] or i == skip1 or i == skip2:
             continue
         px, py = positions[i, 0] - ax, positions[i, 1] - ay
+        across = px * uy - py * ux
+        if across * across > sure:  # off the whole line
+            continue
         s = (px * ux + py * uy) / length2 if length2 > 0.0 else 0.0
         s = min(1.0, max(0.0, s))
         px -= s * ux
@@ -123,20 +129,28 @@ def find_pots(positions, on_table, on, radius, pots):
         bx, by = positions[ball, 0], positions[ball, 1]
         for k in range(6):
             dx, dy = POCKET_AIMS[k, AIM_X] - bx, POCKET_AIMS[k, AIM_Y] - by
+            # most pots are out of the question, and that is seen without a root: the ball would have to come back towards the cue ball,
+            # or the pocket is shut from there
+            along, middle = dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
+            shut = (_MIDDLE_SHUT if middle else _CORNER_SHUT) * (dx * dx + dy * dy)
+            if dx * (bx - cx) + dy * (by - cy) <= 0.0 or along <= 0.0 or along * along < shut:
+                continue
             run = hypot(dx, dy)
             if run < 1e-9:
                 continue
             dx, dy = dx / run, dy / run
-            width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0)
             gx, gy = bx - d * dx, by - d * dy
             px, py = gx - cx, gy - cy
             path = hypot(px, py)
-            if width <= 0.0 or path < 1e-9:
+            if path < 1e-9:
                 continue
             if abs(gx) > HALF_WIDTH - radius + 1e-9 or abs(gy) > HALF_LENGTH - radius + 1e-9:  # the ghost ball would be in the cushion
                 continue
             cos_cut = (px * dx + py * dy) / path
             if cos_cut < 0.05:  # a cut of more than 87 degrees
+                continue
+            width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], middle)
+            if width <= 0.0:
                 continue
             tolerance = width / (2.0 * run) * d * cos_cut / path
             if count == pots.shape[0] and tolerance <= pots[count - 1, TOLERANCE]:
