@@ -99,6 +99,45 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
 
 
 @kernel
+def pot_at(positions, on_table, ball, k, d, least):
+    """The direct pot of a ball into pocket k: (tolerance, ghost ball x, y, cosine of the cut); tolerance 0 if there is none above ``least``.
+
+    d: diameter of the balls [m].
+    """
+    cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
+    dx, dy = POCKET_AIMS[k, AIM_X] - bx, POCKET_AIMS[k, AIM_Y] - by
+    # most pots are out of the question, and that is seen without a root: the object ball would have to come back towards the cue ball, or
+    # the pocket is shut from there
+    along, middle = dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
+    shut = (_MIDDLE_SHUT if middle else _CORNER_SHUT) * (dx * dx + dy * dy)
+    if dx * (bx - cx) + dy * (by - cy) <= 0.0 or along <= 0.0 or along * along < shut:
+        return 0.0, 0.0, 0.0, 0.0
+    run = hypot(dx, dy)
+    if run < 1e-9:
+        return 0.0, 0.0, 0.0, 0.0
+    dx, dy = dx / run, dy / run
+    gx, gy = bx - d * dx, by - d * dy
+    px, py = gx - cx, gy - cy
+    path = hypot(px, py)
+    if path < 1e-9:
+        return 0.0, 0.0, 0.0, 0.0
+    if abs(gx) > HALF_WIDTH - 0.5 * d + 1e-9 or abs(gy) > HALF_LENGTH - 0.5 * d + 1e-9:  # the ghost ball would be in the cushion
+        return 0.0, 0.0, 0.0, 0.0
+    cos_cut = (px * dx + py * dy) / path
+    if cos_cut < 0.05:  # a cut of more than 87 degrees
+        return 0.0, 0.0, 0.0, 0.0
+    width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], middle)
+    tolerance = width / (2.0 * run) * d * cos_cut / path
+    if width <= 0.0 or tolerance <= least:
+        return 0.0, 0.0, 0.0, 0.0
+    if not clear_segment(positions, on_table, bx, by, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], ball, 0, d):
+        return 0.0, 0.0, 0.0, 0.0
+    if not clear_segment(positions, on_table, cx, cy, gx, gy, ball, 0, d * (1.0 - 1e-9)):
+        return 0.0, 0.0, 0.0, 0.0
+    return tolerance, gx, gy, cos_cut
+
+
+@kernel
 def find_pots(positions, on_table, on, radius, pots):
     """Find the direct pots of a layout, widest tolerance first. An inner kernel.
 
@@ -121,43 +160,13 @@ def find_pots(positions, on_table, on, radius, pots):
         Number of rows written.
     """
     count = 0
-    cx, cy = positions[0, 0], positions[0, 1]
-    d = 2.0 * radius
     for ball in range(1, N_BALLS):
         if not on_table[ball] or not (on >> ball) & 1:
             continue
-        bx, by = positions[ball, 0], positions[ball, 1]
         for k in range(6):
-            dx, dy = POCKET_AIMS[k, AIM_X] - bx, POCKET_AIMS[k, AIM_Y] - by
-            # most pots are out of the question, and that is seen without a root: the ball would have to come back towards the cue ball,
-            # or the pocket is shut from there
-            along, middle = dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
-            shut = (_MIDDLE_SHUT if middle else _CORNER_SHUT) * (dx * dx + dy * dy)
-            if dx * (bx - cx) + dy * (by - cy) <= 0.0 or along <= 0.0 or along * along < shut:
-                continue
-            run = hypot(dx, dy)
-            if run < 1e-9:
-                continue
-            dx, dy = dx / run, dy / run
-            gx, gy = bx - d * dx, by - d * dy
-            px, py = gx - cx, gy - cy
-            path = hypot(px, py)
-            if path < 1e-9:
-                continue
-            if abs(gx) > HALF_WIDTH - radius + 1e-9 or abs(gy) > HALF_LENGTH - radius + 1e-9:  # the ghost ball would be in the cushion
-                continue
-            cos_cut = (px * dx + py * dy) / path
-            if cos_cut < 0.05:  # a cut of more than 87 degrees
-                continue
-            width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], middle)
-            if width <= 0.0:
-                continue
-            tolerance = width / (2.0 * run) * d * cos_cut / path
-            if count == pots.shape[0] and tolerance <= pots[count - 1, TOLERANCE]:
-                continue
-            if not clear_segment(positions, on_table, bx, by, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], ball, 0, d):
-                continue
-            if not clear_segment(positions, on_table, cx, cy, gx, gy, ball, 0, d * (1.0 - 1e-9)):
+            least = pots[count - 1, TOLERANCE] if count == pots.shape[0] else 0.0
+            tolerance, gx, gy, cos_cut = pot_at(positions, on_table, ball, k, 2.0 * radius, least)
+            if tolerance == 0.0:
                 continue
             at = min(count, pots.shape[0] - 1)
             while at > 0 and pots[at - 1, TOLERANCE] < tolerance:
@@ -168,6 +177,21 @@ def find_pots(positions, on_table, on, radius, pots):
             row[POT_BALL], row[POT_POCKET], row[GHOST_X], row[GHOST_Y] = ball, k, gx, gy
             row[COS_CUT], row[TOLERANCE] = cos_cut, tolerance
             count = min(count + 1, pots.shape[0])
+    return count
+
+
+@kernel
+def count_pots(positions, on_table, on, radius, most):
+    """The number of rows that ``find_pots`` writes into ``most`` rows. It stops at the last one that counts."""
+    count = 0
+    for ball in range(1, N_BALLS):
+        if not on_table[ball] or not (on >> ball) & 1:
+            continue
+        for k in range(6):
+            if count == most:
+                return count
+            tolerance, _x, _y, _cos = pot_at(positions, on_table, ball, k, 2.0 * radius, 0.0)
+            count += tolerance > 0.0
     return count
 
 
