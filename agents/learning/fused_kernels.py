@@ -19,7 +19,7 @@ STATE = OBSERVATION_SIZE - 5 * N_BALLS
 BALL_INPUTS = 5 + 2
 _TOPS, _TURN = len(TOPS), (len(SIDES) - 1) * len(TOPS)
 _X1, _X2, _X3 = POT_X
-NEVER = -1e8
+NEVER = np.float32(-1e8)
 """The score of a choice that is not available, as in ``sb3_contrib``."""
 _ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)  # literals are float64, and half as many of them fit into a register
 
@@ -157,9 +157,9 @@ def spread_to_pots(d_codes, codes, d_context, at):
 
 
 @entry
-def cut_off(d, activation):
-    """The gradient before a ReLU, in place, from its result."""
-    for j in range(d.shape[0]):
+def cut_off(d, activation, n):
+    """The gradient before a ReLU, in place, from its result: the first n rows."""
+    for j in range(n):
         d_row, row = d[j], activation[j]
         for c in range(row.shape[0]):
             d_row[c] = d_row[c] if row[c] > 0 else _ZERO
@@ -172,16 +172,18 @@ def mirrored(choice):
 
 
 @entry
-def turn_masks(rows, masks, sides, turned):
-    """masks[rows] in the order of the scores: of mirrored tables the sides are exchanged."""
+def mask_scores(rows, masks, sides, scores):
+    """Set the scores (n, choices) of choices that masks[rows] excludes to ``NEVER``, in place; sides are exchanged on mirrored tables."""
     for j in range(rows.shape[0]):
-        own, out = masks[rows[j]], turned[j]
+        own, out = masks[rows[j]], scores[j]
         if sides[j] > 0.0:
             for c in range(own.shape[0]):
-                out[c] = own[c]
+                out[c] = out[c] if own[c] else NEVER
         else:
-            for c in range(own.shape[0]):
-                out[c] = own[mirrored(c)]
+            for c in range(0, own.shape[0], _TOPS):
+                other = mirrored(c)
+                for t in range(_TOPS):
+                    out[c + t] = out[c + t] if own[other + t] else NEVER
 
 
 @entry
@@ -201,10 +203,10 @@ def draw(likely, total, uniform, sides, choices):
 
 @entry
 def log_probabilities(scores, top, total, sides, choices, out):
-    """Logarithm of the probability of each row's choice, from scores (n, k), their maxima and the sums of exp(scores - maximum)."""
+    """Logarithm of the probability of each row's choice, from scores (n, k), maxima (n, 1), sums of exp(scores - maximum)."""
     for j in range(scores.shape[0]):
         pick = choices[j] if sides[j] > 0.0 else mirrored(choices[j])
-        out[j] = scores[j, pick] - top[j] - log(np.float64(total[j]))
+        out[j] = scores[j, pick] - top[j, 0] - log(np.float64(total[j]))
 
 
 @entry
@@ -212,7 +214,7 @@ def ppo_gradient(rows, scores, top, likely, total, mean, sides, values, actions,
                  value_weight, batch, d_scores, d_values, sums):  # fmt: skip
     """The gradient of PPO's loss, a mean over ``batch`` rows of which these are some.
 
-    scores, top, likely, total: as in ``log_probabilities``, likely = exp(scores - top); mean: sums of likely * scores. actions, before
+    scores, top, total: as in ``log_probabilities``; likely = exp(scores - top), values (n, 1); mean: sums of likely * scores. actions, before
     (logarithms of the old probabilities), advantages, returns: of the whole rollout, read at ``rows``. The sums of the rows' policy
     losses, squared errors of the values, entropies, clipped ratios and approximate KL divergences are added to ``sums``.
     """
@@ -220,13 +222,13 @@ def ppo_gradient(rows, scores, top, likely, total, mean, sides, values, actions,
         at = rows[j]
         action = actions[at]
         pick = action if sides[j] > 0.0 else mirrored(action)
-        scale = top[j] + log(np.float64(total[j]))
+        scale = top[j, 0] + log(np.float64(total[j]))
         change = scores[j, pick] - scale - before[at]
         ratio, advantage = exp(change), advantages[at]
         surrogate, clipped = advantage * ratio, advantage * min(max(ratio, 1.0 - clip), 1.0 + clip)
         pull = surrogate if surrogate <= clipped else 0.0
         entropy = scale - np.float64(mean[j]) / total[j]
-        error = values[j] - returns[at]
+        error = values[j, 0] - returns[at]
         sums[0] -= min(surrogate, clipped)
         sums[1] += error * error
         sums[2] += entropy
@@ -239,4 +241,4 @@ def ppo_gradient(rows, scores, top, likely, total, mean, sides, values, actions,
         for c in range(own.shape[0]):
             out[c] = likelihood[c] * (a * own[c] + b)
         out[pick] -= pull / batch
-        d_values[j] = 2.0 * value_weight * error / batch
+        d_values[j, 0] = 2.0 * value_weight * error / batch
