@@ -178,12 +178,14 @@ def mask_scores(rows, masks, sides, scores):
         own, out = masks[rows[j]], scores[j]
         if sides[j] > 0.0:
             for c in range(own.shape[0]):
-                out[c] = out[c] if own[c] else NEVER
+                if not own[c]:
+                    out[c] = NEVER
         else:
             for c in range(0, own.shape[0], _TOPS):
                 other = mirrored(c)
                 for t in range(_TOPS):
-                    out[c + t] = out[c + t] if own[other + t] else NEVER
+                    if not own[other + t]:
+                        out[c + t] = NEVER
 
 
 @entry
