@@ -25,23 +25,26 @@ class FusedTable:
 
     def __init__(self, policy):
         reader, value = policy.features_extractor, policy.value_net.value
-        self._layers = {
+        layers = {
             "ball_1": reader.ball[0], "ball_2": reader.ball[2], "pot_1": reader.pot[0], "pot_2": reader.pot[2],
             "context_1": reader.context[0], "context_2": reader.context[2], "shared": reader.joint[0], "joint": reader.joint[1],
             "scores": policy.action_net.score, "value_1": value[0], "value_2": value[2],
         }  # fmt: skip
-        self.parameters = [p for layer in self._layers.values() for p in (layer.weight, layer.bias)]
-        self.gradient = torch.zeros(sum(p.numel() for p in self.parameters))
+        self.parameters = [p for layer in layers.values() for p in (layer.weight, layer.bias)]
+        ends = np.cumsum([p.numel() for p in self.parameters]).tolist()
+        self.gradient = torch.zeros(ends[-1])
         """The gradient of all parameters, one after another; ``zero_grad`` makes their ``grad`` views of it."""
+        parts = [self.gradient[end - p.numel() : end].view_as(p) for p, end in zip(self.parameters, ends, strict=True)]
+        self._views = parts
+        pairs = zip(layers.items(), parts[::2], parts[1::2], strict=True)
+        self._layers = {name: _Layer(layer, d_weight, d_bias) for (name, layer), d_weight, d_bias in pairs}
         self._blocks = {}
 
     def zero_grad(self):
         """Set the gradient to 0."""
         self.gradient.zero_()
-        start = 0
-        for p in self.parameters:
-            p.grad = self.gradient[start : start + p.numel()].view_as(p)
-            start += p.numel()
+        for p, view in zip(self.parameters, self._views, strict=True):
+            p.grad = view
 
     def act(self, seen, masks, uniform):
         """Choices drawn for n tables (int64), the values and the logarithms of the choices' probabilities (float32), each (n,).
@@ -88,7 +91,7 @@ class FusedTable:
 
     def _linear(self, name, x, out):
         layer = self._layers[name]
-        return torch.addmm(layer.bias, x, layer.weight.t(), out=out)
+        return torch.addmm(layer.bias, x, layer.turned, out=out)
 
     def _forward(self, b, rows, seen, masks):
         """The results of all layers for the tables seen[rows]; returns their number of object balls."""
@@ -100,8 +103,8 @@ class FusedTable:
         self._linear("context_2", self._linear("context_1", b.context, b.context_1).relu_(), b.context_2).relu_()
         self._linear("shared", b.context_2, b.shared)
         joint = self._layers["joint"]
-        torch.mm(b.pot_2, joint.weight.t(), out=b.joint)
-        kernels.join(b.joint_, b.shared_, joint.bias.numpy(), b.pots_)
+        torch.mm(b.pot_2, joint.turned, out=b.joint)
+        kernels.join(b.joint_, b.shared_, joint.bias_, b.pots_)
         self._linear("scores", b.joint, b.scores)
         self._linear("value_2", self._linear("value_1", b.context_2, b.value_1).relu_(), b.value_2)
         kernels.mask_scores(rows, masks, b.sides, b.by_table_)
@@ -112,14 +115,14 @@ class FusedTable:
     def _learn(self, name, d, x):
         """Add the gradients of a layer's weights, given that of its result and its input."""
         layer = self._layers[name]
-        layer.weight.grad.addmm_(d.t(), x)
-        layer.bias.grad.add_(d.sum(0))
+        layer.d_weight.addmm_(d.t(), x)
+        layer.d_bias.add_(d.sum(0))
 
     def _learn_first(self, name, d, x):
         """The same of a layer with few inputs, for which this order is five times as fast."""
         layer = self._layers[name]
-        layer.weight.grad.add_(torch.mm(x.t(), d).t())
-        layer.bias.grad.add_(d.sum(0))
+        layer.d_turned.addmm_(x.t(), d)
+        layer.d_bias.add_(d.sum(0))
 
     def _back(self, name, d, out):
         """The gradient with respect to a layer's input."""
@@ -157,16 +160,25 @@ class FusedTable:
         self._learn_first("ball_1", b.d_ball_1[:m], b.balls[:m])
 
 
+class _Layer:
+    """A linear layer's weights and their gradients, without autograd; ``turned``: the transposed weights."""
+
+    def __init__(self, layer, d_weight, d_bias):
+        self.weight, self.bias, self.outputs = layer.weight.detach(), layer.bias.detach(), layer.out_features
+        self.turned, self.bias_ = self.weight.t(), self.bias.numpy()
+        self.d_weight, self.d_bias, self.d_turned = d_weight, d_bias, d_weight.t()
+
+
 class _Block:
     """The arrays of a block of n tables: the result of each layer under its name, its gradient with ``d_``, as NumPy arrays with ``_``."""
 
     def __init__(self, n, layers):
         most = n * (N_BALLS - 1)
         rows = {"ball_1": most, "ball_2": most} | dict.fromkeys(("pot_1", "pot_2", "joint", "scores"), n * POTS)
-        made = {name: torch.zeros(rows.get(name, n), layer.out_features) for name, layer in layers.items()}
+        made = {name: torch.zeros(rows.get(name, n), layer.outputs) for name, layer in layers.items()}
         made |= {f"d_{name}": torch.zeros_like(array) for name, array in made.items()}
-        self.width = layers["ball_2"].out_features
-        self.at = 3 * self.width + layers["pot_2"].out_features
+        self.width = layers["ball_2"].outputs
+        self.at = 3 * self.width + layers["pot_2"].outputs
         """Where the game's state begins in the input of the context."""
         made["balls"], made["pots"] = torch.zeros(most, BALL_INPUTS), torch.zeros(n * POTS, POT_ENTRIES)
         made["context"], made["d_context"] = torch.zeros(n, self.at + STATE + 3), torch.zeros(n, self.at)
