@@ -55,13 +55,9 @@ def training_tables(n, threads=None, view="pots", **options):
         def running(self, sums):
             base.episode_returns[:], base.episode_lengths[:] = sums
 
-        def action_masks(self):
-            """The masks of all tables: bool (n, choices)."""
-            return shown.masks(base.tables)
-
         def env_method(self, method_name, *arguments, indices=None, **more):
             if method_name == "action_masks":
-                return list(self.action_masks()[np.array(self._get_indices(indices))])
+                return list(shown.masks(base.tables)[np.array(self._get_indices(indices))])
             return self.venv.env_method(method_name, *arguments, indices=indices, **more)
 
     return Viewed(base, shown.space)

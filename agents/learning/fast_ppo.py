@@ -1,15 +1,13 @@
-"""How does ``MaskablePPO`` learn quickly on many tables? Lean rollouts, and updates of ``TablePolicy`` by the passes of ``fused``.
+"""How does ``MaskablePPO`` learn quickly from many tables? By the fused passes of ``TablePolicy``.
 
-The algorithm, its hyperparameters, its files and what it reports are those of sb3-contrib, and ``MaskablePPO.load`` reads its models. Only
-the work differs: ``TablePolicy.forward`` draws the choices of a rollout, a rollout reads the masks of all tables at once and only the infos
-of tables whose episode ended, masks are kept as bool, and an update computes the gradient by ``FusedTable.ppo_gradient``.
+The algorithm, its rollouts, its hyperparameters, its files and what it reports are those of sb3-contrib, and ``MaskablePPO.load`` reads its
+models. Three things differ: ``TablePolicy.forward`` draws the choices of a rollout, masks are kept as bool, and an update computes the
+gradient of a minibatch with ``FusedTable.ppo_gradient``.
 """
 
 import numpy as np
-import torch
 from sb3_contrib import MaskablePPO
 from sb3_contrib.common.maskable.buffers import MaskableRolloutBuffer
-from sb3_contrib.common.maskable.utils import get_action_masks
 from stable_baselines3.common.buffers import RolloutBuffer
 from stable_baselines3.common.utils import explained_variance
 
@@ -25,45 +23,8 @@ class BoolMasks(MaskableRolloutBuffer):
         RolloutBuffer.reset(self)
 
 
-def _masks_of(env):
-    """The masks of all tables, bool (n, choices): from the tables at once if they offer that."""
-    return env.action_masks() if hasattr(env, "action_masks") else get_action_masks(env)
-
-
 class FastPPO(MaskablePPO):
-    """``MaskablePPO`` for observations in one array; other policies than ``TablePolicy`` are updated as there."""
-
-    def collect_rollouts(self, env, callback, rollout_buffer, n_rollout_steps, use_masking=True):
-        """Play ``n_rollout_steps`` steps on all tables into the buffer. Returns False if the callback stopped it."""
-        self.policy.set_training_mode(False)
-        rollout_buffer.reset()
-        callback.on_rollout_start()
-        for _ in range(n_rollout_steps):
-            masks = _masks_of(env) if use_masking else None
-            actions, values, logs = self._passed(self.policy, self._last_obs, action_masks=masks)
-            new_obs, rewards, dones, infos = env.step(actions.numpy())
-            self.num_timesteps += env.num_envs
-            callback.update_locals(locals())
-            if not callback.on_step():
-                return False
-            ended = np.flatnonzero(dones).tolist()
-            self._update_info_buffer([infos[k] for k in ended], dones[ended])
-            for k in ended:
-                if infos[k].get("TimeLimit.truncated", False):  # the visit would have gone on: what was to come is estimated
-                    last = np.asarray(infos[k]["terminal_observation"])[None]
-                    rewards[k] += self.gamma * float(self._passed(self.policy.predict_values, last))
-            rollout_buffer.add(
-                self._last_obs, actions.numpy(), rewards, self._last_episode_starts, values, logs, action_masks=masks
-            )
-            self._last_obs, self._last_episode_starts = new_obs, dones
-        last_values = self._passed(self.policy.predict_values, self._last_obs)
-        rollout_buffer.compute_returns_and_advantage(last_values=last_values, dones=self._last_episode_starts)
-        callback.on_rollout_end()
-        return True
-
-    def _passed(self, network, seen, **more):
-        with torch.no_grad():
-            return network(torch.as_tensor(seen, device=self.device), **more)
+    """``MaskablePPO``, whose updates of a ``TablePolicy`` are fused; other policies are updated as there."""
 
     def train(self):
         """Update the policy on the rollout in the buffer."""

@@ -9,6 +9,7 @@ input gives the half that the cue ball was on.)
 
 from itertools import pairwise
 
+import numpy as np
 import torch
 from sb3_contrib.common.maskable.policies import MaskableActorCriticPolicy
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
@@ -174,7 +175,8 @@ class TablePolicy(_Policy):
         """As in the base class. Drawing with masks, in a rollout, is quick: one random number a table from PyTorch's generator."""
         if deterministic or action_masks is None or torch.is_grad_enabled() or obs.device.type != "cpu":
             return super().forward(obs, deterministic, action_masks)
-        choices, values, logs = self.fused.act(obs.numpy(), action_masks, torch.rand(len(obs)).numpy())
+        seen, masks = np.ascontiguousarray(obs.float().numpy()), np.ascontiguousarray(action_masks, np.bool_).reshape(len(obs), -1)
+        choices, values, logs = self.fused.act(seen, masks, torch.rand(len(obs)).numpy())
         return torch.as_tensor(choices), torch.as_tensor(values)[:, None], torch.as_tensor(logs)
 
 
