@@ -44,9 +44,7 @@ class FastPPO(MaskablePPO):
                 rows = order[start : start + self.batch_size]
                 scaled[rows] = self._normalised(advantages[rows])
                 fused.zero_grad()
-                figures.append(
-                    fused.ppo_gradient(rows, seen, masks, actions, before, scaled, returns, clip, self.ent_coef, self.vf_coef)
-                )
+                figures.append(fused.ppo_gradient(rows, seen, masks, actions, before, scaled, returns, clip, self.ent_coef, self.vf_coef))
                 gradient = fused.gradient
                 gradient *= min(1.0, self.max_grad_norm / (float(gradient.norm()) + 1e-6))
                 self.policy.optimizer.step()

@@ -10,7 +10,7 @@ import numpy as np
 
 from snooker_env.game import N_BALLS
 from snooker_env.kernels import entry, kernel
-from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, STROKES, TOPS
+from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, TOPS
 
 from ..features.pot_features import BALL_X, CUT, POT_ENTRIES, POT_X
 
@@ -216,9 +216,9 @@ def ppo_gradient(rows, scores, top, likely, total, mean, sides, values, actions,
                  value_weight, batch, d_scores, d_values, sums):  # fmt: skip
     """The gradient of PPO's loss, a mean over ``batch`` rows of which these are some.
 
-    scores, top, total: as in ``log_probabilities``; likely = exp(scores - top), values (n, 1); mean: sums of likely * scores. actions, before
-    (logarithms of the old probabilities), advantages, returns: of the whole rollout, read at ``rows``. The sums of the rows' policy
-    losses, squared errors of the values, entropies, clipped ratios and approximate KL divergences are added to ``sums``.
+    scores, top, total: as in ``log_probabilities``; likely = exp(scores - top), values (n, 1); mean: sums of likely * scores.
+    actions, before (logarithms of the old probabilities), advantages, returns: of the whole rollout, read at ``rows``. The sums of the
+    rows' policy losses, squared errors of the values, entropies, clipped ratios and approximate KL divergences are added to ``sums``.
     """
     for j in range(rows.shape[0]):
         at = rows[j]

@@ -14,7 +14,7 @@ from .._jit import entry, kernel
 from .._types import Action, Floats
 from ..game.balls import bits
 from ..game.frame_columns import strikeable
-from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, count_pots, find_pots
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, count_pots, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from ..physics.parameters import Physics

@@ -147,10 +147,10 @@ def strike(intended, positions, on_table, stream, options, noise, j, r, v, w, he
 @kernel
 def _same_table(positions, on_table, other, other_on):
     """Whether the balls lie at the same places on two tables."""
+    differ = 0
     for i in range(N_BALLS):
-        if on_table[i] != other_on[i] or positions[i, 0] != other[i, 0] or positions[i, 1] != other[i, 1]:
-            return False
-    return True
+        differ += on_table[i] != other_on[i] or positions[i, 0] != other[i, 0] or positions[i, 1] != other[i, 1]
+    return differ == 0
 
 
 @entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen,))
@@ -175,7 +175,12 @@ def address(which, actions, positions, on_table, game, nominated, streams, optio
         mask = playable(game[k], bits(on), nominated[k] if nominated.shape[0] else AUTO)
         if options[A_DISCRETE]:
             # a planner plays a choice under several errors in succession: its aim is solved once
-            if j == 0 or a[0] != solved[0] or mask != mask_before or not _same_table(p, on, positions[which[j - 1]], on_table[which[j - 1]]):
+            if (
+                j == 0
+                or a[0] != solved[0]
+                or mask != mask_before
+                or not _same_table(p, on, positions[which[j - 1]], on_table[which[j - 1]])
+            ):
                 chosen = discrete_actions.chosen(
                     int(a[0]), p, on, mask, phys, options[A_END_MASS], fidelity, n_steps, found, motion, phase, work
                 )
