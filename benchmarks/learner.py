@@ -100,7 +100,7 @@ def main():
             print(f"{f'{agent}, {name}':30s}{parts}", flush=True)
         if args.against:
             each = [[one["all"] / one["shots"] for one in found[name]] for name in trees]
-            print(f"{'':30s}{np.median(np.divide(*each)):.2f} times as fast, the median of {args.rounds} pairs", flush=True)
+            print(f"{'':30s}{np.median(np.array(each[0]) / each[1]):.2f} times as fast, the median of {args.rounds} pairs", flush=True)
     save_json(args.json, kept)
     return 0
 

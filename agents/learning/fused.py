@@ -6,6 +6,8 @@ PyTorch multiplies matrices, the kernels of ``fused_kernels`` do all that lies b
 layer. tests/agents/learning/test_fused.py compares both with PyTorch's own.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import torch
 
@@ -169,7 +171,7 @@ class _Layer:
         self.d_weight, self.d_bias, self.d_turned = d_weight, d_bias, d_weight.t()
 
 
-class _Block:
+class _Block(SimpleNamespace):
     """The arrays of a block of n tables: the result of each layer under its name, its gradient with ``d_``, as NumPy arrays with ``_``."""
 
     def __init__(self, n, layers):
@@ -177,15 +179,13 @@ class _Block:
         rows = {"ball_1": most, "ball_2": most} | dict.fromkeys(("pot_1", "pot_2", "joint", "scores"), n * POTS)
         made = {name: torch.zeros(rows.get(name, n), layer.outputs) for name, layer in layers.items()}
         made |= {f"d_{name}": torch.zeros_like(array) for name, array in made.items()}
-        self.width = layers["ball_2"].outputs
-        self.at = 3 * self.width + layers["pot_2"].outputs
-        """Where the game's state begins in the input of the context."""
+        width = layers["ball_2"].outputs
+        at = 3 * width + layers["pot_2"].outputs  # where the game's state begins in the input of the context
         made["balls"], made["pots"] = torch.zeros(most, BALL_INPUTS), torch.zeros(n * POTS, POT_ENTRIES)
-        made["context"], made["d_context"] = torch.zeros(n, self.at + STATE + 3), torch.zeros(n, self.at)
+        made["context"], made["d_context"] = torch.zeros(n, at + STATE + 3), torch.zeros(n, at)
         made["by_table"], made["d_by_table"] = made["scores"].view(n, CHOICES), made["d_scores"].view(n, CHOICES)
         made["likely"], made["top"] = torch.zeros(n, CHOICES), torch.zeros(n, 1)
         made["total"], made["mean"] = torch.zeros(n), torch.zeros(n)
-        for name, array in made.items():
-            setattr(self, name, array)
-            setattr(self, f"{name}_", array.numpy())
+        super().__init__(**made, **{f"{name}_": array.numpy() for name, array in made.items()})
+        self.width, self.at = width, at
         self.group, self.first, self.sides = np.zeros(most, np.int64), np.zeros(n + 1, np.int64), np.zeros(n, np.float32)

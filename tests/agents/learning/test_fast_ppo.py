@@ -35,7 +35,7 @@ def weights(model):
 
 @pytest.mark.parametrize("agent", ["ppo_mask", "ppo_value"])
 def test_an_update_is_that_of_sb3(agent):
-    """Of the same rollout in one minibatch, whose order does not matter, by gradient descent: Adam would enlarge the rounding of small entries.
+    """Of the same rollout in one minibatch, whose order does not matter, by gradient descent: Adam would enlarge rounding errors.
 
     Weights of order 0.1 in float32 allow 1e-6; the update moves them by a thousand times as much.
     """
