@@ -166,7 +166,7 @@ class _Layer:
     """A linear layer's weights and their gradients, without autograd; ``turned``: the transposed weights."""
 
     def __init__(self, layer, d_weight, d_bias):
-        self.weight, self.bias, self.outputs = layer.weight.detach(), layer.bias.detach(), layer.out_features
+        self.weight, self.bias, self.outputs = layer.weight.detach(), layer.bias.detach(), int(layer.out_features)
         self.turned, self.bias_ = self.weight.t(), self.bias.numpy()
         self.d_weight, self.d_bias, self.d_turned = d_weight, d_bias, d_weight.t()
 
@@ -176,8 +176,8 @@ class _Block(SimpleNamespace):
 
     def __init__(self, n, layers):
         most = n * (N_BALLS - 1)
-        rows = {"ball_1": most, "ball_2": most} | dict.fromkeys(("pot_1", "pot_2", "joint", "scores"), n * POTS)
-        made = {name: torch.zeros(rows.get(name, n), layer.outputs) for name, layer in layers.items()}
+        rows = {"ball_1": most, "ball_2": most} | {name: n * POTS for name in ("pot_1", "pot_2", "joint", "scores")}  # of others n
+        made = {name: torch.zeros(rows[name] if name in rows else n, layer.outputs) for name, layer in layers.items()}
         made |= {f"d_{name}": torch.zeros_like(array) for name, array in made.items()}
         width = layers["ball_2"].outputs
         at = 3 * width + layers["pot_2"].outputs  # where the game's state begins in the input of the context
