@@ -174,10 +174,11 @@ class _Layer:
 class _Block(SimpleNamespace):
     """The arrays of a block of n tables: the result of each layer under its name, its gradient with ``d_``, as NumPy arrays with ``_``."""
 
-    def __init__(self, n, layers):
+    def __init__(self, n: int, layers: dict[str, _Layer]):
         most = n * (N_BALLS - 1)
-        rows = {"ball_1": most, "ball_2": most} | {name: n * POTS for name in ("pot_1", "pot_2", "joint", "scores")}  # of others n
-        made = {name: torch.zeros(rows[name] if name in rows else n, layer.outputs) for name, layer in layers.items()}
+        of_pots = {name: n * POTS for name in ("pot_1", "pot_2", "joint", "scores")}
+        rows = {"ball_1": most, "ball_2": most} | of_pots  # of other layers n
+        made = {name: torch.zeros(rows.get(name, n), layer.outputs) for name, layer in layers.items()}
         made |= {f"d_{name}": torch.zeros_like(array) for name, array in made.items()}
         width = layers["ball_2"].outputs
         at = 3 * width + layers["pot_2"].outputs  # where the game's state begins in the input of the context
