@@ -60,16 +60,20 @@ class ForesightView:
             self._spread = spread_of(noise, self._planner.physics)
         table, stroke = np.nonzero(masks)
         k, m = len(self._samples), len(table)
-        points, goes_on, left, _ = self._planner.play(at, np.tile(table, k), np.tile(PICKS[stroke], k), np.repeat(self._samples, m))
-        values, chances = prospects_of(left, self._spread, most=8, threads=self._planner.threads)
-        values, points, goes_on = (goes_on * values).reshape(k, m), points.reshape(k, m), goes_on.reshape(k, m)
-        share = (goes_on / np.maximum(1, goes_on.sum(0)))[:, :, None]
+        # the samples of a stroke in succession: its aim is solved once for all of them
+        points, goes_on, left, _ = self._planner.play(at, np.repeat(table, k), np.repeat(PICKS[stroke], k), np.tile(self._samples, m))
+        on = np.flatnonzero(goes_on)
+        values, chances = np.zeros(k * m), np.zeros((k * m, 3))
+        values[on], found = prospects_of(left[on], self._spread, most=8, threads=self._planner.threads)
+        chances[on] = -np.sort(-found, axis=1)[:, :3]
+        values, points, goes_on = values.reshape(m, k), points.reshape(m, k), goes_on.reshape(m, k)
+        share = (goes_on / np.maximum(1, goes_on.sum(1))[:, None])[:, :, None]
         row = np.empty((m, ENTRIES), np.float32)
         row[:, THERE], row[:, CHANCE] = 1.0, prospects_of(at, self._spread)[1][table, PICKS[stroke] // STROKES]
-        row[:, SCORED], row[:, GOES_ON], row[:, POINTS] = (points > 0).mean(0), goes_on.mean(0), points.mean(0) / 7.0
-        row[:, CUE_X : CUE_Y + 1] = (share * (left.positions[:, 0] / (HALF_WIDTH, HALF_LENGTH)).reshape(k, m, 2)).sum(0)
-        row[:, FIRST : THIRD + 1] = (share * -np.sort(-chances, axis=1)[:, :3].reshape(k, m, 3)).sum(0)
-        row[:, VALUE], row[:, SPREAD] = values.mean(0) / RULE_OF_THUMB[0], values.std(0) / RULE_OF_THUMB[0]
+        row[:, SCORED], row[:, GOES_ON], row[:, POINTS] = (points > 0).mean(1), goes_on.mean(1), points.mean(1) / 7.0
+        row[:, CUE_X : CUE_Y + 1] = (share * (left.positions[:, 0] / (HALF_WIDTH, HALF_LENGTH)).reshape(m, k, 2)).sum(1)
+        row[:, FIRST : THIRD + 1] = (share * chances.reshape(m, k, 3)).sum(1)
+        row[:, VALUE], row[:, SPREAD] = values.mean(1) / RULE_OF_THUMB[0], values.std(1) / RULE_OF_THUMB[0]
         row[:, SPEED], row[:, TOP], row[:, RED_ON] = _SPEEDS[stroke], _TOPS[stroke], at.ball_on[table] == BallOn.RED
         seen = np.zeros((*masks.shape, ENTRIES), np.float32)
         seen[table, stroke] = row

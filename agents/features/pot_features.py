@@ -34,8 +34,10 @@ def _add_pots(observations, shown):
     positions, on_table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
     for k in range(len(observations)):
         seen, row, on = observations[k], shown[k], 0
-        for c in range(row.shape[0]):
-            row[c] = seen[c] if c < OBSERVATION_SIZE else 0.0
+        for c in range(OBSERVATION_SIZE):
+            row[c] = seen[c]
+        for c in range(OBSERVATION_SIZE, row.shape[0]):
+            row[c] = 0.0
         for i in range(N_BALLS):
             positions[i, 0], positions[i, 1] = seen[5 * i] * HALF_WIDTH, seen[5 * i + 1] * HALF_LENGTH
             on_table[i] = seen[5 * i + 2] > 0.0

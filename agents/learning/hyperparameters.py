@@ -90,12 +90,16 @@ class Recipe:
         """The untrained agent on these tables."""
         from stable_baselines3.common.utils import LinearSchedule
 
+        from .fast_ppo import BoolMasks
+
         settings = dict(self.settings)
         rate = settings["learning_rate"]
         if isinstance(rate, str) and rate.startswith("lin_"):
             settings["learning_rate"] = LinearSchedule(float(rate[4:]), 1e-5, 1.0)
         if "n_steps" in settings:  # few tables give small rollouts
             settings["batch_size"] = min(settings["batch_size"], settings["n_steps"] * tables.num_envs)
+        if self.algo == "ppo_mask":
+            settings["rollout_buffer_class"] = BoolMasks
         model = algorithm_class(self.algo)(policy(self.policy), tables, seed=seed, device="cpu", stats_window_size=1000, **settings)
         if self.first_aim_std is not None:
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
@@ -156,7 +160,9 @@ def algorithm_class(name):
     import sb3_contrib
     import stable_baselines3
 
-    classes = {"ppo": stable_baselines3.PPO, "ppo_mask": sb3_contrib.MaskablePPO, "sac": stable_baselines3.SAC, "tqc": sb3_contrib.TQC}
+    from .fast_ppo import FastPPO
+
+    classes = {"ppo": stable_baselines3.PPO, "ppo_mask": FastPPO, "sac": stable_baselines3.SAC, "tqc": sb3_contrib.TQC}
     return classes[choice("algo", name, classes)]
 
 

@@ -10,7 +10,7 @@ w(a) is the width of the lateral window of the pocket at the angle a off its axi
 jaws included, to a millimetre (tests/benchmarks/test_pocket_windows.py). The window is smaller for a fast ball and larger for a slow one.
 """
 
-from math import acos, hypot
+from math import acos, cos, hypot, radians
 
 import numpy as np
 
@@ -21,6 +21,8 @@ from .balls import N_BALLS
 
 _CORNER_ANGLE, _CORNER_WINDOW = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0)  # degrees, metres
 _MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0), (0.073, 0.071, 0.063, 0.043, 0.018, 0.0)
+# Squared cosines of the last angles, less a margin far above rounding: below them a window is certainly closed.
+_CORNER_SHUT, _MIDDLE_SHUT = (cos(radians(angle)) ** 2 - 1e-9 for angle in (_CORNER_ANGLE[-1], _MIDDLE_ANGLE[-1]))
 
 POT_BALL, POT_POCKET, GHOST_X, GHOST_Y, COS_CUT, TOLERANCE = range(6)
 """Columns of a pot: object ball, pocket, place of the ghost ball [m], cosine of the cut angle, tolerance of the aim [rad]."""
@@ -79,10 +81,14 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
     """
     ux, uy = bx - ax, by - ay
     length2 = ux * ux + uy * uy
+    sure = 1.001 * d * d * length2
     for i in range(N_BALLS):
         if not on_table[i] or i == skip1 or i == skip2:
             continue
         px, py = positions[i, 0] - ax, positions[i, 1] - ay
+        across = px * uy - py * ux
+        if across * across > sure:  # off the whole line
+            continue
         s = (px * ux + py * uy) / length2 if length2 > 0.0 else 0.0
         s = min(1.0, max(0.0, s))
         px -= s * ux
@@ -90,6 +96,45 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
         if px * px + py * py < d * d:
             return False
     return True
+
+
+@kernel
+def pot_at(positions, on_table, ball, k, d, least):
+    """The direct pot of a ball into pocket k: (tolerance, ghost ball x, y, cosine of the cut).
+
+    The tolerance is 0 if there is no pot with one above ``least``. d: diameter of the balls [m].
+    """
+    cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
+    dx, dy = POCKET_AIMS[k, AIM_X] - bx, POCKET_AIMS[k, AIM_Y] - by
+    # most pots are out of the question, and that is seen without a root: the object ball would have to come back towards the cue ball, or
+    # the pocket is shut from there
+    along, middle = dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
+    shut = (_MIDDLE_SHUT if middle else _CORNER_SHUT) * (dx * dx + dy * dy)
+    if dx * (bx - cx) + dy * (by - cy) <= 0.0 or along <= 0.0 or along * along < shut:
+        return 0.0, 0.0, 0.0, 0.0
+    run = hypot(dx, dy)
+    if run < 1e-9:
+        return 0.0, 0.0, 0.0, 0.0
+    dx, dy = dx / run, dy / run
+    gx, gy = bx - d * dx, by - d * dy
+    px, py = gx - cx, gy - cy
+    path = hypot(px, py)
+    if path < 1e-9:
+        return 0.0, 0.0, 0.0, 0.0
+    if abs(gx) > HALF_WIDTH - 0.5 * d + 1e-9 or abs(gy) > HALF_LENGTH - 0.5 * d + 1e-9:  # the ghost ball would be in the cushion
+        return 0.0, 0.0, 0.0, 0.0
+    cos_cut = (px * dx + py * dy) / path
+    if cos_cut < 0.05:  # a cut of more than 87 degrees
+        return 0.0, 0.0, 0.0, 0.0
+    width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], middle)
+    tolerance = width / (2.0 * run) * d * cos_cut / path
+    if width <= 0.0 or tolerance <= least:
+        return 0.0, 0.0, 0.0, 0.0
+    if not clear_segment(positions, on_table, bx, by, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], ball, 0, d):
+        return 0.0, 0.0, 0.0, 0.0
+    if not clear_segment(positions, on_table, cx, cy, gx, gy, ball, 0, d * (1.0 - 1e-9)):
+        return 0.0, 0.0, 0.0, 0.0
+    return tolerance, gx, gy, cos_cut
 
 
 @kernel
@@ -115,35 +160,13 @@ def find_pots(positions, on_table, on, radius, pots):
         Number of rows written.
     """
     count = 0
-    cx, cy = positions[0, 0], positions[0, 1]
-    d = 2.0 * radius
     for ball in range(1, N_BALLS):
         if not on_table[ball] or not (on >> ball) & 1:
             continue
-        bx, by = positions[ball, 0], positions[ball, 1]
         for k in range(6):
-            dx, dy = POCKET_AIMS[k, AIM_X] - bx, POCKET_AIMS[k, AIM_Y] - by
-            run = hypot(dx, dy)
-            if run < 1e-9:
-                continue
-            dx, dy = dx / run, dy / run
-            width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0)
-            gx, gy = bx - d * dx, by - d * dy
-            px, py = gx - cx, gy - cy
-            path = hypot(px, py)
-            if width <= 0.0 or path < 1e-9:
-                continue
-            if abs(gx) > HALF_WIDTH - radius + 1e-9 or abs(gy) > HALF_LENGTH - radius + 1e-9:  # the ghost ball would be in the cushion
-                continue
-            cos_cut = (px * dx + py * dy) / path
-            if cos_cut < 0.05:  # a cut of more than 87 degrees
-                continue
-            tolerance = width / (2.0 * run) * d * cos_cut / path
-            if count == pots.shape[0] and tolerance <= pots[count - 1, TOLERANCE]:
-                continue
-            if not clear_segment(positions, on_table, bx, by, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], ball, 0, d):
-                continue
-            if not clear_segment(positions, on_table, cx, cy, gx, gy, ball, 0, d * (1.0 - 1e-9)):
+            least = pots[count - 1, TOLERANCE] if count == pots.shape[0] else 0.0
+            tolerance, gx, gy, cos_cut = pot_at(positions, on_table, ball, k, 2.0 * radius, least)
+            if tolerance == 0.0:
                 continue
             at = min(count, pots.shape[0] - 1)
             while at > 0 and pots[at - 1, TOLERANCE] < tolerance:
@@ -154,6 +177,21 @@ def find_pots(positions, on_table, on, radius, pots):
             row[POT_BALL], row[POT_POCKET], row[GHOST_X], row[GHOST_Y] = ball, k, gx, gy
             row[COS_CUT], row[TOLERANCE] = cos_cut, tolerance
             count = min(count + 1, pots.shape[0])
+    return count
+
+
+@kernel
+def count_pots(positions, on_table, on, radius, most):
+    """The number of rows that ``find_pots`` writes into ``most`` rows. It stops at the last one that counts."""
+    count = 0
+    for ball in range(1, N_BALLS):
+        if not on_table[ball] or not (on >> ball) & 1:
+            continue
+        for k in range(6):
+            if count == most:
+                return count
+            tolerance, _x, _y, _cos = pot_at(positions, on_table, ball, k, 2.0 * radius, 0.0)
+            count += tolerance > 0.0
     return count
 
 

@@ -14,7 +14,7 @@ from .._jit import entry, kernel
 from .._types import Action, Floats
 from ..game.balls import bits
 from ..game.frame_columns import strikeable
-from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, count_pots, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
@@ -103,14 +103,13 @@ def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_ste
 @entry
 def masks(which, positions, on_table, game, options, out):
     """Available choices on the tables ``which``: one row of ``out`` each, bool (choices,). ``game`` (n, columns): of visits or frames."""
-    found = np.empty((POTS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k, parts = which[j], 1 + COLOURS if options[A_NOMINATE] >= 0 else 1
         row, mask = game[k], bits(on_table[k])
         for n in range(parts):
             on = strikeable(row, mask) if parts == 1 else playable(row, mask, nominated_ball(n, row))
             there = parts == 1 or may_nominate(n, row)
-            many = find_pots(positions[k], on_table[k], on, BALL_RADIUS, found) if there and on_table[k, 0] else 0
+            many = count_pots(positions[k], on_table[k], on, BALL_RADIUS, POTS) if there and on_table[k, 0] else 0
             for c in range(SIZE):
                 out[j, n * SIZE + c] = there and c < STROKES * max(1, many)
         at = parts * SIZE

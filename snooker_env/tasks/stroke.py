@@ -144,6 +144,15 @@ def strike(intended, positions, on_table, stream, options, noise, j, r, v, w, he
     w[j, CUE, 0], w[j, CUE, 1], w[j, CUE, 2] = shot[WX], shot[WY], shot[WZ]
 
 
+@kernel
+def _same_table(positions, on_table, other, other_on):
+    """Whether the balls lie at the same places on two tables."""
+    differ = 0
+    for i in range(N_BALLS):
+        differ += on_table[i] != other_on[i] or positions[i, 0] != other[i, 0] or positions[i, 1] != other[i, 1]
+    return differ == 0
+
+
 @entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen,))
 def address(which, actions, positions, on_table, game, nominated, streams, options, noise, phys, fidelity, n_steps, r, v, w, here, shots):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike: shot j is that of table which[j].
@@ -152,6 +161,7 @@ def address(which, actions, positions, on_table, game, nominated, streams, optio
     """
     found = np.empty((discrete_actions.POTS if options[A_DISCRETE] else 1, POT_COLUMNS))
     motion, phase, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    solved, mask_before = np.empty(6), 0  # the last choice, and the stroke that it means
     for j in range(which.shape[0]):
         k = which[j]
         a, p, on = actions[k], positions[k], on_table[k]
@@ -164,9 +174,19 @@ def address(which, actions, positions, on_table, game, nominated, streams, optio
                 place(p, on, x, y)
         mask = playable(game[k], bits(on), nominated[k] if nominated.shape[0] else AUTO)
         if options[A_DISCRETE]:
-            intended = discrete_actions.chosen(
-                int(a[0]), p, on, mask, phys, options[A_END_MASS], fidelity, n_steps, found, motion, phase, work
-            )
+            # a planner plays a choice under several errors in succession: its aim is solved once
+            if (
+                j == 0
+                or a[0] != solved[0]
+                or mask != mask_before
+                or not _same_table(p, on, positions[which[j - 1]], on_table[which[j - 1]])
+            ):
+                chosen = discrete_actions.chosen(
+                    int(a[0]), p, on, mask, phys, options[A_END_MASS], fidelity, n_steps, found, motion, phase, work
+                )
+                solved[0], mask_before = a[0], mask
+                solved[1], solved[2], solved[3], solved[4], solved[5] = chosen
+            intended = (solved[1], solved[2], solved[3], solved[4], solved[5])
         else:
             intended = shot_of(a, p, on, mask, options, found)
         strike(intended, p, on, streams[k], options, noise, j, r, v, w, here, shots)

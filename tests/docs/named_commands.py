@@ -22,6 +22,7 @@ SHORT = {
     "benchmarks.planning": ["--strokes", "100", "--repeats", "2"],
     "benchmarks.value_inputs": ["--positions", "1000", "--steps", "20"],
     "benchmarks.decisions": ["--agents", "ghost_ball", "planner_30", "--tables", "1", "4", "--repeats", "2"],
+    "benchmarks.learner": ["--rounds", "1", "--steps", "2"],
     "benchmarks.temperature": ["--visits", "2", "--temperatures", "4", "8"],
     "benchmarks.fuzz": ["--shots", "300", "--threads", "1"],
     "benchmarks.vector": ["--seconds", "0.1", "--repeats", "1", "--tables", "64", "--ppo-steps", "2048"],

@@ -6,8 +6,20 @@ import pytest
 from snooker_env.game.balls import mask_of
 from snooker_env.game.layouts import deal_tables, plan_of
 from snooker_env.game.philox import stream_of
-from snooker_env.game.pots import GHOST_X, GHOST_Y, pots
-from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
+from snooker_env.game.pots import (
+    _CORNER_ANGLE,
+    _CORNER_WINDOW,
+    _MIDDLE_ANGLE,
+    _MIDDLE_WINDOW,
+    GHOST_X,
+    GHOST_Y,
+    POT_BALL,
+    POT_POCKET,
+    count_pots,
+    pots,
+)
+from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from snooker_env.kernels import entry
 
 
 def two(cue, red):
@@ -33,3 +45,55 @@ def test_a_ball_frozen_to_a_rail_can_be_sent_along_it(side):
     red = (side * (HALF_WIDTH - BALL_RADIUS), 1.2)
     found = two((side * 0.7, 0.4), red)
     assert len(found) and found[0, GHOST_Y] < red[1]
+
+
+@entry
+def _counted(positions, on_table, on, most):
+    return count_pots(positions, on_table, on, BALL_RADIUS, most)
+
+
+def plainly(positions, on_table, on):
+    """Every ball and pocket, by the formulas of the module's docstring, without any short cut."""
+    found, d = [], 2.0 * BALL_RADIUS
+
+    def clear(a, b, skip, reach):
+        others = [positions[i] for i in range(22) if on_table[i] and i not in (0, skip)]
+        along = b - a
+        return all(np.hypot(*(p - a - np.clip((p - a) @ along / (along @ along), 0.0, 1.0) * along)) >= reach for p in others)
+
+    for ball in range(1, 22):
+        for k in range(6) if on_table[ball] and (on >> ball) & 1 else ():
+            b, cue, pocket, axis = positions[ball], positions[0], POCKET_AIMS[k, :2], POCKET_AIMS[k, 2:4]
+            run = np.hypot(*(pocket - b))
+            way = (pocket - b) / run
+            ghost = b - d * way
+            path = np.hypot(*(ghost - cue))
+            cut = (ghost - cue) @ way / path
+            angles, widths = (_MIDDLE_ANGLE, _MIDDLE_WINDOW) if POCKET_AIMS[k, 4] else (_CORNER_ANGLE, _CORNER_WINDOW)
+            width = np.interp(np.degrees(np.arccos(np.clip(way @ axis, -1.0, 1.0))), angles, widths)
+            inside = (np.abs(ghost) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS + 1e-9).all()
+            if width > 0.0 and cut >= 0.05 and inside and clear(b, pocket, ball, d) and clear(cue, ghost, ball, d * (1.0 - 1e-9)):
+                found.append((width / (2.0 * run) * d * cut / path, ball, k, *ghost, cut))
+    return sorted(found, reverse=True)
+
+
+def test_short_cuts_leave_no_pot_out():
+    """Random layouts, a third with balls frozen to rails; the widest four, and their number alone."""
+    rng, met = np.random.default_rng(5), 0
+    for trial in range(300):
+        reach = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS
+        positions, on_table = rng.uniform(-1, 1, (22, 2)) * reach, rng.random(22) < rng.random()
+        on_table[0] = True
+        if trial % 3 == 0:
+            positions[:8, 0] = np.sign(positions[:8, 0]) * reach[0]
+        on = int(rng.choice([mask_of(range(1, 16)), mask_of(range(16, 22)), mask_of([17])]))
+        expected = plainly(positions, on_table, on)
+        found = pots(positions, on_table, on)
+        assert [(int(p[POT_BALL]), int(p[POT_POCKET])) for p in found] == [(ball, k) for _, ball, k, *_ in expected]
+        if expected:
+            columns = np.array([(x, y, cut, width) for width, _, _, x, y, cut in expected])
+            assert np.allclose(found[:, GHOST_X:], columns, rtol=1e-9, atol=1e-12)
+        assert np.array_equal(pots(positions, on_table, on, most=4), found[:4])
+        assert [_counted(positions, on_table, on, most) for most in (1, 4, 99)] == [min(most, len(found)) for most in (1, 4, 99)]
+        met += len(found)
+    assert met > 1000

@@ -223,3 +223,22 @@ def test_an_unsound_position_is_refused_by_its_row_if_it_is_played(change, compl
     for rows in ([0, 2], [0, 1, 2, 3]):
         with pytest.raises(ValueError, match=complaint):
             SILENT.play(at, rows, STROKE * len(rows))
+
+
+@pytest.mark.parametrize("options", [{"noise": "club"}, {"noise": "club", "physics": "match", "fidelity": "fast"}])
+def test_strokes_in_succession_are_those_played_alone(options):
+    """An aim is solved once for successive equal tables, and anew for another choice, ball on, layout, or a ball that has gone."""
+    planner = Planner({"action": "discrete", **options}, threads=1)
+    spread = {"cue": (0.1, 0.4), "reds": [(0.5, 1.0), (-0.3, 1.1)], "blue": (0.0, 0.0), "black": (-0.5, 0.9)}
+    moved, gone = spread | {"black": (-0.5, 0.90001)}, {name: place for name, place in spread.items() if name != "blue"}
+    each = [Position(**spread, on="red"), *(Position(**balls, on="any_colour") for balls in (spread, moved, gone))]
+    at = Positions.of(each)
+    rows = np.array([0, 0, 0, 1, 1, 2, 3, 3, 0, 1, 0, 0])
+    choices = np.array([67, 67, 67, 67, 67, 67, 67, 40, 40, 40, 203, 67])
+    keys = np.arange(len(rows), dtype=np.uint64)
+    together = planner.play(at, rows, choices, keys)
+    for k in range(len(rows)):
+        alone = planner.play(at, rows[k : k + 1], choices[k : k + 1], keys[k : k + 1])
+        assert same(alone, type(together)(*(part[k : k + 1] for part in together))), k
+    cues = together.afterstates.positions[:, 0]
+    assert len(np.unique(cues, axis=0)) == len(rows)  # no two strokes are alike

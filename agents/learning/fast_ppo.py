@@ -1,0 +1,78 @@
+"""How does ``MaskablePPO`` learn quickly from many tables? By the fused passes of ``TablePolicy``.
+
+The algorithm, its rollouts, its hyperparameters, its files and what it reports are those of sb3-contrib, and ``MaskablePPO.load`` reads its
+models. Three things differ: ``TablePolicy.forward`` draws the choices of a rollout, masks are kept as bool, and an update computes the
+gradient of a minibatch with ``FusedTable.ppo_gradient``.
+"""
+
+from typing import Any
+
+import numpy as np
+from sb3_contrib import MaskablePPO
+from sb3_contrib.common.maskable.buffers import MaskableRolloutBuffer
+from stable_baselines3.common.buffers import RolloutBuffer
+from stable_baselines3.common.utils import explained_variance
+
+from .networks import TablePolicy
+
+
+class BoolMasks(MaskableRolloutBuffer):
+    """A rollout buffer whose masks are bool: a quarter of the memory, 9 instead of 35 MB for 16,384 shots."""
+
+    action_space: Any
+
+    def reset(self):
+        self.mask_dims = int(self.action_space.n)
+        self.action_masks = np.ones((self.buffer_size, self.n_envs, self.mask_dims), np.bool_)
+        RolloutBuffer.reset(self)
+
+
+class FastPPO(MaskablePPO):
+    """``MaskablePPO``, whose updates of a ``TablePolicy`` are fused; other policies are updated as there."""
+
+    clip_range: Any
+
+    def train(self):
+        """Update the policy on the rollout in the buffer."""
+        if not isinstance(self.policy, TablePolicy) or self.clip_range_vf is not None or self.target_kl is not None:
+            super().train()
+            return
+        self.policy.set_training_mode(True)
+        self._update_learning_rate(self.policy.optimizer)
+        clip, fused, buffer = self.clip_range(self._current_progress_remaining), self.policy.fused, self.rollout_buffer
+        n = buffer.buffer_size * buffer.n_envs
+        seen, masks = buffer.observations.reshape(n, -1), buffer.action_masks.reshape(n, -1)
+        actions, before, advantages, returns = (a.reshape(n) for a in (buffer.actions, buffer.log_probs, buffer.advantages, buffer.returns))
+        scaled, figures = np.empty_like(advantages), []
+        for _ in range(self.n_epochs):
+            order = np.random.permutation(n)  # noqa: NPY002 - as SB3: a checkpoint holds its state
+            for start in range(0, n, self.batch_size or n):
+                rows = order[start : start + (self.batch_size or n)]
+                scaled[rows] = self._normalised(advantages[rows])
+                fused.zero_grad()
+                figures.append(fused.ppo_gradient(rows, seen, masks, actions, before, scaled, returns, clip, self.ent_coef, self.vf_coef))
+                gradient = fused.gradient
+                gradient *= min(1.0, self.max_grad_norm / (float(gradient.norm()) + 1e-6))
+                self.policy.optimizer.step()
+            self._n_updates += 1
+        self._report(np.array(figures), clip)
+
+    def _normalised(self, advantages):
+        """The advantages of a minibatch with mean 0 and deviation 1. A single one stays as it is."""
+        if not self.normalize_advantage or len(advantages) < 2:
+            return advantages
+        return (advantages - advantages.mean()) / (advantages.std(ddof=1) + 1e-8)
+
+    def _report(self, figures, clip):
+        """The curves of SB3, from the figures of ``FusedTable.ppo_gradient`` of all minibatches."""
+        policy_loss, value_loss, entropy, clipped, _ = figures.mean(axis=0).tolist()
+        last = figures[-1]
+        for name, value in {
+            "entropy_loss": -entropy, "policy_gradient_loss": policy_loss, "value_loss": value_loss,
+            "approx_kl": float(figures[-len(figures) // self.n_epochs :, 4].mean()), "clip_fraction": clipped,
+            "loss": float(last[0] - self.ent_coef * last[2] + self.vf_coef * last[1]),
+            "explained_variance": explained_variance(self.rollout_buffer.values.flatten(), self.rollout_buffer.returns.flatten()),
+            "clip_range": clip,
+        }.items():  # fmt: skip
+            self.logger.record(f"train/{name}", value)
+        self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")

@@ -1,0 +1,147 @@
+"""Do the fused passes compute the network's own values, probabilities and gradients, and draw by these probabilities?
+
+The bounds: results of both are float32, sums over at most 540 terms in another order. Values and logarithms of probabilities are at most
+about 10, so they may differ by some 10 * 540 ** 0.5 * 6e-8 = 1.4e-5; a gradient, relative to its largest entry, by about 1e-4, as terms of
+the entropy's gradient cancel. A forgotten term, factor or mirror changes them by more than 1e-2.
+"""
+
+import numpy as np
+import pytest
+import torch
+
+from agents.features.pot_features import BALL_X, VIEW_SPACE, with_pots
+from agents.learning import fused
+from agents.learning.networks import JudgedPolicy, TablePolicy
+from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.tasks import CHOICES, OBSERVATION_SIZE
+
+N = fused.BLOCK + 45
+CLIP, ENTROPY, VALUE = 0.2, 0.01, 0.05
+
+
+@pytest.fixture(scope="module")
+def met():
+    """Tables met in play (N, SHOWN), some without a pot and one bare, and their masks, some with single choices left out."""
+    tables = SnookerVectorEnv(N, action="discrete", layout="random:6", threads=1)
+    observations, _ = tables.reset(seed=3)
+    rng = np.random.default_rng(0)
+    for _ in range(2):
+        observations, *_ = tables.step(np.array([rng.choice(np.flatnonzero(m)) for m in tables.action_masks()]))
+    seen, masks = with_pots(observations), tables.action_masks()
+    masks[::3] &= rng.random((len(masks[::3]), CHOICES)) < 0.5
+    masks[:, 7] = True
+    seen[5, :110].reshape(22, 5)[1:, :3] = 0.0  # the cue ball alone
+    seen[5, OBSERVATION_SIZE:] = 0.0
+    assert (seen[:, BALL_X] < 0).sum() > 50 < (seen[:, BALL_X] > 0).sum() and (seen[:, OBSERVATION_SIZE] == 0).sum() > 3
+    return seen, masks
+
+
+@pytest.fixture(params=[TablePolicy, JudgedPolicy])
+def policy(request):
+    torch.manual_seed(0)
+    made = request.param(VIEW_SPACE, SnookerVectorEnv(1, action="discrete").single_action_space, lambda _: 1e-3)
+    with torch.no_grad():
+        made.action_net.score.weight.mul_(10.0)  # so that choices differ as in a trained network
+    return made
+
+
+def plain(policy, seen, masks, choices):
+    """Values, logarithms of probabilities and entropies by PyTorch."""
+    values, logs, entropy = policy.evaluate_actions(torch.as_tensor(seen), torch.as_tensor(choices), torch.as_tensor(masks))
+    return values[:, 0], logs, entropy
+
+
+def test_values_and_probabilities_are_those_of_the_network(policy, met):
+    seen, masks = met
+    choices, values, logs = policy.fused.act(seen, masks, np.random.default_rng(1).random(N))
+    assert masks[np.arange(N), choices].all() and len(np.unique(choices)) > 50
+    with torch.no_grad():
+        expected, expected_logs, _ = plain(policy, seen, masks, choices)
+    assert np.abs(values - expected.numpy()).max() < 1.4e-5 and np.abs(logs - expected_logs.numpy()).max() < 1.4e-5
+    assert values.std() > 1e-2 and logs.std() > 1e-2
+
+
+def test_new_weights_are_used_at_once(policy, met):
+    seen, masks = met
+    before = policy.fused.act(seen, masks, np.zeros(N))[1]
+    policy.load_state_dict({name: 0.5 * weight for name, weight in policy.state_dict().items()})
+    after = policy.fused.act(seen, masks, np.zeros(N))[1]
+    with torch.no_grad():
+        assert np.abs(after - policy.predict_values(torch.as_tensor(seen)).numpy()[:, 0]).max() < 1.4e-5
+    assert np.abs(after - before).max() > 1e-2
+
+
+def test_choices_are_drawn_by_their_probabilities(policy, met):
+    """By inversion: of m evenly spaced numbers each choice gets its share, to within one."""
+    m = 2000
+    for k in (np.flatnonzero(met[0][:, BALL_X] < 0)[0], np.flatnonzero(met[0][:, BALL_X] > 0)[0]):
+        seen, masks = np.repeat(met[0][k : k + 1], m, 0), np.repeat(met[1][k : k + 1], m, 0)
+        choices, _, _ = policy.fused.act(seen, masks, (np.arange(m) + 0.5) / m)
+        with torch.no_grad():
+            shares = policy.get_distribution(torch.as_tensor(seen[:1]), masks[:1]).distribution.probs[0].numpy()
+        assert np.abs(np.bincount(choices, minlength=CHOICES) - m * shares).max() < 1.01
+        assert shares.max() > 3 / m
+
+
+def test_the_ends_of_the_interval_choose_what_is_available(policy, met):
+    seen, masks = met
+    for end in (0.0, np.nextafter(1.0, 0.0)):
+        choices = policy.fused.act(seen, masks, np.full(N, end))[0]
+        assert masks[np.arange(N), choices].all()
+
+
+def test_a_rollout_draws_by_the_fused_pass(policy, met):
+    seen, masks = met
+    torch.manual_seed(4)
+    with torch.no_grad():
+        choices, values, logs = policy(torch.as_tensor(seen), action_masks=masks)
+    torch.manual_seed(4)
+    expected = policy.fused.act(seen, masks, torch.rand(N).numpy())
+    assert choices.shape == logs.shape == (N,) and values.shape == (N, 1)
+    for a, b in zip((choices, values[:, 0], logs), expected, strict=True):
+        assert np.array_equal(a.numpy(), b)
+
+
+def test_the_gradient_is_pytorchs_own(policy, met):
+    """On a minibatch of more than a block, of rows in any order; of everything that PPO learns and nothing else."""
+    seen, masks = met
+    rng = np.random.default_rng(2)
+    choices, values, logs = policy.fused.act(seen, masks, rng.random(N))
+    advantages, returns = rng.normal(size=N).astype(np.float32), (values + rng.normal(size=N)).astype(np.float32)
+    before = (logs + 0.3 * rng.normal(size=N)).astype(np.float32)
+    rows = rng.permutation(N)[: N - 7]
+    policy.zero_grad()
+    policy.fused.zero_grad()
+    figures = policy.fused.ppo_gradient(rows, seen, masks, choices, before, advantages, returns, CLIP, ENTROPY, VALUE)
+    own = {name: p.grad.clone() for name, p in policy.named_parameters() if p.grad is not None}
+    learned = {name for name, _ in policy.named_parameters() if not name.startswith("position_value.")}
+    assert own.keys() == learned and policy.fused.gradient.numel() == sum(g.numel() for g in own.values())
+
+    policy.zero_grad()
+    values, logs, entropy = plain(policy, seen[rows], masks[rows], choices[rows])
+    advantage, change = torch.as_tensor(advantages[rows]), logs - torch.as_tensor(before[rows])
+    ratio = change.exp()
+    policy_loss = -torch.min(advantage * ratio, advantage * ratio.clamp(1 - CLIP, 1 + CLIP)).mean()
+    value_loss = (values - torch.as_tensor(returns[rows])).square().mean()
+    (policy_loss - ENTROPY * entropy.mean() + VALUE * value_loss).backward()
+    for name, p in policy.named_parameters():
+        if name in own:
+            assert (own[name] - p.grad).abs().max() < 1e-4 * p.grad.abs().max(), name
+    clipped = ((ratio - 1.0).abs() > CLIP).float().mean()
+    expected = [policy_loss, value_loss, entropy.mean(), clipped, (ratio - 1.0 - change).mean()]
+    assert np.allclose(figures, [x.item() for x in expected], rtol=1e-4, atol=1e-6) and 0.2 < clipped < 0.9
+
+
+def test_gradients_of_parts_add_up(policy, met):
+    """And a block of another size leaves nothing behind."""
+    seen, masks = met
+    choices, _, logs = policy.fused.act(seen, masks, np.random.default_rng(3).random(N))
+    rest = (seen, masks, choices, logs, np.ones(N, np.float32), np.zeros(N, np.float32), CLIP, ENTROPY, VALUE)
+    found = []
+    for parts in ([np.arange(40)], [np.arange(40), np.arange(40, 40 + 20)], [np.arange(40, 60)]):
+        policy.fused.zero_grad()
+        for rows in parts:
+            policy.fused.ppo_gradient(rows, *rest)
+        found.append(policy.fused.gradient.clone())
+    scale = found[1].abs().max()
+    assert (found[0] + found[2] - found[1]).abs().max() < 1e-5 * scale and (found[0] - found[1]).abs().max() > 1e-2 * scale
