@@ -113,7 +113,7 @@ class Job:
     about : dict, optional
         What is played, for the store: it refuses to mix jobs.
     tick : callable, optional
-        Called with each ``Part`` that is done, also with those that were kept.
+        Called once with each ``Part`` that is done and its result, also with those that were kept.
     """
 
     def __init__(self, parts, shared, where, store=None, about=None, tick=None):
@@ -135,7 +135,7 @@ class Job:
         for key in dict.fromkeys(keys):
             if key in self._kept and key not in self._done:
                 self._done[key] = self._read(key)
-                self._tell(key)
+                self._tell(key, self._done[key])
         while any(key not in self._done for key in keys):
             self._fill()
             self._collect(self._where.wait(list(self._running)))
@@ -143,6 +143,16 @@ class Job:
         for key in keys:
             self._done.pop(key, None)
         return found
+
+    def finish(self):
+        """Play all parts; ``tick`` gets their results as they end, in any order."""
+        for key in [key for key in self._pending if key in self._kept]:
+            self._tell(key, self._read(key))
+        while self._pending or self._running:
+            self._fill()
+            if self._running:
+                self._collect(self._where.wait(list(self._running)))
+                self._done.clear()
 
     def total(self, size):
         """The sum of ``size(part)`` over all parts."""
@@ -178,12 +188,12 @@ class Job:
             self._done[key] = result
             if self._store:
                 self._store.write(f"parts/{key}.npz", packed(result))
-            self._tell(key)
+            self._tell(key, result)
 
-    def _tell(self, key):
+    def _tell(self, key, result):
         if self._tick is not None and key not in self._told:
             self._told.add(key)
-            self._tick(self._parts[key])
+            self._tick(self._parts[key], result)
 
 
 def digest_of(data):

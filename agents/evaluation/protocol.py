@@ -275,7 +275,7 @@ def played(report, agents, seeds, shown, where, keep, conditions):
     with Progress(console=Console(stderr=True), transient=True) as bar:
         visits = bar.add_task("visits", total=None)
 
-        def tick(part):
+        def tick(part, result):
             bar.update(visits, advance=len(part.given["seeds"]), description=f"visits{where.says}")
 
         job = job_of(report, agents, seeds, where, keep, tick)
