@@ -8,7 +8,7 @@ however often one had to be played again.
 import hashlib
 import importlib
 import json
-from collections import deque
+from collections import Counter, deque
 from dataclasses import dataclass
 
 from .store import opened, packed, unpacked
@@ -67,8 +67,7 @@ class Here:
         Of each part; default one for each processor. Results do not depend on it.
     """
 
-    width = 1
-    says = ""
+    here, width, says = True, 1, ""
 
     def __init__(self, threads=None):
         self._threads = threads
@@ -113,7 +112,7 @@ class Job:
     about : dict, optional
         What is played, for the store: it refuses to mix jobs.
     tick : callable, optional
-        Called once with each ``Part`` that is done and its result, also with those that were kept.
+        Called with each ``Part`` that is done and its result, once for each time that it was announced, also if it was kept.
     """
 
     def __init__(self, parts, shared, where, store=None, about=None, tick=None):
@@ -121,8 +120,9 @@ class Job:
         self._digests = {name: digest_of(data) for name, data in shared.items()}
         self._sent, self._running, self._done = {}, {}, {}
         self._kept = {name.removesuffix(".npz") for name in opened(store, about or {})} if store else set()
-        self._told, self._pending = set(), deque(dict.fromkeys(map(self.key, parts)))
         self._parts = {self.key(part): part for part in parts}
+        self._asked = Counter(map(self.key, parts))  # an agent under two labels has the same parts: they are played once
+        self._told, self._pending = set(), deque(self._parts)
 
     def key(self, part):
         """The name of a part: a digest of all that its result depends on."""
@@ -130,7 +130,7 @@ class Job:
         return hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:32]
 
     def take(self, parts):
-        """The results of these parts, in order. Meanwhile others are played, too, as far as there are workers. Each can be taken once."""
+        """The results of these parts, in order, each as often as it was announced. Meanwhile the workers that are free play others."""
         keys = [self.key(part) for part in parts]
         for key in dict.fromkeys(keys):
             if key in self._kept and key not in self._done:
@@ -138,10 +138,14 @@ class Job:
                 self._tell(key, self._done[key])
         while any(key not in self._done for key in keys):
             self._fill()
+            if not self._running:
+                raise KeyError("a part was taken more often than it was announced")
             self._collect(self._where.wait(list(self._running)))
         found = [self._done[key] for key in keys]
+        self._asked.subtract(keys)
         for key in keys:
-            self._done.pop(key, None)
+            if self._asked[key] <= 0:
+                self._done.pop(key, None)
         return found
 
     def finish(self):
@@ -156,11 +160,11 @@ class Job:
 
     def total(self, size):
         """The sum of ``size(part)`` over all parts."""
-        return sum(map(size, self._parts.values()))
+        return sum(size(part) * self._asked[key] for key, part in self._parts.items())
 
     def keep_finished(self):
         """After an interruption: keep what had ended."""
-        if self._store and hasattr(self._where, "finished"):
+        if hasattr(self._where, "finished"):
             self._collect(self._where.finished(list(self._running)))
 
     def _read(self, key):
@@ -182,18 +186,28 @@ class Job:
             self._running[self._where.submit(part.task, self._sent[part.shared], part.given)] = key
 
     def _collect(self, ended):
+        """Take the results of parts that have ended. If one failed, the others are kept before its error is raised."""
+        failed = None
         for one in ended:
-            result = self._where.get(one)
+            try:
+                result = self._where.get(one)
+            except Exception as error:
+                del self._running[one]
+                failed = failed or error
+                continue
+            if self._store:
+                self._store.write(f"parts/{self._running[one]}.npz", packed(result))
             key = self._running.pop(one)
             self._done[key] = result
-            if self._store:
-                self._store.write(f"parts/{key}.npz", packed(result))
             self._tell(key, result)
+        if failed is not None:
+            raise failed
 
     def _tell(self, key, result):
         if self._tick is not None and key not in self._told:
             self._told.add(key)
-            self._tick(self._parts[key], result)
+            for _ in range(self._asked[key]):
+                self._tick(self._parts[key], result)
 
 
 def digest_of(data):

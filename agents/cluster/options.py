@@ -35,7 +35,7 @@ def checked_ray(address):
 
 @contextmanager
 def place(address, threads=None):
-    """Where parts are played, as a context: ``Here`` without an address, else the ``Cluster``. Raises ValueError or ClusterError."""
+    """Where parts are played, as a context: ``Here`` without an address, else the ``Cluster``. Raises ClusterError."""
     if address is None:
         yield Here(threads)
         return

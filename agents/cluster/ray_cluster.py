@@ -38,7 +38,7 @@ def ray_of():
 
 
 def connected(address):
-    """The ``Cluster`` at an address, "local" or HOST:PORT. Raises ValueError for an address, ClusterError for a cluster that is unfit."""
+    """The ``Cluster`` at an address, "local" or HOST:PORT. Raises ClusterError."""
     ray = ray_of()
     quiet = {"log_to_driver": False, "logging_level": "ERROR", "configure_logging": True}
     if address == "local":
@@ -47,7 +47,7 @@ def connected(address):
         why = answers(address)
         if why:
             wanted = f"must be the head of a Ray cluster that runs ({why}): start one with  ray start --head --port={address.rpartition(':')[2]}"
-            raise refuse("ray", address, wanted)
+            raise ClusterError(str(refuse("ray", address, wanted)))
         _is_head(address)
         try:
             ray.init(address=address, **quiet)
@@ -65,14 +65,14 @@ def connected(address):
 
 
 def _is_head(address):
-    """Raise ValueError unless what answers there is the head of a Ray cluster: ``ray.init`` would wait for it for minutes."""
+    """Raise ClusterError unless what answers there is the head of a Ray cluster: ``ray.init`` would wait for it for minutes."""
     command = [sys.executable, "-m", "ray.scripts.scripts", "health-check", "--skip-version-check", "--address", address]
     try:
         fine = subprocess.run(command, capture_output=True, timeout=6 * ANSWER, check=False).returncode == 0
     except subprocess.TimeoutExpired:
         fine = False
     if not fine:
-        raise refuse("ray", address, "must be the head of a Ray cluster: what answers there is none")
+        raise ClusterError(str(refuse("ray", address, "must be the head of a Ray cluster: what answers there is none")))
 
 
 def _unfit(address, error):
@@ -98,6 +98,8 @@ class Cluster:
     address : str
         "local" or HOST:PORT.
     """
+
+    here = False
 
     def __init__(self, ray, address):
         self._ray, self.address = ray, address

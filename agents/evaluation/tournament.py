@@ -348,10 +348,6 @@ def main(argv=None):
             why, code = _play(tournament, args, where)
     except ClusterError as error:  # before anything was sent
         raise SystemExit(f"agents.tournament: {error}") from None
-    except ValueError as error:
-        if not args.ray:
-            raise
-        p.error(str(error))
     if why is not None:
         print(f"agents.tournament: {why}", file=sys.stderr)
     if not tournament.rows:
