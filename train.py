@@ -40,6 +40,7 @@ with needs("train.py"):
 
     import snooker_env
     from agents.cluster.faults import ClusterError
+    from agents.cluster.mirror import Mirror, left
     from agents.cluster.options import add_ray, checked_ray, place
     from agents.evaluation.training_summary import conclusion, evaluate, show
     from agents.features.views import training_tables
@@ -110,9 +111,10 @@ def parse(argv):
     parser.add_argument("--out", type=Path, help="the run's folder [runs/AGENT-SEED]")
     parser.add_argument("--resume", action="store_true", help="continue the run in that folder; options left out keep their values")
     add_ray(parser)
+    parser.add_argument("--mirror", metavar="URL", help="copy each checkpoint to this folder or fsspec URL; --resume goes on from there")
     parser.add_argument("--no-progress", action="store_true", help="no progress bar")
     given = vars(parser.parse_args(argv))
-    rest = {name: given.pop(name) for name in ("out", "resume", "no_progress", "ray")}
+    rest = {name: given.pop(name) for name in ("out", "resume", "no_progress", "ray", "mirror")}
     for name, (low, high) in BOUNDS.items():
         if not low <= given.get(name, low) <= high:
             parser.error(f"--{name.replace('_', '-')} is {given[name]}, must be an integer in [{low}, {high}]")
@@ -178,13 +180,17 @@ def open_run(parser, given, out, resume):
     return replace(was, **given), state
 
 
-def prepared(parser, given, out, resume, ending, ray=None):
+def prepared(parser, given, rest, ending):
     """(settings, recipe, checkpoint or None, tables, model). Every error of input is found here, before anything is compiled or played.
 
     ``ending`` releases the folder and the tables.
     """
+    out, resume, ray = rest.out, rest.resume, rest.ray
     try:
+        mirror = Mirror(rest.mirror) if rest.mirror else None
         if resume:
+            if mirror:
+                mirror.fetch(out)
             ending.enter_context(claimed(out, resume))
         settings, state = open_run(parser, given, out, resume)
         recipe = recipe_of(settings)
@@ -202,6 +208,10 @@ def prepared(parser, given, out, resume, ending, ray=None):
                 load_weights(model, Path(settings.start))
             ending.enter_context(claimed(out, resume))  # last, so that a wrong option leaves no folder behind
         tempfile.TemporaryFile(dir=out).close()
+        if mirror:
+            what = {name: value for name, value in asdict(settings).items() if name not in FREE_ON_RESUME}
+            mirror.claim(out, what, resume)
+            ending.callback(left, out)
     except ValueError as error:
         parser.error(str(error))
     except OSError as error:
@@ -280,7 +290,7 @@ def main(argv=None):
     torch.set_num_threads(1)  # more threads do not speed up a network this small, and the tables use the processors
     torch.distributions.Distribution.set_default_validate_args(False)  # these checks cost a twentieth of the time
     with ExitStack() as ending:
-        settings, recipe, state, tables, model = prepared(parser, given, out, rest.resume, ending, rest.ray)
+        settings, recipe, state, tables, model = prepared(parser, given, rest, ending)
         try:
             snooker_env.warmup()
             callback, imitation, stopped = train(out, settings, recipe, state, tables, model, not rest.no_progress, rest.ray)

@@ -16,6 +16,7 @@ from snooker_env.planning import processors
 from .faults import ANSWER, ClusterError, answers, of_part, out_of_memory
 from .job import run
 from .software import check, difference, software
+from .witness import Witness
 
 RETRIES = 5
 """How often a part is played again because its worker died."""
@@ -107,6 +108,10 @@ class Cluster:
         self._task = ray.remote(num_cpus=1, max_retries=RETRIES)(_run)
         self._wanted = ray.put(software())
         self._cores, self._looked = 0, 0.0
+        self._witness = Witness(
+            f"Ray has ended this process: the node that it ran on or the head of the cluster at {self._head} is gone. Start it again; the same "
+            "command (train.py and agents.tournament: with --resume) goes on from what was kept"
+        )  # fmt: skip
 
     @property
     def cores(self):
@@ -179,7 +184,7 @@ class Cluster:
         try:
             return self._ray.get(one)
         except exceptions.RayTaskError as error:
-            fault = of_part(error.cause, getattr(error, "ip", ""))
+            fault = of_part(error.cause)
             raise (error.cause if fault is None else fault) from None
         except exceptions.OutOfMemoryError:
             raise out_of_memory() from None
@@ -203,14 +208,22 @@ class Cluster:
     def close(self):
         """Leave the cluster; one on this machine alone ends."""
         self._ray.shutdown()
+        self._witness.done()
 
 
 def _run(task, shared, given, wanted):
     """What a worker does: play a part with its one core."""
     import ray
 
-    check(wanted, ray.util.get_node_ip_address())
-    return run(task, shared, given, 1)
+    here = ray.util.get_node_ip_address()
+    check(wanted, here)
+    try:
+        return run(task, shared, given, 1)
+    except Exception as error:
+        fault = of_part(error, here)
+        if fault is None:
+            raise
+        raise fault from None
 
 
 def _probe():
