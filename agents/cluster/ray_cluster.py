@@ -192,6 +192,8 @@ class Cluster:
             raise ClusterError(f"the disk of a node is full: free space there ({' '.join(str(error).split())[:200]})") from None
         except exceptions.ObjectStoreFullError:
             raise ClusterError("the object store is full: start the nodes with more (ray start --object-store-memory)") from None
+        except (exceptions.LocalRayletDiedError, exceptions.OwnerDiedError):
+            raise ClusterError("Ray has ended on this machine, or the head of the cluster is gone: start it again") from None
         except exceptions.RayError as error:
             said = " ".join(str(error).split())[:200]
             raise ClusterError(f"a part was given up, its worker died {RETRIES + 1} times ({type(error).__name__}: {said})") from None
