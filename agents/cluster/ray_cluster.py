@@ -38,12 +38,12 @@ def ray_of():
     return ray
 
 
-def connected(address):
-    """The ``Cluster`` at an address, "local" or HOST:PORT. Raises ClusterError."""
+def connected(address, cores=None):
+    """The ``Cluster`` at an address, "local" (with so many cores, default all) or HOST:PORT. Raises ClusterError."""
     ray = ray_of()
     quiet = {"log_to_driver": False, "logging_level": "ERROR", "configure_logging": True}
     if address == "local":
-        ray.init(num_cpus=processors(), include_dashboard=False, object_store_memory=LOCAL_STORE, **quiet)
+        ray.init(num_cpus=cores or processors(), include_dashboard=False, object_store_memory=LOCAL_STORE, **quiet)
     else:
         why = answers(address)
         if why:

@@ -156,3 +156,11 @@ def test_what_answers_and_is_no_head_is_one_line(environment):
 def test_what_is_no_address_is_refused(address, environment):
     code, _, err = finished([*QUICK, address], environment)
     assert code == 2 and f"ray = {address!r}: must be local, or HOST:PORT" in err.splitlines()[-1]
+
+
+def test_the_benchmark_prints_what_a_part_costs(tmp_path, environment):
+    command = ["-m", "benchmarks.cluster", "--shots", "200", "--parts", "2", "--positions", "2", "--repeats", "1", "--json", str(tmp_path / "f")]
+    code, out, err = finished(command, environment)
+    assert code == 0 and not lines_of(err), err
+    found = json.loads((tmp_path / "f").read_text())
+    assert "cost of a part" in out and "a million positions in" in out and min(found["rates"].values()) > 0 and found["search"] > 0
