@@ -40,7 +40,7 @@ with needs("train.py"):
 
     import snooker_env
     from agents.cluster.faults import ClusterError
-    from agents.cluster.mirror import Mirror, left
+    from agents.cluster.mirror import Mirror, copied, left
     from agents.cluster.options import add_ray, checked_ray, place
     from agents.evaluation.training_summary import conclusion, evaluate, show
     from agents.features.views import training_tables
@@ -269,7 +269,8 @@ def judge(out, settings, recipe, model, callback, imitation):
     """Play held-out visits, write the model and every figure, print the conclusion."""
     steps, seconds = model.num_timesteps, callback.seconds_before
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
-    write_atomic(out / "model.zip", zipped(model))
+    write_atomic(out / "model.zip", made := zipped(model))
+    copied(out, made, "model.zip")
     figures = evaluate(recipe, model, settings.eval_visits)
     learned = conclusion(settings.agent, steps, model.imitated, figures, model.start)
     results = {
@@ -277,7 +278,8 @@ def judge(out, settings, recipe, model, callback, imitation):
         "steps_per_second": steps / seconds, "start": model.start, "learned": learned,
         "evaluation": figures, "curve": callback.curve, "imitation": imitation, **provenance(),
     }  # fmt: skip
-    write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
+    write_atomic(out / "results.json", text := json.dumps(results, indent=1).encode())
+    copied(out, text, "results.json")
     show(figures)
     print(f"{learned}\nFigures: {out / 'results.json'}   curves: tensorboard --logdir {out / 'tb'}")
 

@@ -60,8 +60,6 @@ def measured(args):
     here, found = Here(1), {}
     for shared, given in (long, short):
         seconds(here, shared, given[:1])
-    found["here, long"] = [seconds(here, *long) for _ in range(args.repeats)]
-    found["here, short"] = [seconds(here, *short) for _ in range(args.repeats)]
     search = StrokeSearch({"noise": "professional"}, SEARCH, threads=1)
     tables = sn.SnookerVectorEnv(args.positions, noise="professional")
     tables.reset(seed=args.seed)
@@ -80,8 +78,11 @@ def measured(args):
             for shared, given in (long, short):
                 seconds(cluster, shared, given[: 2 * workers])  # its workers have started and compiled
             found[f"{workers} joined"] = [joined]
-            found[f"{workers}, long"] = [seconds(cluster, *long) for _ in range(args.repeats)]
-            found[f"{workers}, short"] = [seconds(cluster, *short) for _ in range(args.repeats)]
+            for name, given in (("long", long), ("short", short)):  # in turns: a busy machine slows both alike
+                pairs = [(seconds(here, *given), seconds(cluster, *given)) for _ in range(args.repeats)]
+                found[f"{workers}, {name}"] = [two for _, two in pairs]
+                found[f"{workers} times as fast, {name}"] = [one / two for one, two in pairs]
+                found.setdefault(f"here, {name}", []).extend(one for one, _ in pairs)
         finally:
             cluster.close()
     return found
@@ -101,23 +102,33 @@ def main():
     found = measured(args)
     middle = {name: float(np.median(values)) for name, values in found.items()}
     shots, short = args.shots * args.parts, 50 * args.parts
-    rates = {"this process, one thread": shots / middle["here, long"], **{f"{n} worker{'s'[: n - 1]}": shots / middle[f"{n}, long"] for n in (1, 2)}}
+    rates = {
+        "this process, one thread": shots / middle["here, long"],
+        **{f"{n} worker{'s'[: n - 1]}": shots / middle[f"{n}, long"] for n in (1, 2)},
+    }
     print(f"{'shots a second, parts of':26s}{args.shots:,} shots ({middle['here, long'] / args.parts:.2f} s)")
-    for name, rate in rates.items():
-        print(f"  {name:26s}{rate:10,.0f}")
+    for k, (name, rate) in enumerate(rates.items()):
+        times = f"   {middle[f'{k} times as fast, long']:.2f} times this process, paired" if k else ""
+        print(f"  {name:26s}{rate:10,.0f}{times}")
     cost = (middle["1, short"] - middle["here, short"]) / short
     sent = short / min(middle["1, short"], middle["2, short"])
     least = max(cost, 0.0) / SHARE
-    print(f"cost of a part {1e3 * cost:.2f} ms: it must last {1e3 * least:.0f} ms for {SHARE:.0%}; the driver sends {sent:,.0f} parts a second")
+    print(
+        f"cost of a part {1e3 * cost:.2f} ms: it must last {1e3 * least:.0f} ms for {SHARE:.0%}; "
+        f"the driver sends {sent:,.0f} parts a second"
+    )
     print(f"a cluster on this machine is there after {middle['2 joined']:.1f} s")
     position = middle["search"]
-    print(f"search, {SEARCH:,} shots: {1e3 * position:.0f} ms a position on one core; a million positions are {1e6 * position / 3600:,.0f} core-hours")
+    print(
+        f"search, {SEARCH:,} shots: {1e3 * position:.0f} ms a position on one core; "
+        f"a million positions are {1e6 * position / 3600:,.0f} core-hours"
+    )
     print("on paper, workers with a core each, parts of 1 s:")
     for cores in CORES:
         share = 1.0 / (1.0 + cost)
         limited = min(1.0, sent / cores)
-        rate = cores * shots / middle["here, long"] * share * limited
-        print(f"  {cores:5,} cores {rate:14,.0f} shots a second; a million positions in {1e6 * position / 3600 / cores / limited / share:,.2f} hours")
+        rate, hours = cores * shots / middle["here, long"] * share * limited, 1e6 * position / 3600 / cores / limited / share
+        print(f"  {cores:5,} cores {rate:14,.0f} shots a second; a million positions in {hours:,.2f} hours")
     save_json(args.json, {"seconds": found, "rates": rates, "cost": cost, "sent": sent, "search": position})
     return 0
 

@@ -1,12 +1,15 @@
 """How are the matches of a tournament played in parts? A part is a pair of players and at most a hundred seeds; its result are its rows."""
 
+import zlib
+
 import numpy as np
 
 from commands.physics_option import physics_option
 
+from ..evaluation.tournament_figures import schedule
 from ..evaluation.tournament_play import TimedPlayer, play_pair
-from .job import Part
-from .travel import arrived
+from .job import Job, Part
+from .travel import arrived, sent
 
 
 def part_of(pair, seeds, players, game, best_of, budget):
@@ -45,3 +48,48 @@ def play(shared, given, threads):
         "rows": np.array(rows, np.int64), "decisions": np.array([player.decisions for player in players]),
         "seconds": np.array([player.seconds for player in players]),
     }  # fmt: skip
+
+
+def drawn(label, other, first):
+    """The seed of what a player draws in the matches against the label ``other`` from the seed ``first`` on."""
+    return zlib.crc32(f"{label}\n{other}\n{first}".encode())
+
+
+def play_on(tournament, cluster, tick=None, saved=None):
+    """Play all parts of a tournament that are not in its rows yet on a cluster; the rows are those of ``Tournament.play``.
+
+    Parameters
+    ----------
+    tournament : Tournament
+        It gets the rows and the times.
+    cluster : Cluster
+        That was joined.
+    tick : callable, optional
+        Called with the number of matches that have ended.
+    saved : callable, optional
+        Called after each part.
+    """
+    labels, p = tournament.labels, tournament.protocol
+    order = {pair: k for k, pair in enumerate(schedule(labels))}
+
+    def ended(part, result):
+        tournament.rows += result["rows"].tolist()
+        tournament.rows.sort(key=lambda row: (order[tuple(row[:2])], row[2:5]))
+        for k, decisions, seconds in zip(part.given["pair"], result["decisions"].tolist(), result["seconds"].tolist(), strict=True):
+            tournament.times[k][0] += decisions
+            tournament.times[k][1] += seconds
+        if tick is not None:
+            tick(len({tuple(row[:4]) for row in tournament.rows}))
+        if saved is not None:
+            saved()
+
+    parts = []
+    for pair, seeds in tournament.left:
+        draws = [drawn(labels[k], labels[other], seeds[0]) for k, other in (pair, pair[::-1])]
+        parts.append(part_of(pair, seeds, draws, tournament.game, p["best_of"], p["search_budget"]))
+    job = Job(parts, {"players": {"players": [sent(entrant, 0) for entrant in tournament.entrants]}}, cluster, tick=ended)
+    try:
+        job.finish()
+    except BaseException:  # what had ended is kept, whatever stopped the rest
+        job.keep_finished()
+        raise

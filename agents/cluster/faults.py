@@ -44,9 +44,8 @@ def of_part(cause, where=""):
     if isinstance(cause, MemoryError):
         return out_of_memory(here)
     if isinstance(cause, ImportError):
-        return ClusterError(
-            f"a worker{here} cannot import {cause.name or cause}: install the same clone on every node (pip install -e \".[train,cluster]\")"
-        )  # fmt: skip
+        everywhere = 'install the same clone on every node (pip install -e ".[cluster]")'
+        return ClusterError(f"a worker{here} cannot import {cause.name or cause}: {everywhere}")
     if isinstance(cause, OSError) and cause.errno in (28, 122):  # ENOSPC, EDQUOT
         return ClusterError(f"the disk of a worker{here} is full ({cause.filename or 'its temporary folder'}): free space there")
     return None

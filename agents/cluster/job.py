@@ -9,6 +9,7 @@ import hashlib
 import importlib
 import json
 from collections import Counter, deque
+from contextlib import suppress
 from dataclasses import dataclass
 
 from .store import opened, packed, unpacked
@@ -163,9 +164,10 @@ class Job:
         return sum(size(part) * self._asked[key] for key, part in self._parts.items())
 
     def keep_finished(self):
-        """After an interruption: keep what had ended."""
+        """After an interruption or a fault: keep what had ended, as far as it can still be had."""
         if hasattr(self._where, "finished"):
-            self._collect(self._where.finished(list(self._running)))
+            with suppress(Exception):
+                self._collect(self._where.finished(list(self._running)))
 
     def _read(self, key):
         """The result of a part that is kept. Another job may have ended and removed it: then it is played."""

@@ -63,33 +63,36 @@ class Mirror:
             differs = [name for name in {**now, **was} if was.get(name) != now.get(name)]
             if differs:
                 name = differs[0]
-                raise refuse("mirror", str(self.store), f"must be that of the same run: its {name} is {was.get(name)!r}, not {now.get(name)!r}")
+                raise refuse(
+                    "mirror", str(self.store), f"must be that of the same run: its {name} is {was.get(name)!r}, not {now.get(name)!r}"
+                )
         owner = {"token": self._mine, "process": os.getpid(), "machine": platform.node(), "since": time.strftime("%Y-%m-%d %H:%M:%S")}
         self.store.write(RUN, json.dumps(now, indent=1).encode())
         self.store.write(OWNER, json.dumps(owner, indent=1).encode())
         _mirrors[out.resolve()] = self
 
-    def save(self, data):
-        """Copy a checkpoint, with patience for a network that fails. Raises ClusterError if another process has taken over the run."""
+    def save(self, data, name=CHECKPOINT):
+        """Copy a checkpoint, with patience for a network that fails. Raises ClusterError if it does not end, or if another process has
+        taken over the run."""
         for k in range(TRIES):
             try:
                 owner = json.loads(self.store.read(OWNER) or b"{}")
                 if owner.get("token") != self._mine:
                     who = f"process {owner.get('process')} on {owner.get('machine')} since {owner.get('since')}"
                     raise ClusterError(f"the run at {self.store} was taken over by {who}: this one stops")
-                self.store.write(CHECKPOINT, data)
+                self.store.write(name, data)
                 return
-            except OSError:
+            except OSError as error:
                 if k + 1 == TRIES:
-                    raise
+                    raise ClusterError(f"the mirror {self.store} cannot be written: {error.strerror or error}") from None
                 time.sleep(PAUSE * 2**k)
 
 
-def copied(out, data):
-    """Copy the checkpoint of the run in ``out`` to its mirror, if it has one."""
+def copied(out, data, name=CHECKPOINT):
+    """Copy a file of the run in ``out`` to its mirror, if it has one."""
     mirror = _mirrors.get(out.resolve())
     if mirror is not None:
-        mirror.save(data)
+        mirror.save(data, name)
 
 
 def left(out):

@@ -22,8 +22,8 @@ def add_ray(p):
 def add_keep(p):
     """Add ``--keep`` to a parser."""
     p.add_argument(
-        "--keep", metavar="URL", help=f"keep each part that was played in this folder or fsspec URL: after an interruption the same command "
-        f"goes on there [with --ray: a folder in {KEPT}, until the job is complete]"
+        "--keep", metavar="URL", help=f"keep each part that was played in this folder or fsspec URL: after an interruption the same "
+        f"command goes on there [with --ray: a folder in {KEPT}, until the job is complete]"
     )  # fmt: skip
 
 

@@ -31,6 +31,7 @@ LOCAL_STORE = 2**28
 def ray_of():
     """The module ``ray``. Raises ImportError with the line that installs it."""
     os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")  # spares a warning
+    os.environ.setdefault("RAY_task_oom_retries", str(RETRIES))  # Ray would try for ever what takes too much memory
     try:
         import ray
     except ImportError:
@@ -47,7 +48,9 @@ def connected(address, cores=None):
     else:
         why = answers(address)
         if why:
-            wanted = f"must be the head of a Ray cluster that runs ({why}): start one with  ray start --head --port={address.rpartition(':')[2]}"
+            wanted = (
+                f"must be the head of a Ray cluster that runs ({why}): start one with  ray start --head --port={address.rpartition(':')[2]}"
+            )
             raise ClusterError(str(refuse("ray", address, wanted)))
         _is_head(address)
         try:
@@ -109,7 +112,7 @@ class Cluster:
         self._wanted = ray.put(software())
         self._cores, self._looked = 0, 0.0
         self._witness = Witness(
-            f"Ray has ended this process: the node that it ran on or the head of the cluster at {self._head} is gone. Start it again; the same "
+            f"Ray has ended this process, or it was killed: if the head of the cluster at {self._head} is gone, start it again; the same "
             "command (train.py and agents.tournament: with --resume) goes on from what was kept"
         )  # fmt: skip
 
@@ -145,7 +148,7 @@ class Cluster:
                 if "missing" in what:
                     raise ClusterError(
                         f"the node {asked[ref]} has no {what['missing']}: install the same clone on every node "
-                        '(pip install -e ".[train,cluster]")'
+                        '(pip install -e ".[cluster]")'
                     )  # fmt: skip
                 differs = difference(software(), what["software"])
                 if differs:

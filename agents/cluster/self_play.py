@@ -5,6 +5,8 @@ wherever it is computed, since the last bits of a network's product depend on ho
 number of workers, not even when one dies and its slice is computed again.
 """
 
+import itertools
+
 import numpy as np
 
 from snooker_env import Options
@@ -68,8 +70,8 @@ def strokes(shared, given, threads):
     played = np.where(given["explored"], m * fresh + every, fresh * every)
     left = out.afterstates[played]
     return {
-        "seen": features(at).astype(np.float16), "after": after.reshape(m, fresh, SIZE), "points": out.points[: m * fresh].reshape(m, fresh),
-        "goes_on": goes_on.reshape(m, fresh), "follows": out.goes_on[played], "positions": left.positions, "on_table": left.on_table,
+        "seen": features(at).astype(np.float16), "after": after.reshape(m, fresh, SIZE),
+        "points": out.points[: m * fresh].reshape(m, fresh), "goes_on": goes_on.reshape(m, fresh), "follows": out.goes_on[played], "positions": left.positions, "on_table": left.on_table,
         "game": left.game,
     }  # fmt: skip
 
@@ -79,14 +81,16 @@ def choices(shared, given, threads):
 
     ``given``: "at" (arrays of m positions), "rows", "picks" and "keys" (k,). Returns "gains", float32 (k,).
     """
-    played = once(("planner", shared["run"], threads), lambda: planner_of(shared["options"], threads)).play(Positions(*given["at"]), given["rows"], given["picks"], given["keys"])
+    played = once(("planner", shared["run"], threads), lambda: planner_of(shared["options"], threads)).play(
+        Positions(*given["at"]), given["rows"], given["picks"], given["keys"]
+    )
     gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
     gains[on] += shared["value"](played.afterstates[on])
     return {"gains": gains}
 
 
-def in_slices(n, rows=None):
-    """Slices of n positions; with sorted ``rows`` (k,) also which of these belong to each: (positions, of rows).
+def in_slices(n):
+    """Slices of n positions.
 
     Examples
     --------
@@ -94,20 +98,23 @@ def in_slices(n, rows=None):
     >>> in_slices(100)
     [slice(0, 64, None), slice(64, 100, None)]
     """
-    cut = [slice(k, min(n, k + SLICE)) for k in range(0, n, SLICE)]
-    if rows is None:
-        return cut
+    return [slice(k, min(n, k + SLICE)) for k in range(0, n, SLICE)]
+
+
+def of_choices(at, rows, picks, keys):
+    """The arguments of each slice of positions for choices in the sorted ``rows`` (k,)."""
+    cut = in_slices(len(at))
     ends = np.searchsorted(rows, [0, *(one.stop for one in cut)]).tolist()
-    return [(one, slice(*pair)) for one, pair in zip(cut, zip(ends[:-1], ends[1:], strict=True), strict=True)]
+    some = [slice(*pair) for pair in zip(ends[:-1], ends[1:], strict=True)]
+    return [
+        {"at": positions_given(at[one]), "rows": rows[its] - one.start, "picks": picks[its], "keys": keys[its]}
+        for one, its in zip(cut, some, strict=True)
+    ]  # fmt: skip
 
 
 def judged(where, shared, at, rows, picks, keys):
     """``choices`` of all positions: float32 (k,)."""
-    given = [
-        {"at": positions_given(at[one]), "rows": rows[some] - one.start, "picks": picks[some], "keys": keys[some]}
-        for one, some in in_slices(len(at), rows)
-    ]  # fmt: skip
-    return np.concatenate([one["gains"] for one in where.map("choices", shared, given)])
+    return np.concatenate([one["gains"] for one in where.map("choices", shared, of_choices(at, rows, picks, keys))])
 
 
 def search_of(shared, threads):

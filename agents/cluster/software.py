@@ -35,7 +35,7 @@ def software():
     >>> sorted(software())[:3]
     ['gymnasium', 'llvmlite', 'numba']
     """
-    found = {"python": platform.python_version()}
+    found: dict[str, str | None] = {"python": platform.python_version()}
     for name in PACKAGES:
         try:
             found[name] = importlib.metadata.version(name)

@@ -1,4 +1,4 @@
-"""Where is kept what a job has played? In a folder, or under any URL of fsspec (s3://, gs://, memory://), a file written whole or not at all.
+"""Where is kept what a job has played? In a folder or under a URL of fsspec (s3://, gs://, memory://), each file whole or not at all.
 
 A result of a part is a dict of NumPy arrays, kept as .npz without pickles: reading it runs no code.
 """
@@ -11,6 +11,7 @@ import shutil
 import uuid
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -70,7 +71,14 @@ class Folder:
         """Write a file, whole or not at all. Two processes that write the same file do not disturb each other."""
         file = self.path / name
         file.parent.mkdir(parents=True, exist_ok=True)
-        write_atomic(file, data)
+        beside = file.with_name(f"{file.name}.{uuid.uuid4().hex[:12]}.tmp")  # processes of two machines may have the same number
+        try:
+            write_atomic(beside, data)
+            os.replace(beside, file)
+        except OSError as error:
+            beside.unlink(missing_ok=True)
+            error.filename, error.filename2 = str(file), None
+            raise
 
     def remove(self, name):
         """Remove a file, if it is there."""
@@ -136,16 +144,16 @@ class Remote:
         path = f"{self._root}/{name}"
         try:
             self._files.makedirs(path.rpartition("/")[0], exist_ok=True)
-            if self._files.protocol in ("s3", ("s3", "s3a"), ("gs", "gcs"), ("abfs", "az")):  # there, a file appears when it is whole
+            protocols = {self._files.protocol} if isinstance(self._files.protocol, str) else set(self._files.protocol)
+            if protocols & {"s3", "gs", "abfs"}:  # there, a file appears when it is whole
                 self._files.pipe_file(path, data)
                 return
             beside = f"{path}.{os.getpid()}.{uuid.uuid4().hex[:8]}.tmp"
             self._files.pipe_file(beside, data)
             self._files.mv(beside, path)
-        except OSError as error:
-            error.filename = error.filename or f"{self.url}/{name}"
-            raise
         except Exception as error:
+            if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+                raise OSError(errno.ENOSPC, error.strerror, f"{self.url}/{name}") from None
             raise OSError(errno.EIO, f"{type(error).__name__}: {str(error)[:200]}", f"{self.url}/{name}") from None
 
     def remove(self, name):
@@ -157,7 +165,8 @@ class Remote:
 def packed(result):
     """A dict of arrays and numbers as bytes."""
     file = io.BytesIO()
-    np.savez(file, **{name: np.asarray(value) for name, value in result.items()})
+    arrays: Any = {name: np.asarray(value) for name, value in result.items()}
+    np.savez(file, **arrays)
     return file.getvalue()
 
 

@@ -1,4 +1,4 @@
-"""Who says so when Ray ends this process? It does when its node dies, at once and without a word; a small process beside it has the word."""
+"""Who says so when Ray ends this process? It does that when its node dies, without a word: a small process beside it has the word."""
 
 import subprocess
 import sys

@@ -1,10 +1,11 @@
-"""What are choices worth by the search's rule of thumb? A task of imitation: every choice is simulated once, so parts may be of any size."""
+"""What are choices worth by the search's rule of thumb? A task of imitation, in which each is simulated once."""
 
 import numpy as np
 
 from snooker_env.planning import Planner, Positions, prospects_of
 
-from .self_play import in_slices, once, positions_given
+from .self_play import of_choices, once
+
 
 def play(shared, given, threads):
     """The task: ``shared`` has "run" (an id), "options", "spread" and "ahead"; ``given`` is as of ``self_play.choices``."""
@@ -16,8 +17,4 @@ def play(shared, given, threads):
 
 def worths(where, shared, at, rows, picks, keys):
     """The task for all positions: float64 (k,)."""
-    given = [
-        {"at": positions_given(at[one]), "rows": rows[some] - one.start, "picks": picks[some], "keys": keys[some]}
-        for one, some in in_slices(len(at), rows)
-    ]  # fmt: skip
-    return np.concatenate([one["worth"] for one in where.map("worths", shared, given)])
+    return np.concatenate([one["worth"] for one in where.map("worths", shared, of_choices(at, rows, picks, keys))])

@@ -287,6 +287,7 @@ def played(report, agents, seeds, shown, where, keep, conditions):
             job.keep_finished()
         except ClusterError as error:
             why, code = str(error), 1
+            job.keep_finished()
     if code:
         complete = len(report["results"]) // len(agents)
         parts = f"{complete} of {conditions} parts (layouts under one noise) were complete"

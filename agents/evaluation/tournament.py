@@ -15,7 +15,6 @@ import argparse
 import shlex
 import sys
 import time
-import zlib
 from pathlib import Path
 from typing import Any
 
@@ -29,11 +28,10 @@ with needs("agents.tournament"):
     from snooker_env.benchmark import RESAMPLES, machine, read_result, write_result
     from snooker_env.checks import choice, integer, refuse
 
-    from ..cluster.encounters import part_of
+    from ..cluster.encounters import drawn, play_on
     from ..cluster.faults import ClusterError
-    from ..cluster.job import Job
     from ..cluster.options import add_ray, checked_ray, place
-    from ..cluster.travel import one_thread, sent
+    from ..cluster.travel import one_thread
     from ..learning.models import pretrained
     from ..players.by_name import NAMES, is_player, player_of
     from .entrants import Entrant, options_of
@@ -190,12 +188,9 @@ def player_for(entrant, other, first, budget):
     """
     run = entrant.runs[0]
     one_thread(run)
-    return player_of(run, budget=budget, seed=_drawn(entrant, other, first), frames=True) if is_player(run) else entrant.player(0, budget)
-
-
-def _drawn(entrant, other, first):
-    """The seed of what a player draws in the matches against the label ``other`` from the seed ``first`` on."""
-    return zlib.crc32(f"{entrant.label}\n{other}\n{first}".encode())
+    return (
+        player_of(run, budget=budget, seed=drawn(entrant.label, other, first), frames=True) if is_player(run) else entrant.player(0, budget)
+    )
 
 
 class Tournament:
@@ -233,40 +228,6 @@ class Tournament:
         """The parts that are not in the rows yet."""
         done = {tuple(row[:3]) for row in self.rows}
         return [(pair, seeds) for pair, seeds in self.parts if not all((*pair, seed) in done for seed in seeds)]
-
-    def play_on(self, cluster, tick=None, saved=None):
-        """The same as ``play``, on a ``Cluster``: the rows are the same.
-
-        Parameters
-        ----------
-        cluster : Cluster
-            That was joined.
-        tick, saved : callable, optional
-            As of ``play``.
-        """
-        order, p = {pair: k for k, pair in enumerate(schedule(self.labels))}, self.protocol
-
-        def ended(part, result):
-            self.rows += result["rows"].tolist()
-            self.rows.sort(key=lambda row: (order[tuple(row[:2])], row[2:5]))
-            for k, decisions, seconds in zip(part.given["pair"], result["decisions"].tolist(), result["seconds"].tolist(), strict=True):
-                self.times[k][0] += decisions
-                self.times[k][1] += seconds
-            if tick is not None:
-                tick(len({tuple(row[:4]) for row in self.rows}))
-            if saved is not None:
-                saved()
-
-        parts = []
-        for pair, seeds in self.left:
-            draws = [_drawn(self.entrants[k], self.labels[other], seeds[0]) for k, other in (pair, pair[::-1])]
-            parts.append(part_of(pair, seeds, draws, self.game, p["best_of"], p["search_budget"]))
-        job = Job(parts, {"players": {"players": [sent(entrant, 0) for entrant in self.entrants]}}, cluster, tick=ended)
-        try:
-            job.finish()
-        except KeyboardInterrupt:
-            job.keep_finished()
-            raise
 
     def play(self, threads=None, tick=None, saved=None):
         """Play all parts that are not in the rows yet.
@@ -379,7 +340,7 @@ def _play(tournament, args, where):
         task = bar.add_task(units, total=total)
         try:
             if args.ray:
-                tournament.play_on(where, lambda n: bar.update(task, completed=n, description=f"{units}{where.says}"), saved)
+                play_on(tournament, where, lambda n: bar.update(task, completed=n, description=f"{units}{where.says}"), saved)
             else:
                 tournament.play(args.threads, lambda n: bar.update(task, completed=n), saved)
         except (KeyboardInterrupt, ClusterError) as error:

@@ -22,7 +22,7 @@ _PARTS = 4
 
 
 class JudgedChoices:
-    """Fits ``policy`` to the values of choices in rounds of n positions; each choice is simulated once under execution noise by ``where``."""
+    """Fits ``policy`` to the values of choices in rounds of n positions; ``where`` simulates each choice once under execution noise."""
 
     def __init__(self, policy, options, threads, n, rng, where=None):
         self._policy, self._rng, self._n, self._where = policy, rng, n, where or Here(threads)

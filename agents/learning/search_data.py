@@ -65,8 +65,11 @@ def checked(args):
     physics_option(args.physics)
     checked_ray(args.ray)
     agent = Entrant.of(args.agent)
-    if len(agent.runs) > 1 or not isinstance(player_of(agent.runs[0], budget=args.budget), StrokePlayer):
-        raise refuse("agent", args.agent, "must be one player that searches: search, lookahead, planner, with _SHOTS and @MODEL if you wish")
+    runs = list(agent.runs)
+    if len(runs) > 1 or not isinstance(player_of(runs[0], budget=args.budget), StrokePlayer):
+        raise refuse(
+            "agent", args.agent, "must be one player that searches: search, lookahead, planner, with _SHOTS and @MODEL if you wish"
+        )
     return sent(agent, 0), {name: getattr(args, name) for name in ("layout", "noise", "fidelity", "physics")}
 
 
@@ -117,7 +120,10 @@ def main(argv=None):
         why, code = str(error), 1
     if code:
         kept = len(store.names("parts")) * each
-        print(f"agents.search: {why}; {kept:,} of {each * len(parts):,} positions are kept in {store}, the same command goes on", file=sys.stderr)
+        print(
+            f"agents.search: {why}; {kept:,} of {each * len(parts):,} positions are kept in {store}, the same command goes on",
+            file=sys.stderr,
+        )
         return code
     keys = [job.key(part) for part in parts]
     store.write(INDEX, (json.dumps({"positions": each * len(parts), "parts": keys}, indent=1) + "\n").encode())

@@ -116,7 +116,7 @@ def test_another_job_is_refused_by_name(tmp_path):
         with pytest.raises(ValueError, match=says):
             Job(PARTS, SHARED, Sums(), store, about)
     (tmp_path / "job.json").unlink()
-    with pytest.raises(ValueError, match="holds parts and no job.json"):
+    with pytest.raises(ValueError, match=r"holds parts and no job.json"):
         Job(PARTS, SHARED, Sums(), store, {})
     (tmp_path / "job.json").write_text("{")
     with pytest.raises(ValueError, match="this one is damaged"):

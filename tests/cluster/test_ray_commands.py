@@ -18,9 +18,12 @@ from ray.cluster_utils import Cluster as Nodes
 
 ROOT = Path(__file__).resolve().parents[2]
 NODE = {"num_cpus": 2, "object_store_memory": 100 * 2**20, "include_dashboard": False}
-EVALUATE = ["-m", "agents.evaluate", "--agent", "tests.cluster.players:Noted", "--against", "Noted", "--layouts", "held_out", "--visits", "700",
-            "--noise", "professional", "--resamples", "200"]  # fmt: skip
-TRAIN = ["-c", "import sys, train, agents.learning.callback as often; often.LEAST, often.SHARE = 1.0, 1.0; sys.exit(train.main(sys.argv[1:]))"]
+EVALUATE = ["-m", "agents.evaluate", "--agent", "tests.cluster.players:Noted", "--against", "Noted", "--layouts", "held_out",
+            "--visits", "700", "--noise", "professional", "--resamples", "200"]  # fmt: skip
+TRAIN = [
+    "-c",
+    "import sys, train, agents.learning.callback as often; often.LEAST, often.SHARE = 1.0, 1.0; sys.exit(train.main(sys.argv[1:]))",
+]
 """train.py with a checkpoint every second."""
 SHORT = ["--imitate", "3072", "--envs", "128", "--steps", "1", "--eval-visits", "2", "--no-progress"]
 
@@ -33,7 +36,9 @@ def environment(tmp_path, monkeypatch):
 
 
 def started(command, environment):
-    return subprocess.Popen([sys.executable, *command], cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen(
+        [sys.executable, *command], cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
 
 
 def finished(command, environment):
@@ -159,7 +164,20 @@ def test_what_is_no_address_is_refused(address, environment):
 
 
 def test_the_benchmark_prints_what_a_part_costs(tmp_path, environment):
-    command = ["-m", "benchmarks.cluster", "--shots", "200", "--parts", "2", "--positions", "2", "--repeats", "1", "--json", str(tmp_path / "f")]
+    command = [
+        "-m",
+        "benchmarks.cluster",
+        "--shots",
+        "200",
+        "--parts",
+        "2",
+        "--positions",
+        "2",
+        "--repeats",
+        "1",
+        "--json",
+        str(tmp_path / "f"),
+    ]
     code, out, err = finished(command, environment)
     assert code == 0 and not lines_of(err), err
     found = json.loads((tmp_path / "f").read_text())

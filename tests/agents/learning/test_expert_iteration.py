@@ -7,11 +7,11 @@ import pytest
 import torch
 from positions import tables
 
+from agents.cluster.self_play import search_of
 from agents.features.policy_proposals import PolicyProposals
 from agents.features.value_features import value_features
 from agents.features.views import training_tables
 from agents.learning import expert_iteration
-from agents.cluster.self_play import search_of
 from agents.learning.expert_iteration import FRESH, STARTS, ExpertIteration, Starts, judge_rewards
 from agents.learning.hyperparameters import Recipe
 from agents.learning.model_files import packed, read
