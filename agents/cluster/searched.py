@@ -32,13 +32,14 @@ def play(shared, given, threads):
         (n, KEPT, 4) of ``aim="absolute"`` and "scores" float32 (n, KEPT) [points].
     """
     player, at = arrived(shared, given["budget"], given["seed"]), given["condition"]
-    first = given["first"]
+    first: int = given["first"]
     player.tables_of(first, first + TABLES)
     options = at | {"physics": physics_option(at["physics"])}
     tables = SnookerVectorEnv(TABLES, threads=threads, autoreset_mode="Disabled", **player.options, **options)
     seeds = np.random.SeedSequence([given["seed"], first]).generate_state(TABLES).tolist()
     seen, _ = tables.reset(seed=seeds)
     everyone, found = np.ones(TABLES, bool), []
+    again: list[int | None] = [None] * TABLES
     for _ in range(ROUNDS):
         here = Positions.of(tables).copy()
         actions, scores = np.full((TABLES, KEPT, 4), np.nan, np.float32), np.full((TABLES, KEPT), np.nan, np.float32)
@@ -47,6 +48,6 @@ def play(shared, given, threads):
         found.append({"positions": here.positions, "on_table": here.on_table, "game": here.game, "actions": actions, "scores": scores})
         seen, _, ended, stopped, _ = tables.step(actions[:, 0])
         if (done := ended | stopped).any():
-            seen, _ = tables.reset(seed=[None] * TABLES, options={"reset_mask": done})
+            seen, _ = tables.reset(seed=again, options={"reset_mask": done})
     tables.close()
     return {name: np.concatenate([one[name] for one in found]) for name in found[0]}

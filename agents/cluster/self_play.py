@@ -5,7 +5,7 @@ wherever it is computed, since the last bits of a network's product depend on ho
 number of workers, not even when one dies and its slice is computed again.
 """
 
-import itertools
+from itertools import pairwise
 
 import numpy as np
 
@@ -71,7 +71,8 @@ def strokes(shared, given, threads):
     left = out.afterstates[played]
     return {
         "seen": features(at).astype(np.float16), "after": after.reshape(m, fresh, SIZE),
-        "points": out.points[: m * fresh].reshape(m, fresh), "goes_on": goes_on.reshape(m, fresh), "follows": out.goes_on[played], "positions": left.positions, "on_table": left.on_table,
+        "points": out.points[: m * fresh].reshape(m, fresh), "goes_on": goes_on.reshape(m, fresh),
+        "follows": out.goes_on[played], "positions": left.positions, "on_table": left.on_table,
         "game": left.game,
     }  # fmt: skip
 
@@ -105,7 +106,7 @@ def of_choices(at, rows, picks, keys):
     """The arguments of each slice of positions for choices in the sorted ``rows`` (k,)."""
     cut = in_slices(len(at))
     ends = np.searchsorted(rows, [0, *(one.stop for one in cut)]).tolist()
-    some = [slice(*pair) for pair in zip(ends[:-1], ends[1:], strict=True)]
+    some = [slice(*pair) for pair in pairwise(ends)]
     return [
         {"at": positions_given(at[one]), "rows": rows[its] - one.start, "picks": picks[its], "keys": keys[its]}
         for one, its in zip(cut, some, strict=True)
