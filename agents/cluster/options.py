@@ -5,7 +5,7 @@ from pathlib import Path
 
 from .faults import split_address
 from .job import Here, digest_of
-from .store import store_of
+from .store import Folder, store_of
 
 KEPT = Path("runs/kept")
 """Folder of what jobs on a cluster keep where ``--keep`` does not say it."""
@@ -79,5 +79,5 @@ class Keep:
 
     def done(self):
         """The job is complete, its results are written: a folder of its own goes."""
-        if self._own and self.store is not None:
+        if self._own and isinstance(self.store, Folder):
             self.store.clear()

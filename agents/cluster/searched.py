@@ -1,5 +1,7 @@
 """What does a search do in positions of its own visits? A task: some tables are played for some rounds, each decision is written down."""
 
+from typing import Any
+
 import numpy as np
 
 from commands.physics_option import physics_option
@@ -31,7 +33,8 @@ def play(shared, given, threads):
         Of n positions: "positions" float64 (n, 22, 2) [m], "on_table" bool (n, 22) and "game" int64, as of ``Positions``; "actions" float32
         (n, KEPT, 4) of ``aim="absolute"`` and "scores" float32 (n, KEPT) [points].
     """
-    player, at = arrived(shared, given["budget"], given["seed"]), given["condition"]
+    player: Any = arrived(shared, given["budget"], given["seed"])
+    at = given["condition"]
     first: int = given["first"]
     player.tables_of(first, first + TABLES)
     options = at | {"physics": physics_option(at["physics"])}
