@@ -39,6 +39,9 @@ with needs("train.py"):
     import torch
 
     import snooker_env
+    from agents.cluster.faults import ClusterError
+    from agents.cluster.mirror import Mirror, copied, left
+    from agents.cluster.options import add_ray, checked_ray, place
     from agents.evaluation.training_summary import conclusion, evaluate, show
     from agents.features.views import training_tables
     from agents.learning.callback import RunCallback, Stop, goal_of, imitate, rollout_of
@@ -107,9 +110,11 @@ def parse(argv):
         )  # fmt: skip
     parser.add_argument("--out", type=Path, help="the run's folder [runs/AGENT-SEED]")
     parser.add_argument("--resume", action="store_true", help="continue the run in that folder; options left out keep their values")
+    add_ray(parser)
+    parser.add_argument("--mirror", metavar="URL", help="copy each checkpoint to this folder or fsspec URL; --resume goes on from there")
     parser.add_argument("--no-progress", action="store_true", help="no progress bar")
     given = vars(parser.parse_args(argv))
-    rest = {name: given.pop(name) for name in ("out", "resume", "no_progress")}
+    rest = {name: given.pop(name) for name in ("out", "resume", "no_progress", "ray", "mirror")}
     for name, (low, high) in BOUNDS.items():
         if not low <= given.get(name, low) <= high:
             parser.error(f"--{name.replace('_', '-')} is {given[name]}, must be an integer in [{low}, {high}]")
@@ -175,16 +180,23 @@ def open_run(parser, given, out, resume):
     return replace(was, **given), state
 
 
-def prepared(parser, given, out, resume, ending):
+def prepared(parser, given, rest, ending):
     """(settings, recipe, checkpoint or None, tables, model). Every error of input is found here, before anything is compiled or played.
 
     ``ending`` releases the folder and the tables.
     """
+    out, resume, ray = rest.out, rest.resume, rest.ray
     try:
+        mirror = Mirror(rest.mirror) if rest.mirror else None
         if resume:
+            if mirror:
+                mirror.fetch(out)
             ending.enter_context(claimed(out, resume))
         settings, state = open_run(parser, given, out, resume)
         recipe = recipe_of(settings)
+        checked_ray(ray)
+        if ray and not recipe.imitation:
+            raise refuse("ray", ray, f"must be left out for {recipe.name}: only expert iteration and imitation are played on a cluster")
         settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs, imitate=recipe.imitation)
         tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, view=recipe.view, **recipe.env_kwargs)
         ending.callback(tables.close)
@@ -196,6 +208,10 @@ def prepared(parser, given, out, resume, ending):
                 load_weights(model, Path(settings.start))
             ending.enter_context(claimed(out, resume))  # last, so that a wrong option leaves no folder behind
         tempfile.TemporaryFile(dir=out).close()
+        if mirror:
+            what = {name: value for name, value in asdict(settings).items() if name not in FREE_ON_RESUME}
+            mirror.claim(out, what, resume)
+            ending.callback(left, out)
     except ValueError as error:
         parser.error(str(error))
     except OSError as error:
@@ -203,8 +219,8 @@ def prepared(parser, given, out, resume, ending):
     return settings, recipe, state, tables, model
 
 
-def train(out, settings, recipe, state, tables, model, progress):
-    """Imitate, then train, to the end or to a signal.
+def train(out, settings, recipe, state, tables, model, progress, ray=None):
+    """Imitate, then train, to the end or to a signal. Simulations of the imitation are played by the cluster at ``ray``, if it is given.
 
     Returns (``RunCallback``, or None if stopped before it; the curve of the imitation; the signal or None).
     """
@@ -214,10 +230,12 @@ def train(out, settings, recipe, state, tables, model, progress):
     with Stop() as stop:
         if begun or (recipe.imitation and not state):
             teacher = ExpertIteration if recipe.expert else Imitation
-            imitated = teacher(model, tables, recipe.imitation, settings.seed, threads, begun)
-            of_all = f"{imitated.done:,} of {imitated.states:,} positions"
-            print(f"{settings.agent} in {out}: {imitated.doing}, {of_all}", flush=True)
-            if not imitate(imitated, out, settings, model, stop, progress):
+            with place(ray, threads) as where:
+                imitated = teacher(model, tables, recipe.imitation, settings.seed, threads, begun, where)
+                of_all = f"{imitated.done:,} of {imitated.states:,} positions"
+                print(f"{settings.agent} in {out}: {imitated.doing}{where.says}, {of_all}", flush=True)
+                completed = imitate(imitated, out, settings, model, stop, progress)
+            if not completed:
                 print(f"Saved at {imitated.done:,} of {imitated.states:,} positions. {go_on(out)}")
                 return None, imitated.curve, stop.signal
             imitation = imitated.curve
@@ -251,7 +269,8 @@ def judge(out, settings, recipe, model, callback, imitation):
     """Play held-out visits, write the model and every figure, print the conclusion."""
     steps, seconds = model.num_timesteps, callback.seconds_before
     print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
-    write_atomic(out / "model.zip", zipped(model))
+    write_atomic(out / "model.zip", made := zipped(model))
+    copied(out, made, "model.zip")
     figures = evaluate(recipe, model, settings.eval_visits)
     learned = conclusion(settings.agent, steps, model.imitated, figures, model.start)
     results = {
@@ -259,7 +278,8 @@ def judge(out, settings, recipe, model, callback, imitation):
         "steps_per_second": steps / seconds, "start": model.start, "learned": learned,
         "evaluation": figures, "curve": callback.curve, "imitation": imitation, **provenance(),
     }  # fmt: skip
-    write_atomic(out / "results.json", json.dumps(results, indent=1).encode())
+    write_atomic(out / "results.json", text := json.dumps(results, indent=1).encode())
+    copied(out, text, "results.json")
     show(figures)
     print(f"{learned}\nFigures: {out / 'results.json'}   curves: tensorboard --logdir {out / 'tb'}")
 
@@ -272,16 +292,18 @@ def main(argv=None):
     torch.set_num_threads(1)  # more threads do not speed up a network this small, and the tables use the processors
     torch.distributions.Distribution.set_default_validate_args(False)  # these checks cost a twentieth of the time
     with ExitStack() as ending:
-        settings, recipe, state, tables, model = prepared(parser, given, out, rest.resume, ending)
+        settings, recipe, state, tables, model = prepared(parser, given, rest, ending)
         try:
             snooker_env.warmup()
-            callback, imitation, stopped = train(out, settings, recipe, state, tables, model, not rest.no_progress)
+            callback, imitation, stopped = train(out, settings, recipe, state, tables, model, not rest.no_progress, rest.ray)
             if stopped:
                 return 128 + stopped
             judge(out, settings, recipe, model, callback, imitation)
         except KeyboardInterrupt:
             print(f"Interrupted. {kept(out)}", file=sys.stderr)
             return 130
+        except ClusterError as error:
+            raise SystemExit(f"train.py: {error}. {kept(out)}") from None
         except BrokenPipeError:
             print(f"train.py: its output was closed. {kept(out)}", file=sys.stderr)
             raise

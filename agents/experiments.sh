@@ -5,6 +5,7 @@
 #
 # Make the tables again from the stored figures, without playing: python -m agents.report agents/results/*.json
 # Some of the runs only, without the comparison: ONLY='fore-|gamma0-' bash agents/experiments.sh. List the commands: LIST=1 bash ...
+# On a Ray cluster (docs/scale.md): RAY=HEAD:6379 bash agents/experiments.sh, or RAY=local; the figures are the same.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=${1:-runs/experiments} jobs=${2:-2}
@@ -39,7 +40,9 @@ train() {
     shift
     [[ -f $folder/$name/results.json ]] && return
     rm -rf "${folder:?}/$name"
-    python train.py "$@" --parallel one --no-progress --out "$folder/$name" > "$folder/$name.txt" 2>&1 ||
+    local cluster=() # only expert iteration and imitation are played on a cluster: of these recipes
+    [[ -n ${RAY:-} && " $* " =~ " ppo_foresight " || -n ${RAY:-} && ! " $* " =~ " --agent " ]] && cluster=(--ray "$RAY")
+    python train.py "$@" "${cluster[@]}" --parallel one --no-progress --out "$folder/$name" > "$folder/$name.txt" 2>&1 ||
         { echo "$name failed: see $folder/$name.txt" >&2; return 1; }
     echo "$(date +%H:%M) $name"
 }
@@ -62,7 +65,7 @@ module() { # its name, then its options
 evaluate() { # name of the output, then the options of agents.evaluate
     local name=$1
     shift
-    module agents.evaluate "$@" --json "agents/results/$name.json" --markdown "agents/results/$name.md"
+    module agents.evaluate "$@" ${RAY:+--ray "$RAY"} --json "agents/results/$name.json" --markdown "agents/results/$name.md"
 }
 module agents.curves "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" \
     "ppo_mask=$folder/mask-?" "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?"

@@ -44,6 +44,12 @@ with needs("agents.evaluate"):
     from snooker_env.game import plan_of
     from snooker_env.tasks import Noise
 
+    from ..cluster.faults import ClusterError
+    from ..cluster.job import Here, Job, digest_of
+    from ..cluster.options import Keep, add_keep, add_ray, checked_ray, place
+    from ..cluster.software import software
+    from ..cluster.travel import sent
+    from ..cluster.visits import joined, parts_of
     from ..learning.models import pretrained
     from ..players.by_name import NAMES, player_of
     from .entrants import Entrant, options_of
@@ -57,30 +63,46 @@ REFERENCE = "ghost_ball"
 PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
 
 
-class Rekeyed:
-    """A player whose tables get new random streams after each of its decisions: whoever saw its errors coming would lose by it."""
-
-    def __init__(self, player, seed):
-        self._player, self.options, self._rng = player, player.options, np.random.default_rng(seed)
-
-    def act(self, tables, observations, going):
-        """The player's own actions."""
-        actions = self._player.act(tables, observations, going)
-        streams = tables.tables.streams
-        streams[:] = self._rng.integers(0, 2**63, streams.shape, dtype=np.uint64)
-        return actions
-
-
-def play_agent(agent, condition, seeds, budget, resamples, rekey=False):
-    """``EntrantMetrics`` by every run of the agent on the tables with these seeds."""
-    options = {"layout": condition["layout"], "noise": condition["noise"], "fidelity": condition["fidelity"]}
-    physics = physics_option(condition["physics"])
-    players = [agent.player(k, budget) for k in range(len(agent.runs))]
-    if rekey:
-        players = [Rekeyed(player, k) for k, player in enumerate(players)]
-    runs = [play_visits(player, len(seeds), first_seed=seeds, physics=physics, **options) for player in players]
+def play_agent(agent, condition, seeds, budget, resamples, rekey=False, job=None):
+    """``EntrantMetrics`` by every run of the agent on the tables with these seeds; ``job`` plays it, a new one by default."""
+    parts = [parts_of(_name(agent, k), k, condition, seeds, budget, rekey) for k in range(len(agent.runs))]
+    if job is None:
+        job = Job([one for run in parts for one in run], _shared([agent]), Here())
+    runs = [joined(job.take(run), len(seeds)) for run in parts]
     each = [counts(strokes) for strokes in runs]
     return EntrantMetrics(agent, {name: np.stack([one[name] for one in each]) for name in each[0]}, runs, resamples)
+
+
+def _name(agent, k):
+    """Of the data of an agent's run."""
+    return f"{agent.label} {k}"
+
+
+def _shared(agents):
+    return {_name(agent, k): sent(agent, k) for agent in agents for k in range(len(agent.runs))}
+
+
+def _conditions(report, seeds):
+    """Every layout under every noise, fidelity and physics."""
+    for layout, *at in product(seeds, *(report["protocol"][axis] for axis in AXES)):
+        yield {"layout": layout, **dict(zip(AXES, at, strict=True))}
+
+
+def job_of(report, agents, seeds, where, keep=None, tick=None):
+    """The ``Job`` of everything that the report's protocol says; ``keep``: a ``Keep``. Raises ValueError if it holds another job."""
+    p, parts = report["protocol"], []
+    for condition in _conditions(report, seeds):
+        for agent in agents:
+            for k in range(len(agent.runs)):
+                parts += parts_of(_name(agent, k), k, condition, seeds[condition["layout"]], p["search_budget"], p["rekey"])
+    return Job(parts, _shared(agents), where, keep and keep.store, keep and keep.about, tick)
+
+
+def about(report, agents):
+    """What is played, for a ``Keep``: two evaluations with the same share their parts."""
+    p = report["protocol"]
+    played = {name: p[name] for name in ("layouts", "first_seed", *AXES, "search_budget", "rekey")}
+    return {"command": "agents.evaluate", **played, "agents": {name: digest_of(one) for name, one in _shared(agents).items()}} | software()
 
 
 def provenance():
@@ -115,6 +137,8 @@ def parser():
     p.add_argument(
         "--rekey", action="store_true", help="new execution errors after every decision: a control that no agent has seen them beforehand"
     )
+    add_ray(p)
+    add_keep(p)
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
     p.add_argument("--json", type=Path, help="write every figure here")
     p.add_argument("--markdown", type=Path, help="write the tables here")
@@ -163,23 +187,22 @@ def checked(args):
         agent.trained()  # reads its models
     if options and not any(agent.foreign for agent in agents):
         raise refuse("options", " ".join(args.options), "must be left out: it is for models that train.py did not make")
+    checked_ray(args.ray)
     for name in ("json", "markdown", "picture"):
         writable(name, getattr(args, name))
     return agents, list(dict.fromkeys(args.against)), {name: tables_of(name, visits) for name, visits in sizes.items()}
 
 
-def evaluate(report, agents, seeds, tick, shown):
-    """Play everything that the report's protocol says and add the results to it, a whole condition at a time.
+def evaluate(report, agents, seeds, shown, job):
+    """Let the job play everything that the report's protocol says and add the results to it, a whole condition at a time.
 
     ``shown`` becomes the strokes of the main condition, by label.
     """
     p = report["protocol"]
-    for layout, *at in product(seeds, *(p[axis] for axis in AXES)):
-        condition = {"layout": layout, **dict(zip(AXES, at, strict=True))}
-        played = {}
+    for condition in _conditions(report, seeds):
+        layout, played = condition["layout"], {}
         for agent in agents:
-            played[agent.label] = play_agent(agent, condition, seeds[layout], p["search_budget"], p["resamples"], p["rekey"])
-            tick()
+            played[agent.label] = play_agent(agent, condition, seeds[layout], p["search_budget"], p["resamples"], p["rekey"], job)
         others, rows = [played[label] for label in p["against"]], []
         for one in played.values():
             about = {"agent": one.agent.label, **condition, "visits": len(seeds[layout]), "runs": len(one.agent.runs)}
@@ -200,9 +223,6 @@ def main(argv=None):
     p = parser()
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_args(argv)
-    from rich.console import Console
-    from rich.progress import Progress
-
     try:
         if args.picture:
             from .destinations import formats
@@ -227,21 +247,52 @@ def main(argv=None):
         ],
         "results": [],
     }  # fmt: skip
-    conditions, shown = len(seeds) * int(np.prod([len(report["protocol"][axis]) for axis in AXES])), {}
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("visits", total=conditions * len(agents))
-        try:
-            evaluate(report, agents, seeds, lambda: bar.advance(task), shown)
-        except KeyboardInterrupt:
-            complete = len(report["results"]) // len(agents)
-            what = "the others are lost" if complete else "nothing is kept"
-            report["incomplete"] = f"interrupted when {complete} of {conditions} parts (layouts under one noise) were complete: {what}"
+    conditions, shown, code = len(list(_conditions(report, seeds))), {}, 0
+    try:
+        keep = Keep(args.keep, args.ray, about(report, agents) if args.keep or args.ray else {})
+        with place(args.ray) as where:
+            code = played(report, agents, seeds, shown, where, keep, conditions)
+    except ClusterError as error:  # before anything was sent
+        raise SystemExit(f"agents.evaluate: {error}") from None
+    except ValueError as error:
+        p.error(str(error))
     if "incomplete" in report:
         print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
         if not report["results"]:
-            return 130
+            return code
     write(report, shown, args)
-    return 130 if "incomplete" in report else 0
+    if not code:
+        keep.done()
+    return code
+
+
+def played(report, agents, seeds, shown, where, keep, conditions):
+    """Play everything, with a bar of progress. Exit code 0; 130 if it was interrupted, 1 if the cluster could not play on."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    why, code = "", 0
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        visits = bar.add_task("visits", total=None)
+
+        def tick(part, result):
+            bar.update(visits, advance=len(part.given["seeds"]), description=f"visits{where.says}")
+
+        job = job_of(report, agents, seeds, where, keep, tick)
+        bar.update(visits, total=job.total(lambda part: len(part.given["seeds"])))
+        try:
+            evaluate(report, agents, seeds, shown, job)
+        except KeyboardInterrupt:
+            why, code = "interrupted", 130
+            job.keep_finished()
+        except ClusterError as error:
+            why, code = str(error), 1
+            job.keep_finished()
+    if code:
+        complete = len(report["results"]) // len(agents)
+        parts = f"{complete} of {conditions} parts (layouts under one noise) were complete"
+        report["incomplete"] = f"{why} when {parts}: {keep.ends(complete)}"
+    return code
 
 
 def write(report, shown, args):

@@ -15,7 +15,6 @@ import argparse
 import shlex
 import sys
 import time
-import zlib
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +28,10 @@ with needs("agents.tournament"):
     from snooker_env.benchmark import RESAMPLES, machine, read_result, write_result
     from snooker_env.checks import choice, integer, refuse
 
+    from ..cluster.encounters import drawn, play_on
+    from ..cluster.faults import ClusterError
+    from ..cluster.options import add_ray, checked_ray, place
+    from ..cluster.travel import one_thread
     from ..learning.models import pretrained
     from ..players.by_name import NAMES, is_player, player_of
     from .entrants import Entrant, options_of
@@ -72,6 +75,7 @@ def parser():
         "--options", nargs="+", default=[], metavar="KEY=VALUE", help="how the actions of such models are read, for example aim=target"
     )
     p.add_argument("--threads", type=int, help="threads that play the tables [one for each core]")
+    add_ray(p)
     p.add_argument("--out", type=Path, metavar="FILE", help="write every frame and figure here, as JSON")
     p.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here")
     p.add_argument("--resume", action="store_true", help="go on with an incomplete --out; leave a complete one as it is")
@@ -142,6 +146,9 @@ def checked(args):
         player = TimedPlayer(player_for(entrant, "", 0, args.budget))
         given: dict[str, Any] = {**player.options, **played_with(game)}
         Options(task="frame", **given, opponent=player)  # makes sure that they can meet
+    checked_ray(args.ray)
+    if args.ray and args.threads is not None:
+        raise refuse("threads", args.threads, "must be left out with --ray: a part has one core there")
     if args.threads is not None:
         integer("threads", args.threads, 1, 1024)
     if args.out and args.out.exists() and not (args.resume or args.force):
@@ -180,9 +187,10 @@ def player_for(entrant, other, first, budget):
     object
     """
     run = entrant.runs[0]
-    if is_player(run):
-        return player_of(run, budget=budget, seed=zlib.crc32(f"{entrant.label}\n{other}\n{first}".encode()), frames=True)
-    return entrant.player(0, budget)
+    one_thread(run)
+    return (
+        player_of(run, budget=budget, seed=drawn(entrant.label, other, first), frames=True) if is_player(run) else entrant.player(0, budget)
+    )
 
 
 class Tournament:
@@ -215,6 +223,12 @@ class Tournament:
             found += [(pair, seeds[k : k + CHUNK]) for k in range(0, len(seeds), CHUNK)]
         return found
 
+    @property
+    def left(self):
+        """The parts that are not in the rows yet."""
+        done = {tuple(row[:3]) for row in self.rows}
+        return [(pair, seeds) for pair, seeds in self.parts if not all((*pair, seed) in done for seed in seeds)]
+
     def play(self, threads=None, tick=None, saved=None):
         """Play all parts that are not in the rows yet.
 
@@ -226,14 +240,11 @@ class Tournament:
         saved : callable, optional
             Called after each part.
         """
-        done = {tuple(row[:3]) for row in self.rows}
         ended = len({tuple(row[:4]) for row in self.rows})
         if tick is not None:
             tick(ended)
         game, budget = played_with(self.game), self.protocol["search_budget"]
-        for pair, seeds in self.parts:
-            if all((*pair, seed) in done for seed in seeds):
-                continue
+        for pair, seeds in self.left:
             players = tuple(
                 TimedPlayer(player_for(self.entrants[k], self.labels[other], seeds[0], budget))
                 for k, other in (pair, pair[::-1])
@@ -293,22 +304,26 @@ def main(argv=None):
         return _shown(before, args.markdown)
     tournament = Tournament(entrants, protocol, game, "python -m agents.tournament " + shlex.join(argv), before)
     snooker_env.warmup()
-    why = _play(tournament, args)
+    try:
+        with place(args.ray) as where:
+            why, code = _play(tournament, args, where)
+    except ClusterError as error:  # before anything was sent
+        raise SystemExit(f"agents.tournament: {error}") from None
     if why is not None:
         print(f"agents.tournament: {why}", file=sys.stderr)
     if not tournament.rows:
-        return 130
+        return code
     found = tournament.result(why)
     if args.out:
         write_result(args.out, found)
     _shown(found, args.markdown)
     if args.out:
         print(f"out: {args.out}")
-    return 0 if why is None else 130
+    return code
 
 
-def _play(tournament, args):
-    """Play, with a bar of progress; why it is incomplete, or None."""
+def _play(tournament, args, where):
+    """Play, with a bar of progress: why it is incomplete, or None, and the exit code."""
     from rich.console import Console
     from rich.progress import Progress, TimeRemainingColumn
 
@@ -324,15 +339,19 @@ def _play(tournament, args):
     with Progress(*columns, console=Console(stderr=True), transient=True, disable=args.quiet) as bar:
         task = bar.add_task(units, total=total)
         try:
-            tournament.play(args.threads, lambda n: bar.update(task, completed=n), saved)
-        except KeyboardInterrupt:
-            ended = len({tuple(row[:4]) for row in tournament.rows})
-            return f"interrupted after {ended:,} of {total:,} {units}: " + ("these are kept" if ended else "nothing is kept")
+            if args.ray:
+                play_on(tournament, where, lambda n: bar.update(task, completed=n, description=f"{units}{where.says}"), saved)
+            else:
+                tournament.play(args.threads, lambda n: bar.update(task, completed=n), saved)
+        except (KeyboardInterrupt, ClusterError) as error:
+            ended, stopped = len({tuple(row[:4]) for row in tournament.rows}), isinstance(error, KeyboardInterrupt)
+            kept = "these are kept" if ended else "nothing is kept"
+            return f"{'interrupted' if stopped else error} after {ended:,} of {total:,} {units}: {kept}", 130 if stopped else 1
         except BaseException as error:
             if args.out and tournament.rows:  # of a player's own code: its traceback is for its author, what was played is kept
                 write_result(args.out, tournament.result(f"{type(error).__name__}: {error}"))
             raise
-    return None
+    return None, 0
 
 
 def _shown(found, file):

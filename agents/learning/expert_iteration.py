@@ -5,18 +5,22 @@ learns by a backup (``value_learning``), and the policy learns the values of cho
 by the value (``judged_choices``). So the planner grows stronger, and with it the value and the policy. The first rounds judge by the rule
 of thumb.
 
+The simulations of a round, two thirds of its time, are played in slices by ``where``: this process or a cluster. The learner stays here.
+
 PPO then improves the policy further, with the value as reward-to-go: ``judge_rewards``.
 """
 
 import time
+import uuid
 
 import numpy as np
 
 from snooker_env import SnookerVectorEnv
 from snooker_env.planning import Positions, StrokeSearch, spread_of
+from snooker_env.planning.stroke_search import schedule
 
-from ..features.policy_proposals import PolicyProposals
-from ..features.value_features import SIZE, value_features
+from ..cluster.job import Here
+from ..cluster.self_play import in_slices, policy_given, positions_given
 from .judged_choices import JudgedChoices
 from .value_learning import ValueLearning
 from .value_network import Value
@@ -58,20 +62,23 @@ class Starts:
 class ExpertIteration:
     """Expert iteration in ``states`` positions; it has the interface of ``imitation.Imitation``.
 
-    ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit for bit.
+    ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit for bit. ``where``: who plays
+    the slices, ``Here`` by default, or a ``Cluster``; the result does not depend on it.
     """
 
     doing = "learning a value and a policy from the planner"
 
-    def __init__(self, model, venv, states, seed, threads, before=None):
+    def __init__(self, model, venv, states, seed, threads, before=None, where=None):
         tables = venv.unwrapped.tables
         options = {name: getattr(tables.options, name) for name in ("noise", "physics", "table", "fidelity")}
         self.states, self._n, self._rng = states, venv.num_envs, np.random.default_rng((seed, 19))
-        self._search = StrokeSearch(options, BUDGET, threads=threads)
+        self._model, self._where = model, where or Here(threads)
+        self._sent = {"run": uuid.uuid4().hex, "options": options, "budget": BUDGET, "fresh": FRESH, "value": None, "policy": None}
+        search = StrokeSearch(options, BUDGET)
+        self._looks = BUDGET if search.noise.silent else schedule(BUDGET)[0]
         self._starts = Starts(seed, tables.options.layout, options)
-        self._value = ValueLearning(model.policy.position_value, self._search.spread, self._n, self._rng)
-        self._choices = JudgedChoices(model.policy, options, threads, self._n, self._rng)
-        self._propose = PolicyProposals(model.policy)
+        self._value = ValueLearning(model.policy.position_value, search.spread, self._n, self._rng)
+        self._choices = JudgedChoices(model.policy, options, threads, self._n, self._rng, self._where)
         self.done, self.curve, self._seconds = 0, [], 0.0
         if before is None:
             venv.seed(seed)
@@ -104,10 +111,10 @@ class ExpertIteration:
         hand, even, remaining = min(HAND, self.states // 8), min(EVEN, self.states // 5), 1.0 - self.done / self.states
         learned = self.done > hand
         if learned:
-            self._search.value = self._value.value()
-            self._choices.round(self._at, self._search.value, remaining)
+            self._sent["value"] = self._value.value()
+            self._choices.round(self._at, self._sent["value"], remaining)
         if self.done >= even:
-            self._search.propose = self._propose
+            self._sent["policy"] = policy_given(self._model, self._where)
         self._play()
         self.done += self._n
         if self.done > hand:
@@ -118,25 +125,22 @@ class ExpertIteration:
             entry = {"states": self.done, "seconds": round(self.seconds, 1), "loss": losses[0], "value_loss": losses[1]}
             self.curve.append(entry | {"value": None if value is None else round(value, 2)})
 
-    def _features(self, at):
-        return value_features(at, self._search.spread, self._search.planner.threads)
-
     def _play(self):
         """Choose a stroke for each position, keep what its samples lead to, and go on with one of them."""
         n, rng, at = self._n, self._rng, self._at
-        ranked = self._search.rank(at, rng.integers(2**32, size=n))
-        explored = rng.random(n) < EXPLORED
-        pick = rng.integers(min(AMONG, ranked.strokes.shape[1]), size=n)
-        rows = np.concatenate([np.repeat(np.arange(n), FRESH), np.arange(n)])
-        strokes = np.concatenate([np.repeat(ranked.strokes[:, 0], FRESH, axis=0), ranked.strokes[np.arange(n), pick]])
-        out = self._search.outcomes(at, rows, strokes, rng.standard_normal((len(rows), 5)))
-        goes_on = out.goes_on[: n * FRESH]
-        after = np.zeros((n * FRESH, SIZE), np.float16)
-        after[goes_on] = self._features(out.afterstates[np.flatnonzero(goes_on)])
-        played = np.where(explored, n * FRESH + np.arange(n), FRESH * np.arange(n))
-        follows, points = out.goes_on[played], out.points[: n * FRESH].reshape(n, FRESH)
-        self._value.add(self._features(at), after.reshape(n, FRESH, SIZE), points, goes_on.reshape(n, FRESH), follows & ~explored)
-        self._at = out.afterstates[played]
+        seeds, explored = rng.integers(2**32, size=n), rng.random(n) < EXPLORED
+        pick = rng.integers(min(AMONG, self._looks), size=n)
+        errors = rng.standard_normal((n * (FRESH + 1), 5))
+        errors = np.concatenate([errors[: n * FRESH].reshape(n, FRESH, 5), errors[n * FRESH :, None]], axis=1)
+        given = [
+            {"at": positions_given(at[k]), "seeds": seeds[k], "explored": explored[k], "pick": pick[k], "errors": errors[k]}
+            for k in in_slices(n)
+        ]  # fmt: skip
+        played = self._where.map("strokes", self._sent, given)
+        found = {name: np.concatenate([one[name] for one in played]) for name in played[0]}
+        follows = found["follows"]
+        self._value.add(found["seen"], found["after"], found["points"], found["goes_on"], follows & ~explored)
+        self._at = Positions(found["positions"], found["on_table"], found["game"])
         ended = np.flatnonzero(~follows)
         if len(ended):
             fresh = self._starts.draw(len(ended), rng)

@@ -11,12 +11,16 @@ learner, so that it is trained on the states that it will meet (DAgger, Ross et 
 """
 
 import time
+import uuid
 from collections import deque
 
 import numpy as np
 import torch
 
-from snooker_env.planning import Planner, prospects_of, spread_of
+from snooker_env.planning import Positions, spread_of
+
+from ..cluster.job import Here
+from ..cluster.worths import worths
 
 TRIES = 48
 """Trials in each position: half of them the learner's best choices, half random. Where there are at most half as many choices, each is
@@ -28,22 +32,24 @@ KEPT = 50_000
 BATCH, PER_UPDATE = 512, 8
 """Positions in the batch of a gradient step, and new positions for each step."""
 RATE = 3e-3
+USED = ("action", "aim", "elevation", "placement", "noise", "physics", "table", "fidelity")
+"""Options of the tables that decide what a choice is worth."""
 
 
 class Expert:
-    """Evaluates choices on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the afterstate."""
+    """Evaluates choices on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the afterstate; ``where``: who simulates."""
 
-    def __init__(self, tables, threads, rng, ahead=True):
-        self._tables, self._rng, self._ahead, self._planner = tables, rng, ahead, Planner(tables, threads=threads)
-        self._spread = spread_of(self._planner.noise, self._planner.physics)
+    def __init__(self, tables, threads, rng, ahead=True, where=None):
+        self._tables, self._rng, self._where = tables, rng, where or Here(threads)
+        rules, options = tables.options.rules, {name: getattr(tables.options, name) for name in USED}
+        self._sent = {"run": uuid.uuid4().hex, "options": options, "spread": spread_of(rules.noise, rules.physics), "ahead": ahead}
 
     def worth(self, picks, there):
         """Values [points] of the choices ``picks`` (n, k) from one simulation each: float32 (n, k), 0 where ``there`` (n, k) is False."""
         row, column = np.nonzero(there)
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
-        points, goes_on, left, _ = self._planner.play(self._tables, row, picks[row, column], keys)
         worth = np.zeros(picks.shape, np.float32)
-        worth[row, column] = points + self._ahead * goes_on * prospects_of(left, self._spread, threads=self._planner.threads)[0]
+        worth[row, column] = worths(self._where, self._sent, Positions.of(self._tables), row, picks[row, column], keys)
         return worth
 
 
@@ -67,9 +73,9 @@ class Imitation:
 
     doing = "imitating the search"
 
-    def __init__(self, model, venv, states, seed, threads, before=None):
+    def __init__(self, model, venv, states, seed, threads, before=None, where=None):
         self._model, self._venv, self.states, self._rng = model, venv, states, np.random.default_rng(seed)
-        self._expert = Expert(venv.unwrapped.tables, threads, self._rng, ahead=model.gamma > 0)
+        self._expert = Expert(venv.unwrapped.tables, threads, self._rng, model.gamma > 0, where)
         self._optimizer = torch.optim.Adam(model.policy.parameters(), RATE)
         self.done, self.curve, self._kept, self._losses, self._seconds = 0, [], [], deque(maxlen=200), 0.0
         if before is None:

@@ -1,13 +1,15 @@
 """How does a policy learn the values of choices from a judge? As in ``imitation``, on positions that the caller plays."""
 
+import uuid
 from collections import deque
 
 import numpy as np
 import torch
 
-from snooker_env import Options
-from snooker_env.planning import Planner, action_masks
+from snooker_env.planning import action_masks
 
+from ..cluster.job import Here
+from ..cluster.self_play import judged
 from ..features.pot_features import with_pots
 from .imitation import fit_values, to_try
 
@@ -20,11 +22,11 @@ _PARTS = 4
 
 
 class JudgedChoices:
-    """Fits ``policy`` to the values of choices in rounds of n positions; each choice is simulated once under execution noise."""
+    """Fits ``policy`` to the values of choices in rounds of n positions; ``where`` simulates each choice once under execution noise."""
 
-    def __init__(self, policy, options, threads, n, rng):
-        self._policy, self._rng, self._n = policy, rng, n
-        self._planner = Planner(Options(action="discrete", **options), threads=threads)
+    def __init__(self, policy, options, threads, n, rng, where=None):
+        self._policy, self._rng, self._n, self._where = policy, rng, n, where or Here(threads)
+        self._sent = {"run": uuid.uuid4().hex, "options": options}
         learned = [p for name, p in policy.named_parameters() if not name.startswith("position_value.")]
         self._optimizer, self._rounds = torch.optim.Adam(learned, RATE), []
         self.losses = deque(maxlen=100)
@@ -36,11 +38,9 @@ class JudgedChoices:
             scores = self._policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
         picks, there = to_try(scores, masks, self._rng)
         row, column = np.nonzero(there)
-        played = self._planner.play(at, row, picks[row, column], self._rng.integers(0, 2**63, len(row), dtype=np.uint64))
-        gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
-        gains[on] += value(played.afterstates[on])
+        keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
         worths = np.zeros(picks.shape, np.float32)
-        worths[row, column] = gains
+        worths[row, column] = judged(self._where, self._sent | {"value": value}, at, row, picks[row, column], keys)
         kept = seen, np.packbits(masks, axis=1), picks.astype(np.int16), there, worths
         self._rounds.append(tuple(map(np.ascontiguousarray, kept)))  # sums depend on the layout, and a saved array comes back in this one
         del self._rounds[: -max(1, KEPT // self._n)]

@@ -12,6 +12,7 @@ import torch
 from commands.files import write_atomic
 from snooker_env.checks import refuse
 
+from ..cluster.mirror import copied
 from .hyperparameters import algorithm_class
 from .lock import NAME as LOCK
 from .lock import Lock
@@ -75,7 +76,9 @@ def save_checkpoint(out, settings, model, seconds, curve, imitation, imitating=N
         "running": model.get_env().running,
         "random": (np.random.get_state(), torch.get_rng_state(), model.action_space),  # noqa: NPY002 - SB3 draws from the global one
     }  # fmt: skip
-    write_atomic(out / CHECKPOINT, pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL))
+    data = pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL)
+    write_atomic(out / CHECKPOINT, data)
+    copied(out, data)
 
 
 def stale(out):

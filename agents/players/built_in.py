@@ -47,13 +47,19 @@ class Random:
 
     def __init__(self, options=None, seed=0):
         self.options = DISCRETE if options is None else options
-        self._rng = np.random.default_rng(seed)
+        self._rng, self._first, self._total = np.random.default_rng(seed), 0, 0
+
+    def tables_of(self, first, total):
+        """Its tables are a part of ``total``, from ``first`` on: it draws for all, so that each table gets the same in any part."""
+        self._first, self._total = first, total
 
     def act(self, tables, observations, going):
         """Random actions; with discrete choices only the valid ones (the pots that exist)."""
+        n = len(going)
+        rows, total = slice(self._first, self._first + n), max(n, self._total)
         if self.options.get("action") != "discrete":
-            return self._rng.uniform(-1.0, 1.0, tables.action_space.shape).astype(np.float32)
-        order = self._rng.random((len(going), CHOICES))
+            return self._rng.uniform(-1.0, 1.0, (total, *tables.action_space.shape[1:])).astype(np.float32)[rows]
+        order = self._rng.random((total, CHOICES))[rows]
         return np.argmax(np.where(tables.action_masks(), order, -1.0), axis=1)
 
 

@@ -78,11 +78,15 @@ class StrokePlayer:
 
     def __init__(self, kind, budget=BUDGET, model=None, seed=0):
         self.kind, self.budget, self.model = kind, budget, model
-        self._seed, self._decisions = seed, 0
+        self._seed, self._decisions, self._first = seed, 0, 0
         self._tables: Any = None
         self.search: Any = None
         """The ``StrokeSearch`` on the present tables; None before the first decision."""
         StrokeSearch({}, budget)  # checks the budget
+
+    def tables_of(self, first, total):
+        """Its tables are a part of ``total``, from ``first`` on: each gets the same seeds in any part."""
+        self._first = first
 
     def act(self, tables, observations, going):
         """The best stroke of each running table: float32 (n, 4)."""
@@ -100,7 +104,7 @@ class StrokePlayer:
         if self._tables is not tables:
             self._tables, self.search = tables, self._new_search(tables)
         # each table and decision its own: what is drawn on one says nothing of another
-        seeds = np.random.SeedSequence([self._seed, self._decisions]).generate_state(len(going))[going]
+        seeds = np.random.SeedSequence([self._seed, self._decisions]).generate_state(self._first + len(going))[self._first :][going]
         self._decisions += 1
         return self.search.rank(Positions.of(tables)[going], seeds)
 

@@ -49,6 +49,8 @@ ELSEWHERE = {
     "agents.curves": "tests/agents/evaluation/test_learning_curves.py",
     "agents.publish": "tests/agents/evaluation/test_publish.py",
     "agents.tournament": "tests/agents/evaluation/test_tournament.py",
+    "agents.search": "tests/cluster/test_searched.py",
+    "benchmarks.cluster": "tests/cluster/test_ray_commands.py",
     "examples/fit_your_data.py": "tests/examples/test_fit.py",
     "examples.self_play": "tests/examples/test_self_play.py",
     "examples.ppo_single_file": "tests/examples/test_ppo_single_file.py",

@@ -7,6 +7,7 @@ import pytest
 import torch
 from positions import tables
 
+from agents.cluster.self_play import search_of
 from agents.features.policy_proposals import PolicyProposals
 from agents.features.value_features import value_features
 from agents.features.views import training_tables
@@ -108,7 +109,7 @@ def test_the_rule_and_even_proposals_come_first():
     while run.done < 80:
         before = run.done
         run.round()
-        search = run._search
+        search = search_of(run._sent, 1)
         seen.append(
             (
                 before,
@@ -125,18 +126,18 @@ def test_a_round_keeps_what_its_samples_led_to(monkeypatch):
     """Features of the position and of what each sample left, points, ends; the next position is what the played stroke left."""
     model, venv = model_and_tables()
     run, added, played = ExpertIteration(model, venv, STATES, 5, 1), [], []
-    spread, outcomes = run._search.spread, run._search.outcomes
+    search = search_of(run._sent, 1)
+    spread, outcomes = search.spread, search.outcomes
     monkeypatch.setattr(run._value, "add", lambda *one: added.append(one))
-    monkeypatch.setattr(run._search, "outcomes", lambda *given: played.append((given, outcomes(*given))) or played[-1][1])
+    monkeypatch.setattr(search, "outcomes", lambda *given: played.append((given, outcomes(*given))) or played[-1][1])
     monkeypatch.setattr(run._value, "fit", lambda remaining: None)
     followed = 0
     for _ in range(6):
         at = run._at.copy()
-        run._search.value, run._search.propose = run._search._by_rule, evenly
         run._play()
         (given, rows, strokes, _), out = played[-1]
         seen, after, points, goes_on, follows = added[-1]
-        assert np.array_equal(seen, value_features(at, spread)) and np.array_equal(given.positions, at.positions)
+        assert np.array_equal(seen, value_features(at, spread).astype(np.float16)) and np.array_equal(given.positions, at.positions)
         assert rows.tolist() == [*np.repeat(np.arange(N), FRESH), *range(N)]
         for i in range(N):
             assert (strokes[FRESH * i : FRESH * (i + 1)] == strokes[FRESH * i]).all()

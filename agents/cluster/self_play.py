@@ -1,0 +1,166 @@
+"""How is a round of self-play simulated, here or by many workers? In slices of ``SLICE`` positions, by the weights of the learner.
+
+The learner draws all random numbers and cuts the positions into slices; a slice is computed from these alone. A slice has the same size
+wherever it is computed, since the last bits of a network's product depend on how many rows it has. So a training does not depend on the
+number of workers, not even when one dies and its slice is computed again.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+
+from snooker_env import Options
+from snooker_env.planning import Planner, Positions, StrokeSearch
+from snooker_env.planning.stroke_search import evenly
+
+from ..features.value_features import SIZE, value_features
+
+SLICE = 64
+"""Positions of a slice."""
+_MADE = 4
+"""Searches, planners and networks that a process keeps."""
+_made = {}
+
+
+def positions_given(at):
+    """``Positions`` as a tuple of arrays."""
+    return at.positions, at.on_table, at.game
+
+
+def policy_given(model, where):
+    """The policy of a model for slices: itself in this process, its weights and how to build it for another."""
+    if where.here:
+        return model.policy
+    weights = {name: one.numpy() for name, one in model.policy.state_dict().items()}
+    return {"recipe": model.recipe, "env_options": model.env_options, "view": model.view, "weights": weights}
+
+
+def strokes(shared, given, threads):
+    """The task: the best stroke of each position under fresh noise samples, and where play goes on.
+
+    Parameters
+    ----------
+    shared : dict
+        "run" (an id), "options", "budget", "fresh", "value" (or None), "policy" (or None, see ``policy_given``).
+    given : dict
+        "at" (arrays of m positions), "seeds" (m,), "explored" bool (m,), "pick" (m,), "errors" (m, fresh + 1, 5).
+    threads : int or None
+        Of this process.
+
+    Returns
+    -------
+    dict
+        "seen" (m, SIZE) and "after" (m, fresh, SIZE) float16, "points" and "goes_on" (m, fresh), "follows" (m,), and the positions from
+        which play goes on: "positions", "on_table", "game".
+    """
+    at, fresh, every = Positions(*given["at"]), shared["fresh"], np.arange(len(given["seeds"]))
+    search = search_of(shared, threads)
+    search.value = search._by_rule if shared["value"] is None else shared["value"]
+    search.propose = evenly if shared["policy"] is None else _proposals(shared)
+    m = len(every)
+    ranked = search.rank(at, given["seeds"])
+    rows = np.concatenate([np.repeat(every, fresh), every])
+    tried = np.concatenate([np.repeat(ranked.strokes[:, 0], fresh, axis=0), ranked.strokes[every, given["pick"]]])
+    errors = np.concatenate([given["errors"][:, :fresh].reshape(-1, 5), given["errors"][:, fresh]])
+    out = search.outcomes(at, rows, tried, errors)
+    features = lambda some: value_features(some, search.spread, search.planner.threads)  # noqa: E731
+    goes_on = out.goes_on[: m * fresh]
+    after = np.zeros((m * fresh, SIZE), np.float16)
+    after[goes_on] = features(out.afterstates[np.flatnonzero(goes_on)])
+    played = np.where(given["explored"], m * fresh + every, fresh * every)
+    left = out.afterstates[played]
+    return {
+        "seen": features(at).astype(np.float16), "after": after.reshape(m, fresh, SIZE),
+        "points": out.points[: m * fresh].reshape(m, fresh), "goes_on": goes_on.reshape(m, fresh),
+        "follows": out.goes_on[played], "positions": left.positions, "on_table": left.on_table,
+        "game": left.game,
+    }  # fmt: skip
+
+
+def choices(shared, given, threads):
+    """The task: what discrete choices are worth, each simulated once: points, and the value of what they leave.
+
+    ``given``: "at" (arrays of m positions), "rows", "picks" and "keys" (k,). Returns "gains", float32 (k,).
+    """
+    played = once(("planner", shared["run"], threads), lambda: planner_of(shared["options"], threads)).play(
+        Positions(*given["at"]), given["rows"], given["picks"], given["keys"]
+    )
+    gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
+    gains[on] += shared["value"](played.afterstates[on])
+    return {"gains": gains}
+
+
+def in_slices(n):
+    """Slices of n positions.
+
+    Examples
+    --------
+    >>> from agents.cluster.self_play import in_slices
+    >>> in_slices(100)
+    [slice(0, 64, None), slice(64, 100, None)]
+    """
+    return [slice(k, min(n, k + SLICE)) for k in range(0, n, SLICE)]
+
+
+def of_choices(at, rows, picks, keys):
+    """The arguments of each slice of positions for choices in the sorted ``rows`` (k,)."""
+    cut = in_slices(len(at))
+    ends = np.searchsorted(rows, [0, *(one.stop for one in cut)]).tolist()
+    some = [slice(*pair) for pair in pairwise(ends)]
+    return [
+        {"at": positions_given(at[one]), "rows": rows[its] - one.start, "picks": picks[its], "keys": keys[its]}
+        for one, its in zip(cut, some, strict=True)
+    ]  # fmt: skip
+
+
+def judged(where, shared, at, rows, picks, keys):
+    """``choices`` of all positions: float32 (k,)."""
+    return np.concatenate([one["gains"] for one in where.map("choices", shared, of_choices(at, rows, picks, keys))])
+
+
+def search_of(shared, threads):
+    """The ``StrokeSearch`` of a training, made once in a process."""
+    return once(("search", shared["run"], threads), lambda: StrokeSearch(shared["options"], shared["budget"], threads=threads))
+
+
+def planner_of(options, threads):
+    """A ``Planner`` of discrete choices."""
+    return Planner(Options(action="discrete", **options), threads=threads)
+
+
+def once(key, make):
+    """What ``make`` returns, kept for the next time; the oldest of more than ``_MADE`` goes."""
+    if key not in _made:
+        while len(_made) >= _MADE:
+            del _made[next(iter(_made))]
+        _made[key] = make()
+    return _made[key]
+
+
+def _proposals(shared):
+    """The proposals of the policy that came."""
+    from ..features.policy_proposals import PolicyProposals
+
+    policy = shared["policy"]
+    if not isinstance(policy, dict):
+        return PolicyProposals(policy)
+    import torch
+
+    network = once(("network", shared["run"]), lambda: _network(**{name: policy[name] for name in ("recipe", "env_options", "view")}))
+    network.load_state_dict({name: torch.from_numpy(one.copy()) for name, one in policy["weights"].items()})
+    return PolicyProposals(network)
+
+
+def _network(recipe, env_options, view):
+    """The untrained network of a recipe."""
+    import torch
+
+    from snooker_env import SnookerVectorEnv
+
+    from ..features.views import view_of
+    from ..learning.hyperparameters import Recipe
+
+    torch.set_num_threads(1)
+    torch.distributions.Distribution.set_default_validate_args(False)
+    tables = SnookerVectorEnv(1, **env_options)
+    return Recipe.of(recipe, env_kwargs=env_options).new_network(view_of(view).space, tables.single_action_space)

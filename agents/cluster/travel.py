@@ -1,0 +1,79 @@
+"""How does a player travel to another machine? By name, with the bytes of its model; a player of one's own with a digest of its module."""
+
+import atexit
+import hashlib
+import importlib.util
+import shutil
+import tempfile
+from functools import cache
+from pathlib import Path
+
+from commands.files import write_atomic
+
+from ..evaluation.entrants import Entrant
+from ..players.by_name import is_player, player_of
+from .faults import ClusterError
+
+
+def sent(entrant, k):
+    """The run ``k`` of an ``Entrant`` as data: a dict of texts, lists and bytes."""
+    from ..learning.models import file_of, pretrained
+
+    run, model = entrant.runs[k], None
+    kind, at, path = run.partition("@")
+    if is_player(run) and at and path not in pretrained():
+        model, run = file_of(Path(path), "agent").read_bytes(), f"{kind}@"
+    elif not is_player(run):
+        model, run = file_of(Path(run), "agent").read_bytes(), ""
+    own = _module_digest(run) if ":" in run else ""
+    return {
+        "run": run, "model": model, "trust": entrant.trust, "options": [list(pair) for pair in entrant.options], "frames": entrant.frames,
+        "module": own,
+    }  # fmt: skip
+
+
+def arrived(agent, budget, seed):
+    """A fresh player of what ``sent`` made. ``budget``: of a search, whose seed is ``seed``."""
+    run = agent["run"]
+    if ":" in run and _module_digest(run) != agent["module"]:
+        raise ClusterError(f"the module of {run} on this node is another than on the machine that sent it: copy the same to every node")
+    if agent["model"] is not None:
+        run += _unpacked(agent["model"])
+    one_thread(run)
+    if is_player(run):
+        return player_of(run, budget=budget, seed=seed, frames=agent["frames"])
+    entrant = Entrant(run, (run,), agent["trust"], tuple(map(tuple, agent["options"])), agent["frames"])
+    return entrant.player(0, budget)
+
+
+def one_thread(run):
+    """Let the networks of a player compute with one thread: the last bits of PyTorch's products depend on their number."""
+    if ":" in run or run.startswith("planner") or not is_player(run):
+        try:
+            import torch
+        except ImportError:  # one's own player may do without
+            return
+        torch.set_num_threads(1)
+
+
+@cache
+def _folder():
+    folder = Path(tempfile.mkdtemp(prefix="snooker_env_models_"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+@cache
+def _unpacked(model):
+    """The path of a file with these bytes, for the life of this process."""
+    file = _folder() / f"{hashlib.sha256(model).hexdigest()[:32]}.zip"
+    write_atomic(file, model)
+    return str(file)
+
+
+def _module_digest(run):
+    """Digest of the file of the module of MODULE:CLASS; of what it imports it says nothing."""
+    found = importlib.util.find_spec(run.partition(":")[0])
+    if found is None or not found.origin or not Path(found.origin).is_file():
+        raise ModuleNotFoundError(f"no module of {run}", name=run.partition(":")[0])
+    return hashlib.sha256(Path(found.origin).read_bytes()).hexdigest()

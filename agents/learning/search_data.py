@@ -1,0 +1,131 @@
+"""How are positions searched to learn from? The command ``python -m agents.search``.
+
+    python -m agents.search --positions 10000 --out runs/searched
+    python -m agents.search --agent search --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
+
+A search plays visits, and what it thinks of each position is kept: the strokes that met most noise samples, best first, with their scores.
+Data are written in parts as they are played; after an interruption the same command goes on, and with other options it is refused. One
+machine and a cluster write the same data, bit for bit. ``read`` gives them as arrays.
+"""
+
+import argparse
+import json
+import sys
+
+from commands.lifecycle import command, needs
+
+with needs("agents.search"):
+    import numpy as np
+
+    import snooker_env
+    from commands.physics_option import physics_option
+    from snooker_env.checks import integer, parse_fidelity, refuse
+    from snooker_env.game import plan_of
+    from snooker_env.tasks import Noise
+
+    from ..cluster.faults import ClusterError
+    from ..cluster.job import Job, digest_of
+    from ..cluster.options import add_ray, checked_ray, place
+    from ..cluster.searched import ROUNDS, TABLES, parts_of
+    from ..cluster.software import software
+    from ..cluster.store import store_of, unpacked
+    from ..cluster.travel import sent
+    from ..evaluation.entrants import Entrant
+    from ..players.by_name import player_of
+    from ..players.stroke_players import StrokePlayer
+
+INDEX = "index.json"
+"""The file that lists the parts of complete data, in order."""
+
+
+def parser():
+    """The command line."""
+    p = argparse.ArgumentParser("python -m agents.search", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("--agent", default="search", help="who searches: search, lookahead_500, planner@runs/ppo_value-0 and the like [search]")
+    p.add_argument("--positions", type=int, required=True, metavar="N", help=f"rounded up to whole parts of {TABLES * ROUNDS}")
+    p.add_argument("--out", required=True, metavar="URL", help="a folder or fsspec URL for these data alone")
+    p.add_argument("--layout", default="opened", help="layout of the tables [opened]")
+    p.add_argument("--noise", default="professional", help="level of execution noise [professional]")
+    p.add_argument("--fidelity", default="standard", help="fast, standard, reference or euler:N [standard]")
+    p.add_argument("--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
+    p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
+    p.add_argument("--seed", type=int, default=0, help="seed of tables and search [0]")
+    add_ray(p)
+    return p
+
+
+def checked(args):
+    """(agent's data, condition) of the command line. Raises ValueError."""
+    integer("positions", args.positions, 1, 10**9)
+    integer("seed", args.seed, 0, 2**32 - 1)
+    if plan_of(args.layout) and args.layout == "held_out":
+        raise refuse("layout", args.layout, "must be another: the held-out tables are kept for evaluation")
+    Noise.of(args.noise)
+    parse_fidelity(args.fidelity)
+    physics_option(args.physics)
+    checked_ray(args.ray)
+    agent = Entrant.of(args.agent)
+    runs = list(agent.runs)
+    if len(runs) > 1 or not isinstance(player_of(runs[0], budget=args.budget), StrokePlayer):
+        raise refuse(
+            "agent", args.agent, "must be one player that searches: search, lookahead, planner, with _SHOTS and @MODEL if you wish"
+        )
+    return sent(agent, 0), {name: getattr(args, name) for name in ("layout", "noise", "fidelity", "physics")}
+
+
+def read(url):
+    """The data of a folder or URL: a dict of arrays as of ``agents.cluster.searched.play``. Raises ValueError if they are incomplete."""
+    store = store_of(url, "out")
+    index = store.read(INDEX)
+    if index is None:
+        raise refuse("out", url, "must hold complete data: give the command that makes them again")
+    parts = [unpacked(store.read(f"parts/{key}.npz") or b"", f"{store}/parts/{key}.npz") for key in json.loads(index)["parts"]]
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+@command("agents.search")
+def main(argv=None):
+    """Check, search, write. Exit code 0; 130 if it was interrupted, 1 if the cluster could not play on: what was searched is kept."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    p = parser()
+    args = p.parse_args(argv)
+    try:
+        agent, condition = checked(args)
+        store = store_of(args.out, "out")
+    except ValueError as error:
+        p.error(str(error))
+    snooker_env.warmup()
+    each, why, code = TABLES * ROUNDS, "", 0
+    about = {"command": "agents.search", "agent": digest_of(agent), "seed": args.seed, **condition, "budget": args.budget} | software()
+    parts = parts_of(args.positions, args.seed, condition, args.budget)
+    try:
+        with place(args.ray) as where, Progress(console=Console(stderr=True), transient=True) as bar:
+            positions = bar.add_task("positions", total=each * len(parts))
+
+            def tick(part, result):
+                bar.update(positions, advance=each, description=f"positions{where.says}")
+
+            try:
+                job = Job(parts, {"search": agent}, where, store, about, tick)
+            except ValueError as error:
+                p.error(str(error))
+            try:
+                job.finish()
+            except KeyboardInterrupt:
+                why, code = "interrupted", 130
+                job.keep_finished()
+    except ClusterError as error:
+        why, code = str(error), 1
+    if code:
+        kept = len(store.names("parts")) * each
+        print(
+            f"agents.search: {why}; {kept:,} of {each * len(parts):,} positions are kept in {store}, the same command goes on",
+            file=sys.stderr,
+        )
+        return code
+    keys = [job.key(part) for part in parts]
+    store.write(INDEX, (json.dumps({"positions": each * len(parts), "parts": keys}, indent=1) + "\n").encode())
+    print(f"{each * len(parts):,} positions: {store}")
+    return 0

@@ -1,0 +1,207 @@
+"""Is what a cluster plays what one machine plays, even if a node dies in the middle? On two nodes of Ray on this machine."""
+
+import os
+import sys
+import threading
+import time
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("ray", reason='Ray is not installed: pip install -e ".[cluster]"')
+from ray.cluster_utils import Cluster as Nodes
+
+from agents.cluster import self_play, visits
+from agents.cluster.faults import ClusterError
+from agents.cluster.job import Here, Job
+from agents.cluster.ray_cluster import connected
+from agents.evaluation import protocol
+from agents.evaluation.entrants import Entrant
+from snooker_env.benchmark import tables_of
+
+ROOT = Path(__file__).resolve().parents[2]
+NODE = {"num_cpus": 1, "object_store_memory": 100 * 2**20, "include_dashboard": False}
+AT = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
+
+
+@pytest.fixture(autouse=True, scope="module")
+def reachable():
+    """Workers find the tests and the package by PYTHONPATH; each computes with one thread."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", str(ROOT))
+        patch.syspath_prepend(str(ROOT))
+        patch.setenv("OMP_NUM_THREADS", "1")
+        yield
+
+
+@pytest.fixture
+def nodes(tmp_path, monkeypatch):
+    """Two nodes with a core each, and the second of them; all their processes end with the test."""
+    monkeypatch.setenv("NOTED", str(tmp_path / "noted"))
+    monkeypatch.setenv("SLOW", "0.15")
+    made = Nodes(initialize_head=True, head_node_args=NODE)
+    try:
+        second = made.add_node(**{name: value for name, value in NODE.items() if name != "include_dashboard"})
+        made.wait_for_nodes()
+        yield made, second
+    finally:
+        made.shutdown()
+
+
+@pytest.fixture
+def cluster(nodes):
+    found = connected(nodes[0].address)
+    try:
+        yield found
+    finally:
+        found.close()
+
+
+def noted(tmp_path):
+    """(process, decision, tables) of every decision of ``Noted``."""
+    return [tuple(map(int, line.split())) for line in (tmp_path / "noted").read_text().splitlines()]
+
+
+def same(a, b):
+    names = [f.name for f in fields(a) if f.name not in ("decision_seconds", "simulated")]
+    return all(np.array_equal(getattr(a, name), getattr(b, name), equal_nan=name == "cue") for name in names)
+
+
+def job_of(agents, seeds, where, tick=None):
+    shared = {f"{a.label} {k}": protocol.sent(a, k) for a in agents for k in range(len(a.runs))}
+    return Job([one for a in agents for one in visits.parts_of(f"{a.label} 0", 0, AT, seeds, 100, False)], shared, where, tick=tick)
+
+
+def test_two_nodes_play_what_one_machine_plays(cluster, monkeypatch):
+    """Every kind of player; by the workers of both nodes."""
+    monkeypatch.setattr(visits, "SIZE", 10)
+    agents = [Entrant.of(name) for name in ("random", "ghost_ball", "best_pot_30", "planner_30", "ppo_mask", "tests.cluster.players:Noted")]
+    seeds = tables_of("held_out", 24)
+    assert cluster.cores == 2 and cluster.width == 4
+    there, here = job_of(agents, seeds, cluster), job_of(agents, seeds, Here())
+    for agent in agents:
+        one, other = (protocol.play_agent(agent, AT, seeds, 100, 100, False, job).strokes[0] for job in (there, here))
+        assert same(one, other), agent.label
+    assert len({process for process, *_ in noted(Path(os.environ["NOTED"]).parent)} - {os.getpid()}) == 2
+
+
+def test_a_node_killed_amid_an_evaluation_is_survived_and_nothing_counts_twice(nodes, cluster, tmp_path, monkeypatch):
+    monkeypatch.setattr(visits, "SIZE", 5)
+    agent, seeds, told = Entrant.of("tests.cluster.players:Noted"), tables_of("held_out", 60), []
+
+    def tick(part, result):
+        told.append(part.given["first"])
+        if len(told) == 3:
+            nodes[0].remove_node(nodes[1], allow_graceful=False)  # while it plays
+
+    found = protocol.play_agent(agent, AT, seeds, 100, 100, False, job_of([agent], seeds, cluster, tick))
+    begun = [process for process, decision, _ in noted(tmp_path) if decision == 0]
+    assert sorted(told) == list(range(0, 60, 5)) and len(begun) > 12  # some part was begun twice
+    monkeypatch.delenv("NOTED")
+    assert same(found.strokes[0], protocol.play_agent(agent, AT, seeds, 100, 100).strokes[0])
+
+
+def positions(n):
+    from snooker_env import SnookerVectorEnv
+    from snooker_env.planning import Positions
+
+    tables = SnookerVectorEnv(n, layout="random:9")
+    tables.reset(seed=3)
+    return Positions.of(tables)
+
+
+def test_a_node_killed_amid_training_leaves_the_result_as_it_is(nodes, cluster, monkeypatch):
+    """Expert iteration: by this process alone, by two nodes, and by two of which one dies in the third round."""
+    torch = pytest.importorskip("torch")
+    from agents.features.views import training_tables
+    from agents.learning.expert_iteration import ExpertIteration
+    from agents.learning.hyperparameters import Recipe
+
+    monkeypatch.setattr(self_play, "SLICE", 4)
+    torch.set_num_threads(1)
+    weights = []
+    for where in (None, cluster):
+        recipe = Recipe.of("ppo_value", n_envs=16)
+        torch.manual_seed(1)
+        venv = training_tables(16, threads=1, view=recipe.view, **recipe.env_kwargs)
+        model = recipe.new_model(venv, 1)
+        run = ExpertIteration(model, venv, 96, 1, 1, where=where)
+        while run.done < 96:
+            if where is not None and run.done == 48:
+                threading.Timer(0.05, lambda: nodes[0].remove_node(nodes[1], allow_graceful=False)).start()
+            run.round()
+        weights.append({name: one.clone() for name, one in model.policy.state_dict().items()})
+        venv.close()
+    assert all(torch.equal(one, weights[1][name]) for name, one in weights[0].items())
+    assert cluster.map("choices", *_some_choices())[0]["gains"].shape == (3,)  # the other node still plays
+
+
+def _some_choices():
+    at = positions(3)
+    given = {"at": self_play.positions_given(at), "rows": np.arange(3), "picks": np.zeros(3, int), "keys": np.arange(3, dtype=np.uint64)}
+    return {"run": "r", "options": {"noise": "club"}, "value": lambda left: np.ones(len(left))}, [given]
+
+
+FAULTS = {
+    "Failing": (RuntimeError, "a fault of mine"),
+    "Greedy": (ClusterError, r"a worker on [\d.]+ ran out of memory: give the node fewer workers"),
+    "Full": (ClusterError, r"the disk of a worker on [\d.]+ is full \(/scratch/x\)"),
+    "Deadly": (ClusterError, "a part was given up, its worker died 6 times"),
+}
+
+
+def test_what_befalls_a_worker_is_one_line(cluster):
+    seeds = tables_of("held_out", 2)
+    for name, (kind, says) in FAULTS.items():
+        agent = Entrant.of(f"tests.cluster.players:{name}")
+        with pytest.raises(kind, match=says) as error:
+            protocol.play_agent(agent, AT, seeds, 100, 100, False, job_of([agent], seeds, cluster))
+        assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("lack", ["numba is missing", "numpy is older"])
+def test_a_node_with_other_software_or_none_is_refused(nodes, tmp_path, lack):
+    """A third node finds another version of a library first, or one that cannot be imported."""
+    made, _ = nodes
+    if lack == "numba is missing":
+        (tmp_path / "other" / "numba").mkdir(parents=True)
+        (tmp_path / "other" / "numba" / "__init__.py").write_text("raise ModuleNotFoundError('none', name='numba')\n")
+        says = r"the node [\d.]+ has no numba: install the same clone on every node \(pip install"
+    else:
+        info = tmp_path / "other" / "numpy-1.2.3.dist-info"
+        info.mkdir(parents=True)
+        (info / "METADATA").write_text("Metadata-Version: 2.1\nName: numpy\nVersion: 1.2.3\n")
+        says = r"the node [\d.]+ holds other software: numpy is 1.2.3 there and [\d.]+ here. Install the same"
+    made.add_node(num_cpus=1, object_store_memory=100 * 2**20, env_vars={"PYTHONPATH": f"{tmp_path / 'other'}{os.pathsep}{ROOT}"})
+    made.wait_for_nodes()
+    with pytest.raises(ClusterError, match=says):
+        connected(made.address)
+
+
+def test_the_data_of_imitation_are_the_same(cluster, monkeypatch):
+    from agents.learning.imitation import Expert
+    from snooker_env import SnookerVectorEnv
+
+    monkeypatch.setattr(self_play, "SLICE", 3)
+    env = SnookerVectorEnv(8, action="discrete", noise="club", layout="random:9")
+    env.reset(seed=5)
+    picks = np.array([np.flatnonzero(mask)[[1, 8, 20]] for mask in env.action_masks()])
+    there = np.ones(picks.shape, bool)
+    here, there_too = (Expert(env, 1, np.random.default_rng(0), where=where).worth(picks, there) for where in (None, cluster))
+    assert np.array_equal(here, there_too) and here.any()
+
+
+def test_nothing_is_left_running():
+    """After a cluster on this machine alone was closed."""
+    found = connected("local")
+    address = found._head
+    found.close()
+    from agents.cluster.faults import answers
+
+    began = time.monotonic()
+    while answers(address, 1.0) is None and time.monotonic() - began < 20:
+        time.sleep(0.5)
+    assert answers(address, 1.0) is not None
+    assert "ray" in sys.modules

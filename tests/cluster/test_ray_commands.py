@@ -1,0 +1,184 @@
+"""Do the commands go on after the head of their cluster was lost, and is every fault of an address one line? In processes of their own."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from http.server import BaseHTTPRequestHandler, HTTPServer
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("ray", reason='Ray is not installed: pip install -e ".[cluster]"')
+from ray.cluster_utils import Cluster as Nodes
+
+ROOT = Path(__file__).resolve().parents[2]
+NODE = {"num_cpus": 2, "object_store_memory": 100 * 2**20, "include_dashboard": False}
+EVALUATE = ["-m", "agents.evaluate", "--agent", "tests.cluster.players:Noted", "--against", "Noted", "--layouts", "held_out",
+            "--visits", "700", "--noise", "professional", "--resamples", "200"]  # fmt: skip
+TRAIN = [
+    "-c",
+    "import sys, train, agents.learning.callback as often; often.LEAST, often.SHARE = 1.0, 1.0; sys.exit(train.main(sys.argv[1:]))",
+]
+"""train.py with a checkpoint every second."""
+SHORT = ["--imitate", "3072", "--envs", "128", "--steps", "1", "--eval-visits", "2", "--no-progress"]
+
+
+@pytest.fixture
+def environment(tmp_path, monkeypatch):
+    for name, value in {"PYTHONPATH": ROOT, "OMP_NUM_THREADS": "1", "NOTED": tmp_path / "noted", "SLOW": "0.7"}.items():
+        monkeypatch.setenv(name, str(value))
+    return dict(os.environ)
+
+
+def started(command, environment):
+    return subprocess.Popen(
+        [sys.executable, *command], cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def finished(command, environment):
+    process = started(command, environment)
+    out, err = process.communicate(timeout=300)
+    return process.returncode, out, err
+
+
+def until(true, process, seconds=120):
+    began = time.monotonic()
+    while not true():
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() - began < seconds
+        time.sleep(0.05)
+
+
+def rows(file):
+    found = json.loads(file.read_text())["results"]
+    for row in found:
+        del row["ms_a_decision"]
+    return found
+
+
+def lines_of(err):
+    """What this project said on stderr."""
+    return [line for line in err.splitlines() if line.startswith(("agents.", "train.py:", "Ray has ended"))]
+
+
+@pytest.mark.parametrize("end", ["the head is lost", "Ctrl-C", "kill -9"])
+def test_an_evaluation_goes_on_after(end, tmp_path, environment):
+    parts, out = tmp_path / "parts", tmp_path / "out.json"
+    nodes = Nodes(initialize_head=True, head_node_args=NODE)
+    process = None
+    try:
+        command = [*EVALUATE, "--keep", str(parts), "--json", str(out), "--ray"]
+        process = started([*command, nodes.address], environment)
+        until(lambda: len(list(parts.glob("parts/*.npz"))) >= 2, process)
+        if end == "the head is lost":
+            nodes.shutdown()
+        else:
+            process.send_signal(signal.SIGINT if end == "Ctrl-C" else signal.SIGKILL)
+        _, err = process.communicate(timeout=120)
+        assert process.returncode == {"the head is lost": 1, "Ctrl-C": 130, "kill -9": -9}[end], err
+        if end == "Ctrl-C":
+            assert lines_of(err)[-1].startswith("agents.evaluate: interrupted") and "the same command goes on" in err
+        elif end == "the head is lost":
+            assert len(lines_of(err)) == 1 and "start it again" in err.lower(), err
+        kept = {file.name: file.stat().st_mtime_ns for file in parts.glob("parts/*.npz")}
+        assert 2 <= len(kept) < 7 and not out.exists()
+        if end == "the head is lost":
+            nodes = Nodes(initialize_head=True, head_node_args=NODE)
+        code, _, err = finished([*command, nodes.address], environment)
+        assert code == 0, err
+        assert {name: (parts / "parts" / name).stat().st_mtime_ns for name in kept} == kept
+        assert len(list(parts.glob("parts/*.npz"))) == 7
+    finally:
+        if process is not None and process.poll() is None:
+            process.kill()
+        nodes.shutdown()
+    alone = tmp_path / "alone.json"
+    assert finished([*EVALUATE, "--json", str(alone)], environment | {"SLOW": "0"})[0] == 0
+    assert rows(alone) == rows(out)
+
+
+@pytest.mark.slow
+def test_a_training_goes_on_from_its_mirror_after_the_head_was_lost(tmp_path, environment):
+    """On what could be another machine: with nothing but the mirror. The weights are those of one machine without a fault."""
+    torch = pytest.importorskip("torch")
+    from agents.learning.models import load_trained
+
+    def weights(out):
+        return load_trained(out, "out").policy.state_dict()
+
+    nodes, mirror = Nodes(initialize_head=True, head_node_args=NODE), ["--mirror", str(tmp_path / "mirror"), "--ray"]
+    first = started([*TRAIN, *SHORT, "--out", str(tmp_path / "first"), *mirror, nodes.address], environment)
+    try:
+        until(lambda: (tmp_path / "mirror" / "checkpoint.pkl").exists(), first, 240)
+        nodes.shutdown()
+        _, err = first.communicate(timeout=120)
+        assert first.returncode not in (0, None) and len(lines_of(err)) == 1, err
+        nodes = Nodes(initialize_head=True, head_node_args=NODE)
+        command = ["train.py", "--resume", "--out", str(tmp_path / "second"), "--eval-visits", "2", "--no-progress", *mirror, nodes.address]
+        code, _, err = finished(command, environment)
+        assert code == 0, err
+    finally:
+        if first.poll() is None:
+            first.kill()
+        nodes.shutdown()
+    assert finished([*TRAIN, *SHORT, "--out", str(tmp_path / "alone")], environment)[0] == 0
+    one, other = weights(tmp_path / "alone"), weights(tmp_path / "second")
+    assert one.keys() == other.keys() and all(torch.equal(tensor, other[name]) for name, tensor in one.items())
+
+
+QUICK = ["-m", "agents.evaluate", "--agent", "random", "--visits", "2", "--layouts", "held_out", "--noise", "none", "--ray"]
+
+
+@pytest.mark.parametrize("command", [QUICK, ["-m", "agents.tournament", "random", "ghost_ball", "--frames", "2", "--ray"]])
+def test_an_address_without_a_head_is_one_line(command, environment):
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    code, out, err = finished([*command, f"127.0.0.1:{port}"], environment)
+    assert code == 1 and not out
+    (line,) = err.splitlines()
+    assert f"ray = '127.0.0.1:{port}': must be the head of a Ray cluster that runs (Connection refused)" in line
+
+
+def test_what_answers_and_is_no_head_is_one_line(environment):
+    server = HTTPServer(("127.0.0.1", 0), BaseHTTPRequestHandler)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    try:
+        code, _, err = finished([*QUICK, f"127.0.0.1:{server.server_port}"], environment)
+    finally:
+        server.shutdown()
+    (line,) = [line for line in err.splitlines() if "code 4" not in line and "BaseHTTP" not in line]
+    assert code == 1 and line.endswith("must be the head of a Ray cluster: what answers there is none")
+
+
+@pytest.mark.parametrize("address", ["here", "ray://1.2.3.4:10001", "host:", "host:99999", ":6379"])
+def test_what_is_no_address_is_refused(address, environment):
+    code, _, err = finished([*QUICK, address], environment)
+    assert code == 2 and f"ray = {address!r}: must be local, or HOST:PORT" in err.splitlines()[-1]
+
+
+def test_the_benchmark_prints_what_a_part_costs(tmp_path, environment):
+    command = [
+        "-m",
+        "benchmarks.cluster",
+        "--shots",
+        "200",
+        "--parts",
+        "2",
+        "--positions",
+        "2",
+        "--repeats",
+        "1",
+        "--json",
+        str(tmp_path / "f"),
+    ]
+    code, out, err = finished(command, environment)
+    assert code == 0 and not lines_of(err), err
+    found = json.loads((tmp_path / "f").read_text())
+    assert "cost of a part" in out and "a million positions in" in out and min(found["rates"].values()) > 0 and found["search"] > 0

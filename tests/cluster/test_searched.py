@@ -1,0 +1,70 @@
+"""What does ``python -m agents.search`` write? The same data in one go, interrupted, and by more positions later."""
+
+import numpy as np
+import pytest
+
+from agents.cluster import searched
+from agents.learning import search_data
+from agents.players.by_name import player_of
+from snooker_env.planning import Planner, Positions
+
+COMMAND = ["--agent", "lookahead_30", "--noise", "club", "--layout", "random:6"]
+
+
+@pytest.fixture(autouse=True)
+def small(monkeypatch):
+    monkeypatch.setattr(searched, "TABLES", 4)
+    monkeypatch.setattr(searched, "ROUNDS", 3)
+    monkeypatch.setattr(search_data, "TABLES", 4)
+    monkeypatch.setattr(search_data, "ROUNDS", 3)
+
+
+def test_an_interrupted_search_goes_on_to_the_same_data(tmp_path, monkeypatch, capsys):
+    whole, parted = tmp_path / "whole", tmp_path / "parted"
+    assert search_data.main([*COMMAND, "--positions", "30", "--out", str(whole)]) == 0  # rounded up to 36
+    original, calls = searched.arrived, []
+
+    def arrived(*given):
+        calls.append(1)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return original(*given)
+
+    monkeypatch.setattr(searched, "arrived", arrived)
+    assert search_data.main([*COMMAND, "--positions", "36", "--out", str(parted)]) == 130
+    assert "12 of 36 positions are kept" in capsys.readouterr().err
+    with pytest.raises(ValueError, match="must hold complete data"):
+        search_data.read(str(parted))
+    assert search_data.main([*COMMAND, "--positions", "36", "--out", str(parted)]) == 0 and len(calls) == 4
+    one, two = search_data.read(str(whole)), search_data.read(str(parted))
+    assert len(one["scores"]) == 36 and all(np.array_equal(one[name], two[name], equal_nan=True) for name in one)
+    assert search_data.main([*COMMAND, "--positions", "48", "--out", str(parted)]) == 0 and len(calls) == 5  # only what is new
+    assert np.array_equal(search_data.read(str(parted))["positions"][:36], one["positions"])
+    with pytest.raises(SystemExit):
+        search_data.main([*COMMAND, "--positions", "36", "--seed", "1", "--out", str(parted)])
+    assert "its seed is 0, and 1 is asked for" in capsys.readouterr().err
+
+
+def test_data_are_what_the_search_plays(tmp_path):
+    """No table is like another, no decision ends without a stroke, and the best strokes score on tables with six reds."""
+    assert search_data.main([*COMMAND, "--positions", "24", "--out", str(tmp_path)]) == 0
+    found = search_data.read(str(tmp_path))
+    assert found["actions"].shape == (24, searched.KEPT, 4) and not np.isnan(found["actions"][:, 0]).any()
+    assert np.array_equal(np.isnan(found["scores"]), np.isnan(found["actions"]).all(axis=2))
+    assert len(np.unique(found["positions"].reshape(24, -1), axis=0)) == 24
+    at = Positions(found["positions"], found["on_table"], found["game"])
+    played = Planner({"aim": "absolute"}).play(at, np.arange(24), found["actions"][:, 0])
+    assert (played.points > 0).mean() > 0.6 and player_of("lookahead_30").options == {"aim": "absolute"}
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (["--agent", "random"], "must be one player that searches"), (["--positions", "0"], "positions = 0"),
+        (["--layout", "held_out"], "held-out tables are kept"), (["--ray", "x"], "must be local, or HOST:PORT"),
+    ],
+)  # fmt: skip
+def test_wrong_options_are_refused(change, says, tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        search_data.main([*COMMAND, "--positions", "12", "--out", str(tmp_path), *change])
+    assert says in capsys.readouterr().err and not list(tmp_path.iterdir())
