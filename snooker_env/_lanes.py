@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from llvmlite import ir
 from numba.core import types
-from numba.core.datamodel import models, register_default
-from numba.extending import intrinsic, overload
+from numba.extending import intrinsic as _intrinsic
+from numba.extending import models, overload, register_model
 
+intrinsic: Any = _intrinsic  # whose result takes no typing context, which a type checker cannot know
 LANES = 4
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _INT32 = ir.IntType(32)
@@ -32,7 +33,7 @@ class _Lanes(types.Type):
 _LANES = _Lanes()
 
 
-@register_default(_Lanes)
+@register_model(_Lanes)
 class _Model(models.PrimitiveModel):
     def __init__(self, manager, kind):
         super().__init__(manager, kind, _VECTOR)
@@ -137,6 +138,3 @@ def _overload_lanes_at(array, i):
 @overload(put_lanes)
 def _overload_put_lanes(array, i, x):
     return lambda array, i, x: _store(array, i, x)
-
-
-__all__ = ["lanes", "lanes_at", "put_lanes"]

@@ -255,8 +255,9 @@ def _kept_space(log_size, path_size):
 def _run(state, physics, table, fidelity, max_events, log_size, path_size, threads=1, space=None):
     """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place); ``space``: of ``_log_space``."""
     b, n = state[0].shape[:2]
-    ends = [np.zeros(b, np.int64) for _ in range(3)]
-    out = _Run(np.zeros((b, n), np.int64), *ends, np.zeros(b), *(space or _log_space(b, log_size, path_size)))
+    status, n_events, n_segments = (np.zeros(b, np.int64) for _ in range(3))
+    time, what, segments = space or _log_space(b, log_size, path_size)
+    out = _Run(np.zeros((b, n), np.int64), status, n_events, n_segments, np.zeros(b), time, what, segments)
     positions, velocities, spins, on_table = state
     balls, setup = (
         Balls(positions, velocities, spins, on_table, out.potted),

@@ -171,7 +171,7 @@ class Job:
 
     def _read(self, key):
         """The result of a part that is kept. Another job may have ended and removed it: then it is played."""
-        data, part = self._store.read(f"parts/{key}.npz"), self._parts[key]
+        data, part = self._store.read(f"parts/{key}.npz") if self._store else None, self._parts[key]
         if data is None:
             return self._where.map(part.task, self._shared[part.shared], [part.given])[0]
         return unpacked(data, f"{self._store}/parts/{key}.npz")

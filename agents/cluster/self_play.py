@@ -5,13 +5,13 @@ wherever it is computed, since the last bits of a network's product depend on ho
 number of workers, not even when one dies and its slice is computed again.
 """
 
+from copy import copy
 from itertools import pairwise
 
 import numpy as np
 
 from snooker_env import Options
 from snooker_env.planning import Planner, Positions, StrokeSearch
-from snooker_env.planning.stroke_search import evenly
 
 from ..features.value_features import SIZE, value_features
 
@@ -54,9 +54,11 @@ def strokes(shared, given, threads):
         which play goes on: "positions", "on_table", "game".
     """
     at, fresh, every = Positions(*given["at"]), shared["fresh"], np.arange(len(given["seeds"]))
-    search = search_of(shared, threads)
-    search.value = search._by_rule if shared["value"] is None else shared["value"]
-    search.propose = evenly if shared["policy"] is None else _proposals(shared)
+    search = copy(search_of(shared, threads))  # which keeps its own value, the rule of thumb, and its own proposals
+    if shared["value"] is not None:
+        search.value = shared["value"]
+    if shared["policy"] is not None:
+        search.propose = _proposals(shared)
     m = len(every)
     ranked = search.rank(at, given["seeds"])
     rows = np.concatenate([np.repeat(every, fresh), every])

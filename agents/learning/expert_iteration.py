@@ -17,7 +17,6 @@ import numpy as np
 
 from snooker_env import SnookerVectorEnv
 from snooker_env.planning import Positions, StrokeSearch, spread_of
-from snooker_env.planning.stroke_search import schedule
 
 from ..cluster.job import Here
 from ..cluster.self_play import in_slices, policy_given, positions_given
@@ -75,7 +74,7 @@ class ExpertIteration:
         self._model, self._where = model, where or Here(threads)
         self._sent = {"run": uuid.uuid4().hex, "options": options, "budget": BUDGET, "fresh": FRESH, "value": None, "policy": None}
         search = StrokeSearch(options, BUDGET)
-        self._looks = BUDGET if search.noise.silent else schedule(BUDGET)[0]
+        self._looks = search.strokes_tried
         self._starts = Starts(seed, tables.options.layout, options)
         self._value = ValueLearning(model.policy.position_value, search.spread, self._n, self._rng)
         self._choices = JudgedChoices(model.policy, options, threads, self._n, self._rng, self._where)

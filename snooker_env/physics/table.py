@@ -316,7 +316,9 @@ class Table:
         positions = np.ascontiguousarray(positions, np.float64)
         many = positions.ndim == 3
         places = positions if many else positions[None]
-        here = np.ones(places.shape[:2], bool) if on_table is None else np.ascontiguousarray(np.atleast_2d(on_table), np.bool_)
+        here = (
+            np.ones(places.shape[:2], bool) if on_table is None else np.asarray(on_table, np.bool_, order="C").reshape(-1, places.shape[1])
+        )
         width, *pair = self._narrowest
         if width - 2 * R < PLAY:  # it would bounce between them infinitely often in a finite time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"

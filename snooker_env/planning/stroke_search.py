@@ -189,6 +189,11 @@ class StrokeSearch:
         """Number of strokes simulated so far, an int."""
         return self.planner.shots
 
+    @property
+    def strokes_tried(self) -> int:
+        """Number of strokes that ``rank`` tries in each position, an int."""
+        return self.budget if self.noise.silent else schedule(self.budget)[0]
+
     def _by_rule(self, at: Positions) -> Floats:
         """Values of positions by the rule of thumb [points]: float64 (n,)."""
         return prospects_of(at, self.spread, SURE if self.noise.silent else RULE_OF_THUMB, threads=self.planner.threads)[0]
@@ -226,7 +231,7 @@ class StrokeSearch:
             raise refuse_what("seeds", f"{own.dtype} array of shape {own.shape}", f"must be {n} integers, one for each position")
         keys = (own.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
         check_played(at, np.arange(n), self.planner.table, self.planner.physics.R)
-        looks, rounds = (self.budget, ()) if self.noise.silent else schedule(self.budget)
+        looks, rounds = self.strokes_tried, () if self.noise.silent else schedule(self.budget)[1]
         if not n:
             return Ranked(np.zeros((0, looks, 4)), np.zeros((0, looks)), np.zeros((0, looks), np.int64))
         strokes, chances = self.propose(self, at, looks, keys)

@@ -188,7 +188,7 @@ def faults(module, name):
     if inspect.isclass(thing):
         return list(class_faults(thing, example=True))
     if callable(thing) and inspect.isfunction(plain(thing)):
-        inner = type(thing).__name__ == "_Inner"  # only kernels can call it, so no example can
+        inner = type(thing).__name__ == "Inner"  # only kernels can call it, so no example can
         return list(function_faults(thing, example=not inner))
     return [] if explained(module, name) else ["is a constant without words below it"]
 

@@ -178,6 +178,7 @@ def test_every_stroke_is_judged_as_by_the_specification(game, miss, layout):
     assert (met["anywhere"] > 20) == (met["late"] > 5) == (game == "shoot_out")
     assert (met["miss"] > 5 and met["replaced"] > 2) == (miss != "off")
     poor = [bool(gap > ATTEMPT_GAP) for spec in written for gap in spec.gaps]
-    assert (miss == "attempt") == (0 < sum(poor) < len(poor))
+    assert (miss == "attempt") == (sum(poor) > 0)
+    assert sum(poor) < len(poor) or miss != "attempt" or layout.startswith("random")  # with few reds no attempt may have come near
     assert met["over"] > 0 or miss == "attempt" or (layout in ("break_off", "snookered") and game == "snooker") or game == "six_red"
     assert (met["over"] >= N / 2) == (game == "shoot_out") or layout == "colours" or miss == "attempt"
