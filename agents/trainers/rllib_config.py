@@ -85,6 +85,13 @@ def algorithm_of(settings, seed):
     return config.build_algo()
 
 
+def restore(algorithm, folder):
+    """Go on from a checkpoint. Its weights go to the runners at once: RLlib would let them play the first rollout with new ones."""
+    algorithm.restore_from_path(str(folder))
+    learner = algorithm.learner_group
+    algorithm.env_runner_group.sync_weights(from_worker_or_learner_group=learner, timeout_seconds=PATIENCE, inference_only=True)
+
+
 def layers_of(algorithm):
     """The weights of its policy, as ``policy_files.Layers`` takes them."""
     state = algorithm.get_module(DEFAULT_MODULE_ID).get_state()

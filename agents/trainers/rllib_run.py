@@ -49,7 +49,7 @@ with needs("agents.train_rllib"):
     from ..learning.policy_files import read_policy, write_policy
     from ..players.built_in import GhostBall, Random
     from ..players.layers_player import LayersPlayer
-    from .rllib_config import ACTIVATION, BATCH, GAMMA, PATIENCE, algorithm_of, layers_of, started
+    from .rllib_config import ACTIVATION, BATCH, GAMMA, PATIENCE, algorithm_of, layers_of, restore, started
 
 STATE, UNTRAINED, RESULTS = "state.json", "untrained.npz", "results.json"
 _CHECKPOINT = re.compile(r"checkpoint-\d+(\.tmp)?")
@@ -241,7 +241,7 @@ def main(argv=None):
         ending.callback(algorithm.stop)
         progress.parts += 1
         if progress.checkpoint:
-            algorithm.restore_from_path(str((out / progress.checkpoint).absolute()))
+            restore(algorithm, (out / progress.checkpoint).absolute())
         else:
             _write(out / UNTRAINED, settings, progress, algorithm)
         with Stop() as stop:

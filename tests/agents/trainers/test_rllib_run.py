@@ -33,23 +33,26 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
     assert untrained.num_timesteps == 0 and not np.array_equal(untrained.policy.weights[0][0], first.policy.weights[0][0])
     results = json.loads((out / run.RESULTS).read_text())
     assert set(results["evaluation"]) == {"trained", "untrained", "ghost_ball", "random"} and results["versions"]["ray"]
-    kept, original = [], run.algorithm_of
+    kept, algorithm_of, restore = [], run.algorithm_of, run.restore
 
     def of_runners(made):
         return made.env_runner_group.foreach_env_runner(
             lambda runner: runner.module.get_state()["pi.net.mlp.0.bias"], local_env_runner=False
         )
 
-    def watched(settings, seed):
-        made = original(settings, seed)
-        restore = made.restore_from_path
-        made.restore_from_path = lambda path: (restore(path), kept.append((settings, seed, config.layers_of(made), of_runners(made))))
-        return made
+    def made_with(settings, seed):
+        kept.extend((settings, seed))
+        return algorithm_of(settings, seed)
+
+    def restored(algorithm, folder):
+        restore(algorithm, folder)
+        kept.extend((config.layers_of(algorithm), of_runners(algorithm)))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(run, "algorithm_of", watched)
+        patch.setattr(run, "algorithm_of", made_with)
+        patch.setattr(run, "restore", restored)
         assert run.main(["--resume", "--steps", "16000", "--runners", "2", "--out", str(out), *SHORT[2:]]) == 0
-    ((settings, seed, weights, there),) = kept
+    settings, seed, weights, there = kept
     assert len(there) == 2 and all(np.array_equal(bias, weights[-1][1]) for bias in there)  # the runners play with them too
     assert settings == replace(run.Settings(), steps=16000, runners=2, envs=16, eval_visits=4, checkpoint_every=8000) and seed == run.SEEDS
     assert all(
