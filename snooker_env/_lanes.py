@@ -1,9 +1,9 @@
 """How does a kernel compute with four numbers at once? A type for four float64 side by side: one instruction where the processor has AVX.
 
-``lanes(a, b, c, d)`` makes it, ``lanes_at(array, i)`` loads it and ``put_lanes(array, i, x)`` stores it; ``+`` and ``*`` work on each of
-the four, and ``x[k]`` takes one, with k a constant. Every operation is the IEEE one of its lane, so the results are those of four separate
-numbers, on any processor. (The compiler finds such sums itself if asked, ``NUMBA_SLP_VECTORIZE``, but it stores the numbers one by one, and
-a load of four waits for that: nothing is gained.)
+``lanes(a, b, c, d)`` makes it, ``lanes_at(array, i)`` loads it, ``put_lanes(array, i, x)`` stores it and ``lane(x, k)`` takes one number,
+with k a constant; ``+`` and ``*`` work on each of the four. Every operation is the IEEE one of its lane, so the results are those of four
+separate numbers, on any processor. (The compiler finds such sums itself if asked, ``NUMBA_SLP_VECTORIZE``, but it stores the numbers one by
+one, and a load of four waits for that: nothing is gained.)
 
 Without numba (``NUMBA_DISABLE_JIT``) the same source works on small numpy arrays.
 """
@@ -11,13 +11,13 @@ Without numba (``NUMBA_DISABLE_JIT``) the same source works on small numpy array
 import operator
 from typing import Any
 
+import numba
 import numpy as np
 from llvmlite import ir
 from numba.core import types
-from numba.extending import intrinsic as _intrinsic
-from numba.extending import models, overload, register_model
+from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
+from numba.extending import intrinsic, lower_builtin, models, register_model
 
-intrinsic: Any = _intrinsic  # whose result takes no typing context, which a type checker cannot know
 LANES = 4
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 _INT32 = ir.IntType(32)
@@ -40,12 +40,11 @@ class _Model(models.PrimitiveModel):
 
 
 def _place(context, builder, signature, arguments):
-    """The address of four numbers in an array, and its alignment."""
+    """The address of four numbers in an array."""
     array = context.make_array(signature.args[0])(context, builder, arguments[0])
     return builder.bitcast(builder.gep(array.data, [arguments[1]]), _VECTOR.as_pointer())
 
 
-@intrinsic
 def _load(typing_context, array, i):
     def make(context, builder, signature, arguments):
         return builder.load(_place(context, builder, signature, arguments), align=8)
@@ -53,7 +52,6 @@ def _load(typing_context, array, i):
     return _LANES(array, types.intp), make
 
 
-@intrinsic
 def _store(typing_context, array, i, x):
     def make(context, builder, signature, arguments):
         builder.store(arguments[2], _place(context, builder, signature, arguments), align=8)
@@ -62,7 +60,6 @@ def _store(typing_context, array, i, x):
     return types.void(array, types.intp, _LANES), make
 
 
-@intrinsic
 def _make(typing_context, a, b, c, d):
     def make(context, builder, signature, arguments):
         made = ir.Constant(_VECTOR, ir.Undefined)
@@ -73,17 +70,6 @@ def _make(typing_context, a, b, c, d):
     return _LANES(*[types.float64] * LANES), make
 
 
-@intrinsic
-def _add(typing_context, x, y):
-    return _LANES(_LANES, _LANES), lambda context, builder, signature, arguments: builder.fadd(*arguments)
-
-
-@intrinsic
-def _multiply(typing_context, x, y):
-    return _LANES(_LANES, _LANES), lambda context, builder, signature, arguments: builder.fmul(*arguments)
-
-
-@intrinsic(prefer_literal=True)
 def _take(typing_context, x, k):
     if not isinstance(k, types.IntegerLiteral):
         return None
@@ -91,50 +77,27 @@ def _take(typing_context, x, k):
     return types.float64(_LANES, k), lambda context, builder, signature, arguments: builder.extract_element(arguments[0], which)
 
 
-def _both(x, y):
-    return isinstance(x, _Lanes) and isinstance(y, _Lanes)
+class _Both(ConcreteTemplate):
+    cases = [signature(_LANES, _LANES, _LANES)]  # noqa: RUF012 - numba's own convention
 
 
-@overload(operator.add, inline="never")
-def _overload_add(x, y):
-    return (lambda x, y: _add(x, y)) if _both(x, y) else None
+infer_global(operator.add)(_Both)
+infer_global(operator.mul)(_Both)
+lower_builtin(operator.add, _Lanes, _Lanes)(lambda context, builder, signature, arguments: builder.fadd(*arguments))
+lower_builtin(operator.mul, _Lanes, _Lanes)(lambda context, builder, signature, arguments: builder.fmul(*arguments))
 
+# Intrinsics, not overloads: numba would compile a function for each use of those.
+lanes: Any = intrinsic(_make)
+"""Four numbers side by side."""
+lanes_at: Any = intrinsic(_load)
+"""The numbers i to i + 3 of a float64 array in one piece. Neither end of the array is checked."""
+put_lanes: Any = intrinsic(_store)
+"""Writes x to the places i to i + 3 of such an array. Neither end of the array is checked."""
+lane: Any = intrinsic(prefer_literal=True)(_take)
+"""Number k of the four; k is a constant."""
 
-@overload(operator.mul)
-def _overload_multiply(x, y):
-    return (lambda x, y: _multiply(x, y)) if _both(x, y) else None
-
-
-@overload(operator.getitem, prefer_literal=True)
-def _overload_take(x, k):
-    return (lambda x, k: _take(x, k)) if isinstance(x, _Lanes) else None
-
-
-def lanes(a: Any, b: Any, c: Any, d: Any) -> Any:
-    """Four numbers side by side."""
-    return np.array([a, b, c, d])
-
-
-def lanes_at(array: Any, i: int) -> Any:
-    """The numbers i to i + 3 of a float64 array in one piece. Neither end of the array is checked."""
-    return array[i : i + LANES].copy()
-
-
-def put_lanes(array: Any, i: int, x: Any) -> None:
-    """Write x to the places i to i + 3 of such an array. Neither end of the array is checked."""
-    array[i : i + LANES] = x
-
-
-@overload(lanes)
-def _overload_lanes(a, b, c, d):
-    return lambda a, b, c, d: _make(a, b, c, d)
-
-
-@overload(lanes_at)
-def _overload_lanes_at(array, i):
-    return lambda array, i: _load(array, i)
-
-
-@overload(put_lanes)
-def _overload_put_lanes(array, i, x):
-    return lambda array, i, x: _store(array, i, x)
+if numba.config.DISABLE_JIT:
+    lanes = lambda a, b, c, d: np.array([a, b, c, d])  # noqa: E731
+    lanes_at = lambda array, i: array[i : i + LANES].copy()  # noqa: E731
+    put_lanes = lambda array, i, x: operator.setitem(array, slice(i, i + LANES), x)  # noqa: E731
+    lane = operator.getitem

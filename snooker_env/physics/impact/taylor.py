@@ -25,7 +25,7 @@ from math import exp, log, sqrt
 import numpy as np
 
 from ..._jit import kernel
-from ..._lanes import lanes, lanes_at, put_lanes
+from ..._lanes import lane, lanes, lanes_at, put_lanes
 from .coulomb import friction_coefficient
 from .inertia import K_CLOTH
 from .polynomial import CLOSING, F1, F2, G1, G2, LIFT, ROW, WORK_DONE, P
@@ -151,11 +151,11 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
             friction = friction + bn_first * e_last + bn_last * e_first
             ss += s_first * s_last
             cs += closing_first * s_last + closing_last * s_first
-        ee = squares[2] + squares[3]
-        be1, be2, ne1, ne2 = friction[0], friction[1], friction[2], friction[3]
+        ee = lane(squares, 2) + lane(squares, 3)
+        be1, be2, ne1, ne2 = lane(friction, 0), lane(friction, 1), lane(friction, 2), lane(friction, 3)
 
         # The rates of order k: p' = s, F' = -mu a, W' = closing s, mu_s N, and from b = B e the direction e for G'.
-        s = ((squares[0] + squares[1] - ss) * per_s + h1 * a1) + h2 * a2
+        s = ((lane(squares, 0) + lane(squares, 1) - ss) * per_s + h1 * a1) + h2 * a2
         f1, f2 = -mu0 * a1, -mu0 * a2
         if m0 > 0.0:
             varying = k * s * m0
