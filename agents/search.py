@@ -1,8 +1,8 @@
-"""How are positions searched to learn from? The command ``python -m agents.search``, which is in ``agents/learning/search_data.py``."""
+"""How are positions searched to learn from? The command ``python -m agents.search``, which is in ``agents/evaluation/search_data.py``."""
 
 import sys
 
-from .learning.search_data import main
+from .evaluation.search_data import main
 
 if __name__ == "__main__":
     sys.exit(main())

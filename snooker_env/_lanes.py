@@ -11,11 +11,11 @@ Without numba (``NUMBA_DISABLE_JIT``) the same source works on small numpy array
 import operator
 from typing import Any
 
-import numba
 import numpy as np
 from llvmlite import ir
-from numba.core import types
-from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
+from numba.core import config, types
+from numba.core.typing import templates
+from numba.core.typing.templates import ConcreteTemplate, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
 LANES = 4
@@ -81,6 +81,7 @@ class _Both(ConcreteTemplate):
     cases = [signature(_LANES, _LANES, _LANES)]  # noqa: RUF012 - numba's own convention
 
 
+infer_global: Any = templates.infer_global
 infer_global(operator.add)(_Both)
 infer_global(operator.mul)(_Both)
 lower_builtin(operator.add, _Lanes, _Lanes)(lambda context, builder, signature, arguments: builder.fadd(*arguments))
@@ -96,7 +97,7 @@ put_lanes: Any = intrinsic(_store)
 lane: Any = intrinsic(prefer_literal=True)(_take)
 """Number k of the four; k is a constant."""
 
-if numba.config.DISABLE_JIT:
+if getattr(config, "DISABLE_JIT", 0):
     lanes = lambda a, b, c, d: np.array([a, b, c, d])  # noqa: E731
     lanes_at = lambda array, i: array[i : i + LANES].copy()  # noqa: E731
     put_lanes = lambda array, i, x: operator.setitem(array, slice(i, i + LANES), x)  # noqa: E731

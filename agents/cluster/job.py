@@ -15,12 +15,12 @@ from dataclasses import dataclass
 from .store import opened, packed, unpacked
 
 TASKS = {
-    "visits": "agents.cluster.visits:play",
-    "encounters": "agents.cluster.encounters:play",
-    "searched": "agents.cluster.searched:play",
-    "worths": "agents.cluster.worths:play",
-    "strokes": "agents.cluster.self_play:strokes",
-    "choices": "agents.cluster.self_play:choices",
+    "visits": "agents.evaluation.visits:play",
+    "encounters": "agents.evaluation.encounters:play",
+    "searched": "agents.evaluation.searched:play",
+    "worths": "agents.learning.worths:play",
+    "strokes": "agents.learning.self_play:strokes",
+    "choices": "agents.learning.self_play:choices",
 }
 """Name -> module and function: called with the shared data, the part's arguments and a number of threads."""
 

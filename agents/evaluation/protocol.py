@@ -48,13 +48,13 @@ with needs("agents.evaluate"):
     from ..cluster.job import Here, Job, digest_of
     from ..cluster.options import Keep, add_keep, add_ray, checked_ray, place
     from ..cluster.software import software
-    from ..cluster.travel import sent
-    from ..cluster.visits import joined, parts_of
     from ..learning.models import pretrained
     from ..players.by_name import NAMES, player_of
     from .entrants import Entrant, options_of
     from .metrics import EntrantMetrics
     from .report import AXES, main_condition, markdown, show
+    from .travel import sent
+    from .visits import joined, parts_of
 
 PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
 """Visits on each layout."""

@@ -28,12 +28,11 @@ with needs("agents.tournament"):
     from snooker_env.benchmark import RESAMPLES, machine, read_result, write_result
     from snooker_env.checks import choice, integer, refuse
 
-    from ..cluster.encounters import drawn, play_on
     from ..cluster.faults import ClusterError
     from ..cluster.options import add_ray, checked_ray, place
-    from ..cluster.travel import one_thread
     from ..learning.models import pretrained
     from ..players.by_name import NAMES, is_player, player_of
+    from .encounters import drawn, play_on
     from .entrants import Entrant, options_of
     from .text_tables import say
     from .tournament_figures import ANCHOR_ELO, schedule
@@ -41,6 +40,7 @@ with needs("agents.tournament"):
     from .tournament_play import CHUNK, TABLES, TimedPlayer, play_pair
     from .tournament_report import markdown, parts
     from .tournament_strengths import PRIOR
+    from .travel import one_thread
 
 ANCHOR = "ghost_ball"
 """The anchor if it plays; else the first player is."""

@@ -19,8 +19,8 @@ from snooker_env import SnookerVectorEnv
 from snooker_env.planning import Positions, StrokeSearch, spread_of
 
 from ..cluster.job import Here
-from ..cluster.self_play import in_slices, policy_given, positions_given
 from .judged_choices import JudgedChoices
+from .self_play import in_slices, policy_given, positions_given
 from .value_learning import ValueLearning
 from .value_network import Value
 

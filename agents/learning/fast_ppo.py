@@ -34,7 +34,8 @@ class FastPPO(MaskablePPO):
 
     def train(self):
         """Update the policy on the rollout in the buffer."""
-        if not isinstance(self.policy, TablePolicy) or self.clip_range_vf is not None or self.target_kl is not None:
+        fused = isinstance(self.policy, TablePolicy) and self.policy.has_fused
+        if not fused or self.clip_range_vf is not None or self.target_kl is not None:
             super().train()
             return
         self.policy.set_training_mode(True)

@@ -20,7 +20,7 @@ import torch
 from snooker_env.planning import Positions, spread_of
 
 from ..cluster.job import Here
-from ..cluster.worths import worths
+from .worths import worths
 
 TRIES = 48
 """Trials in each position: half of them the learner's best choices, half random. Where there are at most half as many choices, each is

@@ -9,9 +9,9 @@ import torch
 from snooker_env.planning import action_masks
 
 from ..cluster.job import Here
-from ..cluster.self_play import judged
 from ..features.pot_features import with_pots
 from .imitation import fit_values, to_try
+from .self_play import judged
 
 KEPT = 50_000
 """Positions that gradient steps are drawn from."""

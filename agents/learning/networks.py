@@ -165,6 +165,11 @@ class TablePolicy(_Policy):
     _fused = None
 
     @property
+    def has_fused(self):
+        """Whether there are fused passes: not for a subclass with another reader or head."""
+        return (self.reader, self.head) == (TableReader, StrokeHead)
+
+    @property
     def fused(self):
         """The quick passes through this network."""
         if self._fused is None:
@@ -173,7 +178,8 @@ class TablePolicy(_Policy):
 
     def forward(self, obs, deterministic=False, action_masks=None):
         """As in the base class. Drawing with masks, in a rollout, is quick: one random number a table from PyTorch's generator."""
-        if deterministic or action_masks is None or torch.is_grad_enabled() or obs.device.type != "cpu":
+        plain = deterministic or action_masks is None or torch.is_grad_enabled() or obs.device.type != "cpu"
+        if plain or not self.has_fused:
             return super().forward(obs, deterministic, action_masks)
         seen, masks = np.ascontiguousarray(obs.float().numpy()), np.ascontiguousarray(action_masks, np.bool_).reshape(len(obs), -1)
         choices, values, logs = self.fused.act(seen, masks, torch.rand(len(obs)).numpy())

@@ -65,7 +65,7 @@ def started(runners, paths):
 
 
 def algorithm_of(settings, seed):
-    """A new PPO algorithm of RLlib; ``settings``: ``rllib_run.Settings``. ``seed``: of weights, tables and exploration."""
+    """A new PPO algorithm of RLlib; ``settings``: ``rllib_run.RunSettings``. ``seed``: of weights, tables and exploration."""
     tune.register_env(ENV, _tables)
     network = DefaultModelConfig(fcnet_hiddens=list(HIDDEN), fcnet_activation=ACTIVATION)
     options = {"action": "discrete", "observation": "masked", "threads": 1, **settings.env_options}

@@ -58,7 +58,7 @@ SEEDS = 10**6
 
 
 @dataclass(frozen=True)
-class Settings:
+class RunSettings:
     """The settings of a run."""
 
     steps: int = 300_000
@@ -92,14 +92,14 @@ FREE_ON_RESUME = ("steps", "runners", "eval_visits", "checkpoint_every")
 def parse(argv):
     """(parser, options given on the command line, the rest)."""
     parser = argparse.ArgumentParser("python -m agents.train_rllib", description=(__doc__ or "").partition("\n")[0])
-    for f in fields(Settings):
+    for f in fields(RunSettings):
         name = "--" + f.name.replace("_", "-")
         parser.add_argument(name, type=type(f.default), default=argparse.SUPPRESS, help=f"{HELP[f.name]} [{f.default}]")
     parser.add_argument("--out", type=Path, help="the run's folder [runs/rllib-SEED]")
     parser.add_argument("--resume", action="store_true", help="go on with the run in that folder; options left out keep their values")
     given = vars(parser.parse_args(argv))
     out, resume = given.pop("out"), given.pop("resume")
-    return parser, given, out or Path("runs", f"rllib-{given.get('seed', Settings.seed)}"), resume
+    return parser, given, out or Path("runs", f"rllib-{given.get('seed', RunSettings.seed)}"), resume
 
 
 def checked(settings):
@@ -128,10 +128,10 @@ class Progress:
 def opened(out, given, resume):
     """(settings, progress) of a new run or of the one in the folder. Raises ValueError."""
     if not resume:
-        return checked(Settings(**given)), Progress()
+        return checked(RunSettings(**given)), Progress()
     try:
         found = json.loads((out / STATE).read_text(encoding="utf-8"))
-        was, progress = checked(Settings(**found["settings"])), Progress(**found["progress"])
+        was, progress = checked(RunSettings(**found["settings"])), Progress(**found["progress"])
         if not (out / str(progress.checkpoint)).is_dir():
             raise ValueError(f"{progress.checkpoint} is missing")
     except (OSError, ValueError, KeyError, TypeError) as error:

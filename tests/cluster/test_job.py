@@ -6,10 +6,9 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from agents.cluster import visits
 from agents.cluster.job import Here, Job, Part, digest_of
 from agents.cluster.store import Folder, packed, unpacked
-from agents.evaluation import protocol
+from agents.evaluation import protocol, visits
 from agents.evaluation.entrants import Entrant
 from agents.players.by_name import player_of
 from snooker_env.benchmark import play_visits, tables_of

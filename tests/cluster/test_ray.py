@@ -13,12 +13,12 @@ import pytest
 pytest.importorskip("ray", reason='Ray is not installed: pip install -e ".[cluster]"')
 from ray.cluster_utils import Cluster as Nodes
 
-from agents.cluster import self_play, visits
 from agents.cluster.faults import ClusterError
 from agents.cluster.job import Here, Job
 from agents.cluster.ray_cluster import connected
-from agents.evaluation import protocol
+from agents.evaluation import protocol, visits
 from agents.evaluation.entrants import Entrant
+from agents.learning import self_play
 from snooker_env.benchmark import tables_of
 
 ROOT = Path(__file__).resolve().parents[2]

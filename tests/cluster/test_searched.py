@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from agents.cluster import searched
-from agents.learning import search_data
+from agents.evaluation import search_data, searched
 from agents.players.by_name import player_of
 from snooker_env.planning import Planner, Positions
 

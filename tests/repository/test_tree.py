@@ -11,7 +11,7 @@ from tests.processes import ROOT, python
 FOLDERS = ("agents", "benchmarks", "commands")
 FILES = sorted(path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py"))
 NAMES = [path.relative_to(ROOT).as_posix() for path in FILES]
-LAYERS = ("commands", "agents.features", "agents.learning", "agents.players", "agents.evaluation", "agents", "benchmarks")
+LAYERS = ("commands", "agents.cluster", "agents.features", "agents.learning", "agents.players", "agents.evaluation", "agents", "benchmarks")
 """From the lowest: each imports itself and what stands before it; "agents" are the commands at the top of that folder."""
 
 

@@ -172,7 +172,8 @@ def test_a_saved_model_that_sees_masks_may_play(tmp_path, own, nominate):
     want = made.predict(seen, deterministic=True, action_masks=seen["action_mask"])[0]
     assert np.array_equal(policy.many(rows, [None] * 5, rows["action_mask"].astype(bool)), want)
     for _ in range(4):
-        env.step(int(env.action_masks().argmax()))
+        if env.step(int(env.action_masks().argmax()))[2]:
+            env.reset()
 
 
 def test_callables_see_masks(tmp_path):

@@ -12,7 +12,7 @@ from tests.trainers import needed
 ray = needed("ray")
 config, run = needed("agents.trainers.rllib_config"), needed("agents.trainers.rllib_run")
 ROOT = Path(__file__).parents[3]
-SETTINGS = run.Settings(runners=2, envs=8, noise="club", layout="random:3", seed=4)
+SETTINGS = run.RunSettings(runners=2, envs=8, noise="club", layout="random:3", seed=4)
 
 
 @pytest.fixture(scope="module")

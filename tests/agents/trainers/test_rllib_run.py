@@ -54,7 +54,9 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
         assert run.main(["--resume", "--steps", "16000", "--runners", "2", "--out", str(out), *SHORT[2:]]) == 0
     settings, seed, weights, there = kept
     assert len(there) == 2 and all(np.array_equal(bias, weights[-1][1]) for bias in there)  # the runners play with them too
-    assert settings == replace(run.Settings(), steps=16000, runners=2, envs=16, eval_visits=4, checkpoint_every=8000) and seed == run.SEEDS
+    assert (
+        settings == replace(run.RunSettings(), steps=16000, runners=2, envs=16, eval_visits=4, checkpoint_every=8000) and seed == run.SEEDS
+    )
     assert all(
         np.array_equal(a, b) for mine, its in zip(first.policy.weights, weights, strict=True) for a, b in zip(mine, its, strict=True)
     )
@@ -118,7 +120,7 @@ def test_an_update_without_a_sample_ends_the_run_in_one_line(tmp_path):
     saved = []
     with pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit, match=r"no env runner gave a sample in 600 s; saved at 7 shots"):
         patch.setattr(run, "save", lambda *parts: saved.append(parts))
-        run.train(tmp_path, run.Settings(), run.Progress(shots=7), Silent(), run.Stop())
+        run.train(tmp_path, run.RunSettings(), run.Progress(shots=7), Silent(), run.Stop())
     assert len(saved) == 1
 
 

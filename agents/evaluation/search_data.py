@@ -26,13 +26,13 @@ with needs("agents.search"):
     from ..cluster.faults import ClusterError
     from ..cluster.job import Job, digest_of
     from ..cluster.options import add_ray, checked_ray, place
-    from ..cluster.searched import ROUNDS, TABLES, parts_of
     from ..cluster.software import software
     from ..cluster.store import store_of, unpacked
-    from ..cluster.travel import sent
     from ..evaluation.entrants import Entrant
     from ..players.by_name import player_of
     from ..players.stroke_players import StrokePlayer
+    from .searched import ROUNDS, TABLES, parts_of
+    from .travel import sent
 
 INDEX = "index.json"
 """The file that lists the parts of complete data, in order."""
@@ -74,7 +74,7 @@ def checked(args):
 
 
 def read(url):
-    """The data of a folder or URL: a dict of arrays as of ``agents.cluster.searched.play``. Raises ValueError if they are incomplete."""
+    """The data of a folder or URL: a dict of arrays as of ``agents.evaluation.searched.play``. Raises ValueError if they are incomplete."""
     store = store_of(url, "out")
     index = store.read(INDEX)
     if index is None:

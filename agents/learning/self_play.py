@@ -97,7 +97,7 @@ def in_slices(n):
 
     Examples
     --------
-    >>> from agents.cluster.self_play import in_slices
+    >>> from agents.learning.self_play import in_slices
     >>> in_slices(100)
     [slice(0, 64, None), slice(64, 100, None)]
     """
@@ -160,7 +160,7 @@ def _network(recipe, env_options, view):
     from snooker_env import SnookerVectorEnv
 
     from ..features.views import view_of
-    from ..learning.hyperparameters import Recipe
+    from .hyperparameters import Recipe
 
     torch.set_num_threads(1)
     torch.distributions.Distribution.set_default_validate_args(False)

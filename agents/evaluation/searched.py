@@ -8,7 +8,7 @@ from commands.physics_option import physics_option
 from snooker_env import SnookerVectorEnv
 from snooker_env.planning import Positions
 
-from .job import Part
+from ..cluster.job import Part
 from .travel import arrived
 
 TABLES, ROUNDS = 16, 8

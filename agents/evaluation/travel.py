@@ -10,24 +10,25 @@ from pathlib import Path
 
 from commands.files import write_atomic
 
-from ..evaluation.entrants import Entrant
+from ..cluster.faults import ClusterError
 from ..players.by_name import is_player, player_of
-from .faults import ClusterError
+from .entrants import Entrant
 
 
 def sent(entrant, k):
     """The run ``k`` of an ``Entrant`` as data: a dict of texts, lists and bytes."""
     from ..learning.models import file_of, pretrained
 
-    run, model = entrant.runs[k], None
+    run, file = entrant.runs[k], None
     kind, at, path = run.partition("@")
     if is_player(run) and at and path not in pretrained():
-        model, run = file_of(Path(path), "agent").read_bytes(), f"{kind}@"
+        file, run = file_of(Path(path), "agent"), f"{kind}@"
     elif not is_player(run):
-        model, run = file_of(Path(run), "agent").read_bytes(), ""
+        file, run = file_of(Path(run), "agent"), ""
     own = _module_digest(run) if ":" in run else ""
     return {
-        "run": run, "model": model, "trust": entrant.trust, "options": [list(pair) for pair in entrant.options], "frames": entrant.frames,
+        "run": run, "model": file and file.read_bytes(), "suffix": file and file.suffix,
+        "trust": entrant.trust, "options": [list(pair) for pair in entrant.options], "frames": entrant.frames,
         "module": own,
     }  # fmt: skip
 
@@ -38,7 +39,7 @@ def arrived(agent, budget, seed):
     if ":" in run and _module_digest(run) != agent["module"]:
         raise ClusterError(f"the module of {run} on this node is another than on the machine that sent it: copy the same to every node")
     if agent["model"] is not None:
-        run += _unpacked(agent["model"])
+        run += _unpacked(agent["model"], agent["suffix"])
     one_thread(run)
     if is_player(run):
         return player_of(run, budget=budget, seed=seed, frames=agent["frames"])
@@ -64,9 +65,9 @@ def _folder():
 
 
 @cache
-def _unpacked(model):
+def _unpacked(model, suffix):
     """The path of a file with these bytes, for the life of this process."""
-    file = _folder() / f"{hashlib.sha256(model).hexdigest()[:32]}.zip"
+    file = _folder() / f"{hashlib.sha256(model).hexdigest()[:32]}{suffix}"
     write_atomic(file, model)
     return str(file)
 

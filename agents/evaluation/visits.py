@@ -10,7 +10,7 @@ import numpy as np
 from commands.physics_option import physics_option
 from snooker_env.benchmark import Strokes, play_visits
 
-from .job import Part
+from ..cluster.job import Part
 from .travel import arrived
 
 SIZE = 100

@@ -6,9 +6,9 @@ import numpy as np
 
 from commands.physics_option import physics_option
 
-from ..evaluation.tournament_figures import schedule
-from ..evaluation.tournament_play import TimedPlayer, play_pair
-from .job import Job, Part
+from ..cluster.job import Job, Part
+from .tournament_figures import schedule
+from .tournament_play import TimedPlayer, play_pair
 from .travel import arrived, sent
 
 
