@@ -12,6 +12,7 @@ import argparse
 import json
 import time
 from itertools import pairwise
+from pathlib import Path
 
 import gymnasium
 import numpy as np
@@ -69,6 +70,9 @@ def main(argv=None):
     parser.add_argument("--noise", default="professional", help="execution noise [professional]")
     parser.add_argument("--out", default="policy.npz", help="where the policy is written [policy.npz]")
     given = parser.parse_args(argv)
+    if given.steps < 1:
+        parser.error(f"--steps is {given.steps}, must be at least 1")
+    Path(given.out).parent.mkdir(parents=True, exist_ok=True)  # before the training
     torch.manual_seed(given.seed)
     torch.set_num_threads(1)
 

@@ -124,14 +124,16 @@ def play(
     while True:
         state = [a[None].copy() for a in (positions, velocities, spins, on_table)]
         path_size = 2 * capacity + len(positions) + 2 if path else 0
-        out = _run(state, physics, table, fidelity, max_events, capacity, path_size, space=_kept_space(capacity, path_size))
+        space = _take_space(capacity, path_size)
+        out = _run(state, physics, table, fidelity, max_events, capacity, path_size, space=space)
         if out.status[0] != LOG_FULL:
             break
         capacity *= 4
-    events = out.log(0)
+    events, segments = out.log(0), out.segments[0, : out.n_segments[0]].copy()
+    if capacity <= _FIRST_LOG:
+        _KEPT.space = space
     if out.status[0] != OK:
         raise _failure(out, 0, events)
-    segments = out.segments[0, : out.n_segments[0]].copy()
     return Shot(state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, segments, physics, table)
 
 
@@ -243,13 +245,13 @@ def _log_space(b, log_size, path_size):
 _KEPT = threading.local()
 
 
-def _kept_space(log_size, path_size):
-    """``_log_space`` of one shot, the same at every call of a thread where the sizes are: to make it takes longer than most shots."""
-    if log_size > _FIRST_LOG:  # rare, and large
+def _take_space(log_size, path_size):
+    """``_log_space`` of one shot: that of the last one in this thread where the sizes are the same, for to make it takes longer than most
+    shots. It is taken out until the results are copied: a shot inside a shot (a signal, a trace function) makes its own."""
+    space = _KEPT.__dict__.pop("space", None)
+    if space is None or (space[0].shape[1], space[2].shape[1]) != (log_size, path_size):
         return _log_space(1, log_size, path_size)
-    if getattr(_KEPT, "sizes", None) != (log_size, path_size):
-        _KEPT.sizes, _KEPT.space = (log_size, path_size), _log_space(1, log_size, path_size)
-    return _KEPT.space
+    return space
 
 
 def _run(state, physics, table, fidelity, max_events, log_size, path_size, threads=1, space=None):
@@ -261,7 +263,7 @@ def _run(state, physics, table, fidelity, max_events, log_size, path_size, threa
     positions, velocities, spins, on_table = state
     balls, setup = (
         Balls(positions, velocities, spins, on_table, out.potted),
-        Setup(physics.packed, table.noses, table.jaws, table.falls, *fidelity),
+        Setup(physics._packed, table.noses, table.jaws, table.falls, *fidelity),
     )
     log, ends = Log(out.event_time, out.event_what, out.segments), Ends(out.status, out.n_events, out.n_segments, out.duration)
 

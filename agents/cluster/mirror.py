@@ -4,6 +4,7 @@ One process writes there: whoever resumes takes over, and a run that still lives
 the write of one save two processes may cross; what is there is a complete checkpoint of the same run all the same.
 """
 
+import hashlib
 import json
 import os
 import platform
@@ -16,7 +17,8 @@ from snooker_env.checks import refuse
 from .faults import ClusterError
 from .store import store_of
 
-CHECKPOINT, OWNER, RUN = "checkpoint.pkl", "owner.json", "run.json"
+CHECKPOINT, OWNER, RUN, SAVES = "checkpoint.pkl", "owner.json", "run.json", "mirror.json"
+"""``SAVES``, here and in the run's folder: how many checkpoints were copied, and the digest of the last one."""
 TRIES, PAUSE = 4, 2.0
 """How often a copy is tried, and the seconds before the second time, doubled each time."""
 _mirrors = {}
@@ -41,14 +43,24 @@ class Mirror:
         self.store, self._mine = store_of(url, "mirror"), uuid.uuid4().hex
 
     def fetch(self, out):
-        """Write the checkpoint into the run's folder ``out``, if it holds none. Raises ValueError if there is none here, either."""
+        """Write the checkpoint into the run's folder ``out``, if it holds none or an older one.
+
+        Raises ValueError if there is none here, either, or if both have gone on from the last checkpoint that they shared.
+        """
+        saves = json.loads(self.store.read(SAVES) or b"{}")
         if (out / CHECKPOINT).is_file():
-            return
+            known = json.loads((out / SAVES).read_bytes()) if (out / SAVES).is_file() else {}
+            if saves.get("count", 0) <= known.get("count", 0):
+                return
+            if hashlib.sha256((out / CHECKPOINT).read_bytes()).hexdigest() != known.get("digest"):
+                wanted = f"was gone on with by another machine, and so was {out}: remove {out / CHECKPOINT} to go on from the mirror"
+                raise refuse("mirror", str(self.store), wanted)
         data = self.store.read(CHECKPOINT)
         if data is None:
             raise refuse("mirror", str(self.store), "holds no checkpoint: start the run without --resume")
         out.mkdir(parents=True, exist_ok=True)
         write_atomic(out / CHECKPOINT, data)
+        write_atomic(out / SAVES, json.dumps(saves).encode())
 
     def claim(self, out, settings, resume):
         """Become the one that writes, for the run in ``out``. Raises ValueError if another run is kept here.
@@ -82,9 +94,11 @@ class Mirror:
                     raise ClusterError(f"the run at {self.store} was taken over by {who}: this one stops")
                 self.store.write(name, data)
                 return
-            except OSError as error:
+            except ClusterError:
+                raise
+            except Exception as error:  # each kind of store has its own errors
                 if k + 1 == TRIES:
-                    raise ClusterError(f"the mirror {self.store} cannot be written: {error.strerror or error}") from None
+                    raise ClusterError(f"the mirror {self.store} cannot be written: {getattr(error, 'strerror', None) or error}") from None
                 time.sleep(PAUSE * 2**k)
 
 
@@ -93,6 +107,12 @@ def copied(out, data, name=CHECKPOINT):
     mirror = _mirrors.get(out.resolve())
     if mirror is not None:
         mirror.save(data, name)
+        if name == CHECKPOINT:
+            count = json.loads(mirror.store.read(SAVES) or b"{}").get("count", 0) + 1
+            saves = json.dumps({"count": count, "digest": hashlib.sha256(data).hexdigest()}).encode()
+            mirror.save(saves, SAVES)
+            out.mkdir(parents=True, exist_ok=True)
+            write_atomic(out / SAVES, saves)
 
 
 def left(out):

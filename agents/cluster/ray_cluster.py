@@ -44,7 +44,7 @@ def connected(address, cores=None):
     ray = ray_of()
     quiet = {"log_to_driver": False, "logging_level": "ERROR", "configure_logging": True}
     if address == "local":
-        ray.init(num_cpus=cores or processors(), include_dashboard=False, object_store_memory=LOCAL_STORE, **quiet)
+        ray.init("local", num_cpus=cores or processors(), include_dashboard=False, object_store_memory=LOCAL_STORE, **quiet)
     else:
         why = answers(address)
         if why:

@@ -250,12 +250,13 @@ def main(argv=None):
     conditions, shown, code = len(list(_conditions(report, seeds))), {}, 0
     try:
         keep = Keep(args.keep, args.ray, about(report, agents) if args.keep or args.ray else {})
+    except ValueError as error:
+        p.error(str(error))
+    try:
         with place(args.ray) as where:
             code = played(report, agents, seeds, shown, where, keep, conditions)
     except ClusterError as error:  # before anything was sent
         raise SystemExit(f"agents.evaluate: {error}") from None
-    except ValueError as error:
-        p.error(str(error))
     if "incomplete" in report:
         print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
         if not report["results"]:
@@ -278,7 +279,11 @@ def played(report, agents, seeds, shown, where, keep, conditions):
         def tick(part, result):
             bar.update(visits, advance=len(part.given["seeds"]), description=f"visits{where.says}")
 
-        job = job_of(report, agents, seeds, where, keep, tick)
+        try:
+            job = job_of(report, agents, seeds, where, keep, tick)
+        except ValueError as error:  # what is kept is of another job
+            print(f"agents.evaluate: error: {error}", file=sys.stderr)
+            raise SystemExit(2) from None
         bar.update(visits, total=job.total(lambda part: len(part.given["seeds"])))
         try:
             evaluate(report, agents, seeds, shown, job)

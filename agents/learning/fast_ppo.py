@@ -34,13 +34,13 @@ class FastPPO(MaskablePPO):
 
     def train(self):
         """Update the policy on the rollout in the buffer."""
-        fused = isinstance(self.policy, TablePolicy) and self.policy.has_fused
-        if not fused or self.clip_range_vf is not None or self.target_kl is not None:
+        policy, usual = self.policy, self.clip_range_vf is None and self.target_kl is None and self.device.type == "cpu"
+        if not usual or not isinstance(policy, TablePolicy) or not policy.has_fused:
             super().train()
             return
         self.policy.set_training_mode(True)
         self._update_learning_rate(self.policy.optimizer)
-        clip, fused, buffer = self.clip_range(self._current_progress_remaining), self.policy.fused, self.rollout_buffer
+        clip, fused, buffer = self.clip_range(self._current_progress_remaining), policy.fused, self.rollout_buffer
         n = buffer.buffer_size * buffer.n_envs
         seen, masks = buffer.observations.reshape(n, -1), buffer.action_masks.reshape(n, -1)
         actions, before, advantages, returns = (a.reshape(n) for a in (buffer.actions, buffer.log_probs, buffer.advantages, buffer.returns))

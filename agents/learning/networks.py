@@ -172,9 +172,14 @@ class TablePolicy(_Policy):
     @property
     def fused(self):
         """The quick passes through this network."""
-        if self._fused is None:
-            self._fused = FusedTable(self)
-        return self._fused
+        at = [part.data_ptr() for part in self.parameters()]
+        if self._fused is None or self._fused[0] != at:  # the passes share the memory of the weights
+            self._fused = at, FusedTable(self)
+        return self._fused[1]
+
+    def __getstate__(self):
+        """What copies and pickles take: not the passes, which share the memory of these weights."""
+        return {name: part for name, part in self.__dict__.items() if name != "_fused"}
 
     def forward(self, obs, deterministic=False, action_masks=None):
         """As in the base class. Drawing with masks, in a rollout, is quick: one random number a table from PyTorch's generator."""

@@ -155,7 +155,7 @@ def claimed(out, resume):
 
 
 def save(out, settings, progress, algorithm):
-    """A checkpoint: RLlib's folder first, then the file that names it, so that a kill at any time leaves a whole one; last the policy."""
+    """A checkpoint: RLlib's folder first, then the file that names it, so that a kill at any time leaves a whole one."""
     name = f"checkpoint-{progress.updates:06d}"
     if progress.checkpoint != name:
         half = (out / f"{name}.tmp").absolute()
@@ -164,9 +164,9 @@ def save(out, settings, progress, algorithm):
         shutil.rmtree(out / name, ignore_errors=True)
         os.replace(half, out / name)
         progress.checkpoint = name
+    _write(out / POLICY, settings, progress, algorithm)
     state = {"settings": asdict(settings), "progress": asdict(progress)}
     write_atomic(out / STATE, (json.dumps(state, indent=1) + "\n").encode())
-    _write(out / POLICY, settings, progress, algorithm)
     for file in out.iterdir():
         if _CHECKPOINT.fullmatch(file.name) and file.name != name:
             shutil.rmtree(file, ignore_errors=True)

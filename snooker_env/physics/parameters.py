@@ -275,10 +275,10 @@ class Physics:
         >>> sn.Physics().pack().shape
         (17,)
         """
-        return self.packed.copy()
+        return self._packed.copy()
 
     @cached_property
-    def packed(self) -> Floats:
+    def _packed(self) -> Floats:
         """The same array at every access, for kernels, which only read it."""
         return np.array([
             self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law,

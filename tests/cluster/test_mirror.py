@@ -110,3 +110,32 @@ def test_the_run_is_kept_in_words(url, tmp_path):
     Mirror(url).claim(tmp_path, RUN, resume=False)
     assert json.loads(store_of(url).read("run.json")) == {"agent": "ppo_value", "seed": 3, "set": ["gamma=0"]}
     left(tmp_path)
+
+
+def test_who_resumes_goes_on_from_the_newest_checkpoint(tmp_path):
+    """A saves; B takes over and saves; A resumes. If A too has gone on, it is told so and nothing is lost."""
+    a, b, url = tmp_path / "a", tmp_path / "b", str(tmp_path / "mirror")
+    for out in (a, b):
+        out.mkdir()
+
+    def saved(out, data):
+        (out / mirror.CHECKPOINT).write_bytes(data)
+        mirror.copied(out, data)
+
+    mirror.Mirror(url).claim(a, {}, resume=False)
+    saved(a, b"100")
+    other = mirror.Mirror(url)
+    other.fetch(b)
+    other.claim(b, {}, resume=True)
+    saved(b, b"500")
+    again = mirror.Mirror(url)
+    again.fetch(a)
+    assert (a / mirror.CHECKPOINT).read_bytes() == b"500"
+    again.claim(a, {}, resume=True)
+    saved(a, b"600")
+    (b / mirror.CHECKPOINT).write_bytes(b"550")  # B has gone on by itself
+    with pytest.raises(ValueError, match="another machine"):
+        mirror.Mirror(url).fetch(b)
+    assert (b / mirror.CHECKPOINT).read_bytes() == b"550"
+    for out in (a, b):
+        mirror.left(out)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env import simulation
 from snooker_env.geometry import BALL_RADIUS, HALF_WIDTH
 from tests.refusals import FIDELITY, INF, NAN, WRONG_FIDELITIES, Z, batch, case, cushion, impact, refused, shot, strike
 
@@ -262,3 +263,19 @@ def test_table_names_are_those_of_the_presets():
         assert table.name == name and sn.Table.of(name) is table is sn.Table.of(table)
         with pytest.raises(ValueError, match="read-only"):
             table.noses[0, 0] = 1.0
+
+
+def test_a_shot_inside_a_shot_has_its_own_log(monkeypatch):
+    """As a signal handler or a trace function may start one: between the kernel and the copy of its log."""
+    first, other = ([(0.0, 0.0)], [(1.0, 0.2)], [(0.0, 0.0, 0.0)]), ([(0.0, 0.5)], [(0.3, 2.0)], [(5.0, 0.0, 0.0)])
+    want, run = sn.simulate(*first), simulation._run
+
+    def interrupted(*arguments, **more):
+        out = run(*arguments, **more)
+        monkeypatch.setattr(simulation, "_run", run)
+        sn.simulate(*other)
+        return out
+
+    monkeypatch.setattr(simulation, "_run", interrupted)
+    got = sn.simulate(*first)
+    assert np.array_equal(got.events, want.events) and np.array_equal(got.segments, want.segments) and len(want.events) > 1

@@ -167,6 +167,8 @@ def _direction(q1, q2, m1, m2):
         kappa += step
         if not low < kappa < high:
             kappa = 0.5 * (low + high)
+    else:
+        kappa = high
     r1, r2 = q1 / (kappa + m1), q2 / (kappa + m2)
     size = hypot(r1, r2)
     return r1 / size, r2 / size

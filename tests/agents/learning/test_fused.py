@@ -5,6 +5,9 @@ about 10, so they may differ by some 10 * 540 ** 0.5 * 6e-8 = 1.4e-5; a gradient
 the entropy's gradient cancel. A forgotten term, factor or mirror changes them by more than 1e-2.
 """
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 import torch
@@ -145,3 +148,18 @@ def test_gradients_of_parts_add_up(policy, met):
         found.append(policy.fused.gradient.clone())
     scale = found[1].abs().max()
     assert (found[0] + found[2] - found[1]).abs().max() < 1e-5 * scale and (found[0] - found[1]).abs().max() > 1e-2 * scale
+
+
+def test_copies_and_new_weights_have_passes_of_their_own(policy, met):
+    """After passes were made: a copy, a pickle, and weights that were put in place of others."""
+    seen, masks = met
+    draws = np.random.default_rng(1).random(N).astype(np.float32)
+    want = policy.fused.act(seen, masks, draws)[1]
+    for other in (copy.deepcopy(policy), pickle.loads(pickle.dumps(policy))):
+        assert np.array_equal(other.fused.act(seen, masks, draws)[1], want)
+    other = copy.deepcopy(policy)
+    other.fused.act(seen, masks, draws)
+    other.load_state_dict({name: 0.5 * part for name, part in policy.state_dict().items()}, assign=True)
+    with torch.no_grad():
+        plain = other.predict_values(torch.as_tensor(seen)).numpy()[:, 0]
+    assert np.allclose(other.fused.act(seen, masks, draws)[1], plain, atol=2e-5) and not np.allclose(plain, want, atol=1e-3)
