@@ -173,7 +173,10 @@ class Job:
         """The result of a part that is kept. Another job may have ended and removed it: then it is played."""
         data, part = self._store.read(f"parts/{key}.npz") if self._store else None, self._parts[key]
         if data is None:
-            return self._where.map(part.task, self._shared[part.shared], [part.given])[0]
+            played = self._where.map(part.task, self._shared[part.shared], [part.given])[0]
+            if self._store:
+                self._store.write(f"parts/{key}.npz", packed(played))
+            return played
         return unpacked(data, f"{self._store}/parts/{key}.npz")
 
     def _fill(self):

@@ -19,12 +19,12 @@ from commands.files import write_atomic
 from snooker_env.checks import refuse
 
 
-def store_of(url, field="keep"):
+def store_of(url, field="keep", only_read=False):
     """The ``Folder`` or the ``Remote`` for a path or URL. Raises ValueError, naming ``field``; ImportError without fsspec."""
     scheme, found, path = url.partition("://")
     if not found:
-        return Folder(Path(url), field)
-    return Folder(Path(path), field) if scheme == "file" else Remote(url, field)
+        return Folder(Path(url), field, only_read)
+    return Folder(Path(path), field, only_read) if scheme == "file" else Remote(url, field, only_read)
 
 
 class Folder:
@@ -36,6 +36,8 @@ class Folder:
         The folder; it is made.
     field : str
         Name of the option that gave it.
+    only_read : bool
+        Neither make the folder nor try to write there.
 
     Raises
     ------
@@ -43,8 +45,10 @@ class Folder:
         If nothing can be written there.
     """
 
-    def __init__(self, path, field="keep"):
+    def __init__(self, path, field="keep", only_read=False):
         self.path = path
+        if only_read:
+            return
         try:
             path.mkdir(parents=True, exist_ok=True)
             self.write(".tried", b"")
@@ -98,6 +102,8 @@ class Remote:
         Such as ``s3://bucket/folder``.
     field : str
         Name of the option that gave it.
+    only_read : bool
+        Do not try to write there.
 
     Raises
     ------
@@ -107,14 +113,15 @@ class Remote:
         If fsspec or its driver for this kind of URL is not installed.
     """
 
-    def __init__(self, url, field="keep"):
+    def __init__(self, url, field="keep", only_read=False):
         from fsspec.core import url_to_fs
 
         self.url = url
         try:
             self._files, self._root = url_to_fs(url)
-            self.write(".tried", b"")
-            self.remove(".tried")
+            if not only_read:
+                self.write(".tried", b"")
+                self.remove(".tried")
         except ImportError:
             raise
         except Exception as error:  # each driver has its own

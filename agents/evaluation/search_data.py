@@ -75,7 +75,7 @@ def checked(args):
 
 def read(url):
     """The data of a folder or URL: a dict of arrays as of ``agents.evaluation.searched.play``. Raises ValueError if they are incomplete."""
-    store = store_of(url, "out")
+    store = store_of(url, "out", only_read=True)
     index = store.read(INDEX)
     if index is None:
         raise refuse("out", url, "must hold complete data: give the command that makes them again")
@@ -116,6 +116,8 @@ def main(argv=None):
             except KeyboardInterrupt:
                 why, code = "interrupted", 130
                 job.keep_finished()
+            except ValueError as error:  # a part that was kept is damaged
+                why, code = str(error), 1
     except ClusterError as error:
         why, code = str(error), 1
     if code:

@@ -67,3 +67,17 @@ def test_wrong_options_are_refused(change, says, tmp_path, capsys):
     with pytest.raises(SystemExit):
         search_data.main([*COMMAND, "--positions", "12", "--out", str(tmp_path), *change])
     assert says in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
+def test_reading_writes_nothing(tmp_path):
+    with pytest.raises(ValueError, match="must hold complete data"):
+        search_data.read(str(tmp_path / "nothing"))
+    assert not (tmp_path / "nothing").exists()
+
+
+def test_a_damaged_part_is_one_line(tmp_path, capsys):
+    assert search_data.main([*COMMAND, "--positions", "24", "--out", str(tmp_path)]) == 0
+    part = next((tmp_path / "parts").iterdir())
+    part.write_bytes(part.read_bytes()[:-40])
+    assert search_data.main([*COMMAND, "--positions", "24", "--out", str(tmp_path)]) == 1
+    assert part.name in capsys.readouterr().err
