@@ -60,8 +60,8 @@ class FusedTable:
                 rows = np.arange(start, min(start + BLOCK, n))
                 here, b = slice(start, start + len(rows)), self._block(len(rows))
                 self._forward(b, rows, seen, masks)
-                kernels.draw(b.likely_, b.total_, uniform[here], b.sides, choices[here])
-                kernels.log_probabilities(b.by_table_, b.top_, b.total_, b.sides, choices[here], logs[here])
+                kernels.draw(b.likely_, uniform[here], b.sides, choices[here])
+                kernels.log_probabilities(b.by_table_, b.likely_, b.sides, choices[here], logs[here])
                 values[here] = b.value_2_[:, 0]
         return choices, values, logs
 
@@ -80,8 +80,8 @@ class FusedTable:
                 m = self._forward(b, here, seen, masks)
                 torch.sum(torch.mul(b.likely, b.by_table, out=b.d_by_table), 1, out=b.mean)
                 kernels.ppo_gradient(
-                    here, b.by_table_, b.top_, b.likely_, b.total_, b.mean_, b.sides, b.value_2_, actions, before, advantages, returns,
-                    clip, entropy_weight, value_weight, size, b.d_by_table_, b.d_value_2_, sums,
+                    here, b.by_table_, b.likely_, b.mean_, b.sides, b.value_2_, actions, before, advantages, returns, clip, entropy_weight,
+                    value_weight, size, b.d_by_table_, b.d_value_2_, sums,
                 )  # fmt: skip
                 self._backward(b, m)
         return sums / size
@@ -110,8 +110,7 @@ class FusedTable:
         self._linear("scores", b.joint, b.scores)
         self._linear("value_2", self._linear("value_1", b.context_2, b.value_1).relu_(), b.value_2)
         kernels.mask_scores(rows, masks, b.sides, b.by_table_)
-        torch.amax(b.by_table, 1, keepdim=True, out=b.top)
-        torch.sum(torch.sub(b.by_table, b.top, out=b.likely).exp_(), 1, out=b.total)
+        torch.softmax(b.by_table, 1, out=b.likely)
         return m
 
     def _learn(self, name, d, x):
@@ -185,8 +184,7 @@ class _Block(SimpleNamespace):
         made["balls"], made["pots"] = torch.zeros(most, BALL_INPUTS), torch.zeros(n * POTS, POT_ENTRIES)
         made["context"], made["d_context"] = torch.zeros(n, at + STATE + 3), torch.zeros(n, at)
         made["by_table"], made["d_by_table"] = made["scores"].view(n, CHOICES), made["d_scores"].view(n, CHOICES)
-        made["likely"], made["top"] = torch.zeros(n, CHOICES), torch.zeros(n, 1)
-        made["total"], made["mean"] = torch.zeros(n), torch.zeros(n)
+        made["likely"], made["mean"] = torch.zeros(n, CHOICES), torch.zeros(n)
         super().__init__(**made, **{f"{name}_": array.numpy() for name, array in made.items()})
         self.width, self.at = width, at
         self.group, self.first, self.sides = np.zeros(most, np.int64), np.zeros(n + 1, np.int64), np.zeros(n, np.float32)

@@ -21,6 +21,7 @@ _TOPS, _TURN = len(TOPS), (len(SIDES) - 1) * len(TOPS)
 _X1, _X2, _X3 = POT_X
 NEVER = np.float32(-1e8)
 """The score of a choice that is not available, as in ``sb3_contrib``."""
+_LEAST = 1e-30  # smaller ones are too near to what float32 can hold
 _ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)  # literals are float64, and half as many of them fit into a register
 
 
@@ -189,11 +190,11 @@ def mask_scores(rows, masks, sides, scores):
 
 
 @entry
-def draw(likely, total, uniform, sides, choices):
-    """A choice for each row of likelihoods (n, k) with these sums, by inversion: ``uniform`` (n,) in [0, 1). None of likelihood 0."""
+def draw(likely, uniform, sides, choices):
+    """A choice for each row of probabilities (n, k), by inversion: ``uniform`` (n,) in [0, 1). None of probability 0."""
     for j in range(likely.shape[0]):
         row = likely[j]
-        left, pick = np.float64(uniform[j]) * total[j], 0
+        left, pick = np.float64(uniform[j]), 0
         for c in range(row.shape[0]):
             if row[c] > 0:
                 pick = c
@@ -203,42 +204,52 @@ def draw(likely, total, uniform, sides, choices):
         choices[j] = pick if sides[j] > 0.0 else mirrored(pick)
 
 
+@kernel
+def scale_of(scores, likely, pick):
+    """Logarithm of the sum of exp(scores), from a choice's score and probability, or from the likeliest one's if that is too small."""
+    if likely[pick] < _LEAST:
+        for c in range(likely.shape[0]):
+            if likely[c] > likely[pick]:
+                pick = c
+    return scores[pick] - log(np.float64(likely[pick]))
+
+
 @entry
-def log_probabilities(scores, top, total, sides, choices, out):
-    """Logarithm of the probability of each row's choice, from scores (n, k), maxima (n, 1), sums of exp(scores - maximum)."""
+def log_probabilities(scores, likely, sides, choices, out):
+    """Logarithm of the probability of each row's choice, from scores and probabilities (n, k)."""
     for j in range(scores.shape[0]):
         pick = choices[j] if sides[j] > 0.0 else mirrored(choices[j])
-        out[j] = scores[j, pick] - top[j, 0] - log(np.float64(total[j]))
+        out[j] = scores[j, pick] - scale_of(scores[j], likely[j], pick)
 
 
 @entry
-def ppo_gradient(rows, scores, top, likely, total, mean, sides, values, actions, before, advantages, returns, clip, entropy_weight,
-                 value_weight, batch, d_scores, d_values, sums):  # fmt: skip
+def ppo_gradient(rows, scores, likely, mean, sides, values, actions, before, advantages, returns, clip, entropy_weight, value_weight, batch,
+                 d_scores, d_values, sums):  # fmt: skip
     """The gradient of PPO's loss, a mean over ``batch`` rows of which these are some.
 
-    scores, top, total: as in ``log_probabilities``; likely = exp(scores - top), values (n, 1); mean: sums of likely * scores.
+    scores, likely: as in ``log_probabilities``; values (n, 1); mean: sums of likely * scores.
     actions, before (logarithms of the old probabilities), advantages, returns: of the whole rollout, read at ``rows``. The sums of the
     rows' policy losses, squared errors of the values, entropies, clipped ratios and approximate KL divergences are added to ``sums``.
     """
     for j in range(rows.shape[0]):
         at = rows[j]
-        action = actions[at]
+        action, own, likelihood = actions[at], scores[j], likely[j]
         pick = action if sides[j] > 0.0 else mirrored(action)
-        scale = top[j, 0] + log(np.float64(total[j]))
-        change = scores[j, pick] - scale - before[at]
+        scale = scale_of(own, likelihood, pick)
+        change = own[pick] - scale - before[at]
         ratio, advantage = exp(change), advantages[at]
         surrogate, clipped = advantage * ratio, advantage * min(max(ratio, 1.0 - clip), 1.0 + clip)
         pull = surrogate if surrogate <= clipped else 0.0
-        entropy = scale - np.float64(mean[j]) / total[j]
+        entropy = scale - mean[j]
         error = values[j, 0] - returns[at]
         sums[0] -= min(surrogate, clipped)
         sums[1] += error * error
         sums[2] += entropy
         sums[3] += abs(ratio - 1.0) > clip
         sums[4] += ratio - 1.0 - change
-        weight = entropy_weight / (batch * total[j])
-        even = pull / (batch * total[j]) + weight * (entropy - scale)
-        own, likelihood, out = scores[j], likely[j], d_scores[j]
+        weight = entropy_weight / batch
+        even = pull / batch + weight * (entropy - scale)
+        out = d_scores[j]
         a, b = np.float32(weight), np.float32(even)
         for c in range(own.shape[0]):
             out[c] = likelihood[c] * (a * own[c] + b)
