@@ -10,7 +10,7 @@ w(a) is the width of the lateral window of the pocket at the angle a off its axi
 jaws included, to a millimetre (tests/benchmarks/test_pocket_windows.py). The window is smaller for a fast ball and larger for a slow one.
 """
 
-from math import acos, cos, hypot, radians
+from math import acos, cos, radians, sqrt
 
 import numpy as np
 
@@ -23,6 +23,7 @@ _CORNER_ANGLE, _CORNER_WINDOW = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.0
 _MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0), (0.073, 0.071, 0.063, 0.043, 0.018, 0.0)
 # Squared cosines of the last angles, less a margin far above rounding: below them a window is certainly closed.
 _CORNER_SHUT, _MIDDLE_SHUT = (cos(radians(angle)) ** 2 - 1e-9 for angle in (_CORNER_ANGLE[-1], _MIDDLE_ANGLE[-1]))
+_CORNER_WIDEST, _MIDDLE_WIDEST = max(_CORNER_WINDOW), max(_MIDDLE_WINDOW)
 
 POT_BALL, POT_POCKET, GHOST_X, GHOST_Y, COS_CUT, TOLERANCE = range(6)
 """Columns of a pot: object ball, pocket, place of the ghost ball [m], cosine of the cut angle, tolerance of the aim [rad]."""
@@ -112,13 +113,13 @@ def pot_at(positions, on_table, ball, k, d, least):
     shut = (_MIDDLE_SHUT if middle else _CORNER_SHUT) * (dx * dx + dy * dy)
     if dx * (bx - cx) + dy * (by - cy) <= 0.0 or along <= 0.0 or along * along < shut:
         return 0.0, 0.0, 0.0, 0.0
-    run = hypot(dx, dy)
+    run = sqrt(dx * dx + dy * dy)
     if run < 1e-9:
         return 0.0, 0.0, 0.0, 0.0
     dx, dy = dx / run, dy / run
     gx, gy = bx - d * dx, by - d * dy
     px, py = gx - cx, gy - cy
-    path = hypot(px, py)
+    path = sqrt(px * px + py * py)
     if path < 1e-9:
         return 0.0, 0.0, 0.0, 0.0
     if abs(gx) > HALF_WIDTH - 0.5 * d + 1e-9 or abs(gy) > HALF_LENGTH - 0.5 * d + 1e-9:  # the ghost ball would be in the cushion
@@ -126,8 +127,11 @@ def pot_at(positions, on_table, ball, k, d, least):
     cos_cut = (px * dx + py * dy) / path
     if cos_cut < 0.05:  # a cut of more than 87 degrees
         return 0.0, 0.0, 0.0, 0.0
+    of_width = d * cos_cut / (2.0 * run * path)
+    if (_MIDDLE_WIDEST if middle else _CORNER_WIDEST) * of_width <= least:
+        return 0.0, 0.0, 0.0, 0.0
     width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], middle)
-    tolerance = width / (2.0 * run) * d * cos_cut / path
+    tolerance = width * of_width
     if width <= 0.0 or tolerance <= least:
         return 0.0, 0.0, 0.0, 0.0
     if not clear_segment(positions, on_table, bx, by, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], ball, 0, d):

@@ -135,6 +135,22 @@ def test_the_gradient_is_pytorchs_own(policy, met):
     assert np.allclose(figures, [x.item() for x in expected], rtol=1e-4, atol=1e-6) and 0.2 < clipped < 0.9
 
 
+def test_choices_of_nearly_no_probability_keep_their_logarithm(policy, met):
+    """Those of a rollout may become so unlikely by an update that float32 holds their probability no longer."""
+    with torch.no_grad():
+        policy.action_net.score.weight.mul_(300.0)
+    seen, masks = met
+    rows, nothing = np.arange(N), np.zeros(N, np.float32)
+    with torch.no_grad():
+        scores = policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
+    choices = np.where(masks, scores, np.inf).argmin(1)
+    values, logs, entropy = plain(policy, seen, masks, choices)
+    assert (logs < -110.0).sum() > 20  # exp(-103) is the smallest that float32 holds
+    policy.fused.zero_grad()
+    found = policy.fused.ppo_gradient(rows, seen, masks, choices, logs.detach().numpy(), nothing, nothing, CLIP, 0.0, 0.0)
+    assert abs(found[4]) < 1e-5 and np.isclose(found[2], entropy.mean().item(), rtol=1e-4)
+
+
 def test_gradients_of_parts_add_up(policy, met):
     """And a block of another size leaves nothing behind."""
     seen, masks = met
