@@ -4,19 +4,26 @@ numba makes machine code of every function that it compiles, together with all t
 it is never run, and it takes a quarter of the time of a first shot. So an inner kernel has a library that is complete when it has been
 optimised, and a caller finds it under an entry point that is only a name.
 
+And numba works out anew, wherever an operator or a function stands, what it gives for the types at hand, out of about ten candidates: a
+seventh of the time. While inner kernels are compiled, the answer for the same types is that of the first time.
+
 This uses parts of numba that are not public. With a numba that lacks them, inner kernels are compiled as numba does it: the results are
 the same, later.
 """
 
+from contextlib import contextmanager
 from typing import Any
 
 from numba.core import codegen, compiler
 from numba.core.registry import CPUDispatcher
+from numba.core.types.functions import BaseFunction
 
 _PARTS = (
     (codegen.JITCodeLibrary, ("_finalize_final_module", "_finalize_dynamic_globals", "_verify_declare_only_symbols")),
     (compiler.CompileResult, ("_replace", "entry_point")),
     (CPUDispatcher, ("add_overload",)),
+    (compiler.Compiler, ("compile_extra",)),
+    (BaseFunction, ("get_call_type",)),
 )
 KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names)
 """Whether this numba has the parts."""
@@ -31,6 +38,31 @@ class _Library(codegen.JITCodeLibrary):
         self._finalized = True
 
 
+_found: dict[Any, Any] = {}
+_find: Any = getattr(BaseFunction, "get_call_type", None)
+
+
+def _find_once(function, context, args, kws):
+    """What ``function`` gives for these types: found before, if that depends on the types alone, or by ``_find``."""
+    called, known = function.typing_key, getattr(function, "_impl_keys", {})
+    signature = _found.get((called, args)) if not kws else None
+    if signature is None or signature.args not in known:
+        signature = _find(function, context, args, kws)
+        if not kws and known.get(signature.args) is called:  # else it was compiled for its caller's options
+            _found[called, args] = signature
+    return signature
+
+
+@contextmanager
+def _finding_once():
+    """Let numba use ``_find_once``. Whoever compiles holds numba's lock: no other thread compiles meanwhile."""
+    before, BaseFunction.get_call_type = BaseFunction.get_call_type, _find_once
+    try:
+        yield
+    finally:
+        BaseFunction.get_call_type = before
+
+
 class _Compiler(compiler.Compiler):
     """Compiles one inner kernel."""
 
@@ -39,6 +71,10 @@ class _Compiler(compiler.Compiler):
         flags = flags.copy()
         flags.no_compile = True
         super().__init__(typingctx, targetctx, _Library(made, "inner kernel"), args, return_type, flags, locals)
+
+    def compile_extra(self, func):
+        with _finding_once():
+            return super().compile_extra(func)
 
 
 class EntryPoint:
