@@ -20,10 +20,12 @@ class BoolMasks(MaskableRolloutBuffer):
     """A rollout buffer whose masks are bool: a quarter of the memory, 9 instead of 35 MB for 16,384 shots."""
 
     action_space: Any
+    action_masks: Any = None
 
     def reset(self):
         self.mask_dims = int(self.action_space.n)
-        self.action_masks = np.ones((self.buffer_size, self.n_envs, self.mask_dims), np.bool_)
+        if self.action_masks is None:  # later rollouts write over it
+            self.action_masks = np.ones((self.buffer_size, self.n_envs, self.mask_dims), np.bool_)
         RolloutBuffer.reset(self)
 
 
