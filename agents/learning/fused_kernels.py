@@ -10,7 +10,7 @@ import numpy as np
 
 from snooker_env.game import N_BALLS
 from snooker_env.kernels import entry, kernel
-from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, TOPS
+from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, STROKES, TOPS
 
 from ..features.pot_features import BALL_X, CUT, POT_ENTRIES, POT_X
 
@@ -173,20 +173,23 @@ def mirrored(choice):
 
 
 @entry
-def mask_scores(rows, masks, sides, scores):
-    """Set the scores (n, choices) of choices that masks[rows] excludes to ``NEVER``, in place; sides are exchanged on mirrored tables."""
+def mask_scores(rows, masks, sides, scores, out):
+    """The scores (n, choices) of the choices that masks[rows] allows, ``NEVER`` for others; sides are exchanged on mirrored tables.
+
+    scores (n * POTS, STROKES or more): of each pot's strokes.
+    """
     for j in range(rows.shape[0]):
-        own, out = masks[rows[j]], scores[j]
-        if sides[j] > 0.0:
-            for c in range(own.shape[0]):
-                if not own[c]:
-                    out[c] = NEVER
-        else:
-            for c in range(0, own.shape[0], _TOPS):
-                other = mirrored(c)
-                for t in range(_TOPS):
-                    if not own[other + t]:
-                        out[c + t] = NEVER
+        own, row = masks[rows[j]], out[j]
+        for p in range(POTS):
+            of_pot, at = scores[POTS * j + p], STROKES * p
+            if sides[j] > 0.0:
+                for c in range(STROKES):
+                    row[at + c] = of_pot[c] if own[at + c] else NEVER
+            else:
+                for c in range(0, STROKES, _TOPS):
+                    other = mirrored(at + c)
+                    for t in range(_TOPS):
+                        row[at + c + t] = of_pot[c + t] if own[other + t] else NEVER
 
 
 @entry
