@@ -144,7 +144,7 @@ def test_choices_of_nearly_no_probability_keep_their_logarithm(policy, met):
     with torch.no_grad():
         scores = policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
     choices = np.where(masks, scores, np.inf).argmin(1)
-    values, logs, entropy = plain(policy, seen, masks, choices)
+    _, logs, entropy = plain(policy, seen, masks, choices)
     assert (logs < -110.0).sum() > 20  # exp(-103) is the smallest that float32 holds
     policy.fused.zero_grad()
     found = policy.fused.ppo_gradient(rows, seen, masks, choices, logs.detach().numpy(), nothing, nothing, CLIP, 0.0, 0.0)
