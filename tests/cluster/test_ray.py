@@ -4,6 +4,7 @@ import os
 import sys
 import threading
 import time
+from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import Path
 
@@ -16,10 +17,13 @@ from ray.cluster_utils import Cluster as Nodes
 from agents.cluster.faults import ClusterError
 from agents.cluster.job import Here, Job
 from agents.cluster.ray_cluster import connected
-from agents.evaluation import protocol, visits
+from agents.cluster.store import Folder, unpacked
+from agents.evaluation import protocol, searched, visits
 from agents.evaluation.entrants import Entrant
+from agents.evaluation.travel import sent
 from agents.learning import self_play
 from snooker_env.benchmark import tables_of
+from tests.cluster.players import Slow
 
 ROOT = Path(__file__).resolve().parents[2]
 NODE = {"num_cpus": 1, "object_store_memory": 100 * 2**20, "include_dashboard": False}
@@ -41,9 +45,11 @@ def nodes(tmp_path, monkeypatch):
     """Two nodes with a core each, and the second of them; all their processes end with the test."""
     monkeypatch.setenv("NOTED", str(tmp_path / "noted"))
     monkeypatch.setenv("SLOW", "0.15")
+    monkeypatch.setenv("HANGS", str(tmp_path / "hangs"))
     made = Nodes(initialize_head=True, head_node_args=NODE)
     try:
-        second = made.add_node(**{name: value for name, value in NODE.items() if name != "include_dashboard"})
+        node = {name: value for name, value in NODE.items() if name != "include_dashboard"}
+        second = made.add_node(**node, env_vars={"DIES": "1"})
         made.wait_for_nodes()
         yield made, second
     finally:
@@ -57,6 +63,24 @@ def cluster(nodes):
         yield found
     finally:
         found.close()
+
+
+@contextmanager
+def killed(nodes, tmp_path, ready=lambda: True):
+    """The second node is killed amid a part at which it hangs, once all is ``ready``."""
+    hangs = tmp_path / "hangs"
+    hangs.touch()
+
+    def kill():
+        while not (hangs.read_text() and ready()):
+            time.sleep(0.05)
+        nodes[0].remove_node(nodes[1], allow_graceful=False)
+
+    killer = threading.Thread(target=kill, daemon=True)
+    killer.start()
+    yield
+    killer.join(60)
+    assert nodes[1] not in nodes[0].list_all_nodes()
 
 
 def noted(tmp_path):
@@ -90,13 +114,9 @@ def test_two_nodes_play_what_one_machine_plays(cluster, monkeypatch):
 def test_a_node_killed_amid_an_evaluation_is_survived_and_nothing_counts_twice(nodes, cluster, tmp_path, monkeypatch):
     monkeypatch.setattr(visits, "SIZE", 5)
     agent, seeds, told = Entrant.of("tests.cluster.players:Noted"), tables_of("held_out", 60), []
-
-    def tick(part, result):
-        told.append(part.given["first"])
-        if len(told) == 3:
-            nodes[0].remove_node(nodes[1], allow_graceful=False)  # while it plays
-
-    found = protocol.play_agent(agent, AT, seeds, 100, 100, False, job_of([agent], seeds, cluster, tick))
+    job = job_of([agent], seeds, cluster, lambda part, result: told.append(part.given["first"]))
+    with killed(nodes, tmp_path, lambda: len(told) >= 3):
+        found = protocol.play_agent(agent, AT, seeds, 100, 100, False, job)
     begun = [process for process, decision, _ in noted(tmp_path) if decision == 0]
     assert sorted(told) == list(range(0, 60, 5)) and len(begun) > 12  # some part was begun twice
     monkeypatch.delenv("NOTED")
@@ -191,6 +211,45 @@ def test_the_data_of_imitation_are_the_same(cluster, monkeypatch):
     there = np.ones(picks.shape, bool)
     here, there_too = (Expert(env, 1, np.random.default_rng(0), where=where).worth(picks, there) for where in (None, cluster))
     assert np.array_equal(here, there_too) and here.any()
+
+
+def test_a_node_killed_amid_a_search_for_data_is_survived_and_nothing_counts_twice(nodes, cluster, tmp_path, monkeypatch):
+    agent, told = sent(Entrant.of("tests.cluster.players:Thinking"), 0), []
+    parts = searched.parts_of(6 * searched.TABLES * searched.ROUNDS, 0, AT | {"layout": "random:6"}, 30)
+    store = Folder(tmp_path / "data")
+    with killed(nodes, tmp_path, lambda: len(told) >= 2):
+        Job(parts, {"search": agent}, cluster, store, {}, lambda part, result: told.append(part.given["first"])).finish()
+    begun = [process for process, decision, _ in noted(tmp_path) if decision == 0]
+    assert sorted(told) == [searched.TABLES * k for k in range(6)] and len(begun) > 6  # some part was begun twice
+    monkeypatch.delenv("NOTED")
+    alone = Job(parts, {"search": agent}, Here(), Folder(tmp_path / "alone"), {})
+    alone.finish()
+    assert store.names("parts") == {f"{alone.key(part)}.npz" for part in parts}
+    for name in store.names("parts"):
+        there, here = (unpacked(Folder(tmp_path / folder).read(f"parts/{name}"), name) for folder in ("data", "alone"))
+        assert there.keys() == here.keys() and len(here["scores"]) == searched.TABLES * searched.ROUNDS
+        assert all(np.array_equal(one, there[what], equal_nan=one.dtype.kind == "f") for what, one in here.items())
+
+
+def test_a_node_killed_amid_the_data_of_imitation_is_survived_and_nothing_counts_twice(nodes, cluster, tmp_path, monkeypatch):
+    """In the second of three rounds, while both nodes are at work."""
+    from agents.learning.imitation import Expert
+    from snooker_env import SnookerVectorEnv
+
+    monkeypatch.setattr(self_play, "SLICE", 3)
+    env = SnookerVectorEnv(36, action="discrete", noise="club", layout="random:9")
+    env.reset(seed=5)
+    picks = np.array([np.flatnonzero(mask)[[1, 8, 20]] for mask in env.action_masks()])
+    there, expert = np.ones(picks.shape, bool), Expert(env, 1, np.random.default_rng(0), where=cluster)
+    expert._sent["ahead"] = Slow(1.0)
+    rounds = [expert.worth(picks, there)]
+    with killed(nodes, tmp_path):
+        rounds.append(expert.worth(picks, there))
+    rounds.append(expert.worth(picks, there))
+    assert len(noted(tmp_path)) > 3 * 12  # some slice was begun twice
+    monkeypatch.delenv("NOTED")
+    expert = Expert(env, 1, np.random.default_rng(0))
+    assert all(np.array_equal(expert.worth(picks, there), one) and one.any() for one in rounds)
 
 
 def test_nothing_is_left_running():
