@@ -64,5 +64,5 @@ def test_the_same_job_goes_on_with_what_was_kept(holder, end):
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "runs").write_text("a file")
-    with pytest.raises(ValueError, match="keep = .*must be a folder that can be written"):
+    with pytest.raises(ValueError, match=r"keep = .*must be a folder that can be written"):
         Keep(None, "local", ABOUT)

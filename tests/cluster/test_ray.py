@@ -1,7 +1,6 @@
 """Is what a cluster plays what one machine plays, even if a node dies in the middle? On two nodes of Ray on this machine."""
 
 import os
-import sys
 import threading
 import time
 from contextlib import contextmanager
@@ -14,7 +13,7 @@ import pytest
 pytest.importorskip("ray", reason='Ray is not installed: pip install -e ".[cluster]"')
 from ray.cluster_utils import Cluster as Nodes
 
-from agents.cluster.faults import ClusterError
+from agents.cluster.faults import ClusterError, answers
 from agents.cluster.job import Here, Job
 from agents.cluster.ray_cluster import connected
 from agents.cluster.store import Folder, unpacked
@@ -22,7 +21,7 @@ from agents.evaluation import protocol, searched, visits
 from agents.evaluation.entrants import Entrant
 from agents.evaluation.travel import sent
 from agents.learning import self_play
-from snooker_env.benchmark import tables_of
+from snooker_env.benchmark import processor, tables_of
 from tests.cluster.players import Slow
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -181,6 +180,51 @@ def test_what_befalls_a_worker_is_one_line(cluster):
         assert "\n" not in str(error.value)
 
 
+def test_a_worker_that_ray_ends_for_its_memory_is_one_line(tmp_path, monkeypatch):
+    """On a node whose limit is already passed; the head, which plays nothing, has none of it."""
+    monkeypatch.setenv("NOTED", str(tmp_path / "noted"))
+    monkeypatch.setenv("SLOW", "60")
+    made, found = Nodes(initialize_head=True, head_node_args=NODE | {"num_cpus": 0}), None
+    try:
+        found = connected(made.address)
+        limit = {"RAY_memory_usage_threshold": "0.001", "RAY_memory_monitor_refresh_ms": "100"}
+        made.add_node(num_cpus=1, object_store_memory=100 * 2**20, env_vars=limit)
+        made.wait_for_nodes()
+        agent, seeds = Entrant.of("tests.cluster.players:Noted"), tables_of("held_out", 2)
+        with pytest.raises(
+            ClusterError, match=r"^a worker ran out of memory: give the node fewer workers \(ray start --num-cpus\) or more"
+        ):
+            protocol.play_agent(agent, AT, seeds, 100, 100, False, job_of([agent], seeds, found))
+    finally:
+        if found is not None:
+            found.close()
+        made.shutdown()
+
+
+def test_a_cluster_on_this_machine_is_its_own_whatever_the_environment_says(nodes, monkeypatch):
+    monkeypatch.setenv("RAY_ADDRESS", nodes[0].address)
+    found = connected("local", 1)
+    try:
+        assert found._head != nodes[0].address and found.cores == 1
+    finally:
+        found.close()
+
+
+def test_processors_that_differ_are_said_in_one_line(nodes, tmp_path, capsys):
+    made, _ = nodes
+    connected(made.address).close()
+    assert "processor" not in capsys.readouterr().err
+    (tmp_path / "sitecustomize.py").write_text("import commands.provenance as its\nits.processor = lambda: 'Other Processor 9000'\n")
+    made.add_node(num_cpus=1, object_store_memory=100 * 2**20, env_vars={"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"})
+    made.wait_for_nodes()
+    connected(made.address).close()
+    (line,) = [line for line in capsys.readouterr().err.splitlines() if "processor" in line]
+    both = ", ".join(sorted(["Other Processor 9000", processor()]))
+    assert (
+        line == f"the nodes have different processors ({both}): the last bits of a network's results may differ from those of one machine"
+    )
+
+
 @pytest.mark.parametrize("lack", ["numba is missing", "numpy is older"])
 def test_a_node_with_other_software_or_none_is_refused(nodes, tmp_path, lack):
     """A third node finds another version of a library first, or one that cannot be imported."""
@@ -256,11 +300,9 @@ def test_nothing_is_left_running():
     """After a cluster on this machine alone was closed."""
     found = connected("local")
     address = found._head
+    assert answers(address, 1.0) is None
     found.close()
-    from agents.cluster.faults import answers
-
     began = time.monotonic()
     while answers(address, 1.0) is None and time.monotonic() - began < 20:
         time.sleep(0.5)
     assert answers(address, 1.0) is not None
-    assert "ray" in sys.modules
