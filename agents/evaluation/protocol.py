@@ -120,7 +120,8 @@ def parser():
         nargs="+",
         required=True,
         metavar="AGENT",
-        help=f"NAME, MODEL, LABEL=PATH,PATH,... or MODULE:CLASS; NAME: {', '.join((*NAMES, *pretrained()))}",
+        help="NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... or MODULE:CLASS; NAME: "
+        + ", ".join((*NAMES, *pretrained())),
     )
     p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
     p.add_argument(
