@@ -11,7 +11,7 @@ Files of a run folder:
 * ``model.zip``: the trained model. ``python -m agents.evaluate`` and --start read it as plain data; ``PPO.load`` of Stable-Baselines3
   unpickles it.
 * ``results.json``: every figure. ``tb/``: the curves (``tensorboard --logdir runs``).
-* ``train.lock``, while the run goes on: two runs cannot share a folder (``agents/learning/lock.py``).
+* ``train.lock``, while the run goes on: two runs cannot share a folder (``commands/lock.py``).
 
 Where to read on: ``agents/features/`` has the observations, ``agents/hyperparams/`` the settings of each agent, ``agents/learning/`` the
 networks, the expert iteration, the imitation and the files of a run, ``agents/evaluation/`` the evaluation. This file has the settings and

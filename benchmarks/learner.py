@@ -7,13 +7,11 @@ tables and the update from it. Both trees take turns, round by round, each in a 
 slows both alike. The times are processor times: what other processes take is not counted. Medians over the rounds.
 """
 
-import hashlib
 import json
 import os
 import subprocess
 import sys
 import tarfile
-import tempfile
 from contextlib import ExitStack
 from io import BytesIO
 from pathlib import Path
@@ -21,6 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from ._common.command import Command, at_least, run, save_json
+from ._common.kept import kept_folder
 
 ROOT = Path(__file__).parents[1]
 WORKER = Path(__file__).parent / "_common" / "learner_worker.py"
@@ -34,14 +33,13 @@ def tree_of(commit):
     if found.returncode:
         raise SystemExit(f"--against = {commit!r}: must be a commit that git finds in {ROOT}")
     name = found.stdout.strip()
-    folder = Path(tempfile.gettempdir()) / f"snooker_env_{hashlib.sha256(f'{ROOT}{name}'.encode()).hexdigest()[:16]}"
-    if not folder.exists():  # made aside and moved, so that a second process never sees half of it
-        aside = Path(tempfile.mkdtemp(dir=folder.parent))
+
+    def make(folder):
         archive = subprocess.run(["git", "archive", name], cwd=ROOT, capture_output=True, check=True).stdout
         with tarfile.open(fileobj=BytesIO(archive)) as files:
-            files.extractall(aside, filter="data")
-        os.replace(aside, folder)
-    return folder
+            files.extractall(folder, filter="data")
+
+    return kept_folder(f"commit_{name[:16]}", make)
 
 
 def started(tree, agent, steps, seed):

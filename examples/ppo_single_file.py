@@ -20,7 +20,7 @@ from gymnasium.wrappers.vector import RecordEpisodeStatistics
 from torch import nn
 from torch.distributions import Categorical
 
-import snooker_env  # noqa: F401 - registers Snooker-v0
+from snooker_env.tasks import LEVELS  # snooker_env registers Snooker-v0
 
 TABLES, STEPS = 64, 128  # a rollout: so many shots on each of so many tables
 BATCH, EPOCHS = 2048, 4
@@ -78,7 +78,7 @@ def main(argv=None):
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--steps", type=int, default=300_000, help="shots, rounded up to whole rollouts [300000]")
     parser.add_argument("--seed", type=int, default=0, help="of tables, weights and exploration [0]")
-    parser.add_argument("--noise", default="professional", help="execution noise [professional]")
+    parser.add_argument("--noise", default="professional", choices=tuple(LEVELS), help="execution noise [professional]")
     parser.add_argument("--out", default="policy.npz", help="where the policy is written [policy.npz]")
     given = parser.parse_args(argv)
     if given.steps < 1:

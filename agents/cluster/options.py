@@ -3,6 +3,9 @@
 from contextlib import contextmanager
 from pathlib import Path
 
+from commands.lock import Lock
+from snooker_env.checks import refuse
+
 from .faults import split_address
 from .job import Here, digest_of
 from .store import Folder, store_of
@@ -51,6 +54,8 @@ def place(address, threads=None):
 class Keep:
     """Where the parts of a job are kept: at ``--keep``; with ``--ray`` alone in a folder named after the job, until it is complete.
 
+    As a context: that folder belongs to one job at a time, since the one that ends removes it.
+
     Parameters
     ----------
     url : str, optional
@@ -64,12 +69,32 @@ class Keep:
     ----------
     store : Folder, Remote or None
         None: nothing is kept.
+
+    Raises
+    ------
+    ValueError
+        If nothing can be written there, or another process plays the same job and has no ``--keep`` either.
     """
 
     def __init__(self, url, address, about):
-        self._own = url is None
-        where = url or (str(KEPT / f"{about['command']}-{digest_of(about)[:12]}") if address else None)
-        self.about, self.store = about, None if where is None else store_of(where)
+        self.about, self.store, self._lock = about, None, None
+        if url is not None:
+            self.store = store_of(url)
+        elif address is not None:
+            folder = KEPT / f"{about['command']}-{digest_of(about)[:12]}"
+            try:
+                KEPT.mkdir(parents=True, exist_ok=True)
+                self._lock = Lock(folder, "keep", folder.with_name(f"{folder.name}.lock"))  # beside it: the folder is removed
+            except OSError as error:
+                raise refuse("keep", str(folder), f"must be a folder that can be written ({error.strerror})") from None
+            self.store = store_of(str(folder))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error) -> None:
+        if self._lock is not None:
+            self._lock.release()
 
     def ends(self, complete):
         """What becomes of the parts that were not used, in words; ``complete``: whether any part of the result is there."""
@@ -79,5 +104,5 @@ class Keep:
 
     def done(self):
         """The job is complete, its results are written: a folder of its own goes."""
-        if self._own and isinstance(self.store, Folder):
+        if self._lock is not None and isinstance(self.store, Folder):
             self.store.clear()

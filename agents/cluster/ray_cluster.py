@@ -134,13 +134,13 @@ class Cluster:
         return max(1, QUEUED * self.cores)
 
     def check_nodes(self):
-        """Raise ClusterError if a node lacks the package or holds other versions. Returns the processors' names."""
+        """Raise ClusterError if a node lacks the package or holds other versions. Different processors are reported on stderr."""
         from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy as Affinity
 
         nodes = {node["NodeID"]: node["NodeManagerAddress"] for node in self._ray.nodes() if node["Alive"]}
         probe = self._ray.remote(num_cpus=0, max_retries=1)(_probe())
         asked = {probe.options(scheduling_strategy=Affinity(node, soft=False)).remote(): where for node, where in nodes.items()}
-        late, found = list(asked), []
+        late, kinds = list(asked), set()
         while late:
             ended = self.wait(late)
             for ref in ended:
@@ -153,9 +153,11 @@ class Cluster:
                 differs = difference(software(), what["software"])
                 if differs:
                     raise ClusterError(f"the node {asked[ref]} holds other software: {differs}. Install the same on every node")
-                found.append(what["processor"])
+                kinds.add(what["processor"])
             late = [ref for ref in late if ref not in ended]
-        return found
+        if len(kinds) > 1:
+            differ = "the last bits of a network's results may differ from those of one machine"
+            print(f"the nodes have different processors ({', '.join(sorted(kinds))}): {differ}", file=sys.stderr)
 
     def put(self, shared):
         """Put shared data into the object store, once for all parts."""

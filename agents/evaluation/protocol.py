@@ -120,7 +120,8 @@ def parser():
         nargs="+",
         required=True,
         metavar="AGENT",
-        help=f"NAME, MODEL, LABEL=PATH,PATH,... or MODULE:CLASS; NAME: {', '.join((*NAMES, *pretrained()))}",
+        help="NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... or MODULE:CLASS; NAME: "
+        + ", ".join((*NAMES, *pretrained())),
     )
     p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
     p.add_argument(
@@ -252,18 +253,19 @@ def main(argv=None):
         keep = Keep(args.keep, args.ray, about(report, agents) if args.keep or args.ray else {})
     except ValueError as error:
         p.error(str(error))
-    try:
-        with place(args.ray) as where:
-            code = played(report, agents, seeds, shown, where, keep, conditions)
-    except ClusterError as error:  # before anything was sent
-        raise SystemExit(f"agents.evaluate: {error}") from None
-    if "incomplete" in report:
-        print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
-        if not report["results"]:
-            return code
-    write(report, shown, args)
-    if not code:
-        keep.done()
+    with keep:
+        try:
+            with place(args.ray) as where:
+                code = played(report, agents, seeds, shown, where, keep, conditions)
+        except ClusterError as error:  # before anything was sent
+            raise SystemExit(f"agents.evaluate: {error}") from None
+        if "incomplete" in report:
+            print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
+            if not report["results"]:
+                return code
+        write(report, shown, args)
+        if not code:
+            keep.done()
     return code
 
 

@@ -34,6 +34,8 @@ def file_of(path, field):
 def load_trained(path, field):
     """The ``Trained`` of a model's .zip or a run's folder. Raises ValueError, naming ``field``, if train.py did not make it."""
     file = file_of(path, field)
+    if file.suffix == ".npz":
+        raise refuse(field, str(file), "must be a model that train.py saved, its .zip or a run's folder: an .npz holds plain weights alone")
     trained = read(file, field)
     if trained is None:
         raise refuse(field, str(file), "must be a model that train.py saved")

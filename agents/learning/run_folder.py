@@ -10,12 +10,12 @@ import numpy as np
 import torch
 
 from commands.files import write_atomic
+from commands.lock import NAME as LOCK
+from commands.lock import Lock
 from snooker_env.checks import refuse
 
 from ..cluster.mirror import copied
 from .hyperparameters import algorithm_class
-from .lock import NAME as LOCK
-from .lock import Lock
 from .models import CHECKPOINT, zipped
 
 _UNFINISHED = re.compile(r"(checkpoint\.pkl|model\.zip|results\.json)(\.\d+)?\.tmp")

@@ -5,6 +5,7 @@ that class) and leaves that step out of the sample by itself. The module is RLli
 ``observation="masked"``, adds the logarithm of the mask to the scores, and must not be used with another algorithm than PPO.
 """
 
+import numpy as np
 import ray
 from ray import tune
 from ray.rllib.algorithms.ppo import PPOConfig
@@ -33,16 +34,28 @@ MEMORY = 2**28
 
 
 class RunnerTables(SnookerVectorEnv):
-    """The tables of one runner. Table k of runner w begins with seed + w n + k.
+    """The tables of one runner, which begin with ``seeds_of_runner``.
 
     RLlib gives runner w the seed + w, so that all but one of its tables would begin as those of the runner before.
     """
 
-    first_seed: int | None = None
+    own_seeds: list[int | None] | None = None
 
     def reset(self, *, seed=None, options=None, out=None):
         """As ``SnookerVectorEnv.reset``, with the runner's own seeds."""
-        return super().reset(seed=seed if seed is None else self.first_seed, options=options, out=out)
+        return super().reset(seed=seed if seed is None else self.own_seeds, options=options, out=out)
+
+
+def seeds_of_runner(seed, runner, n):
+    """Seeds of its n tables, 64 bits each. Those of other runners and of runs with other seeds have nothing in common with them.
+
+    Examples
+    --------
+    >>> from agents.trainers.rllib_config import seeds_of_runner
+    >>> len({*seeds_of_runner(0, 1, 8), *seeds_of_runner(0, 2, 8), *seeds_of_runner(8, 1, 8)})
+    24
+    """
+    return np.random.SeedSequence(seed, spawn_key=(runner,)).generate_state(n, np.uint64).tolist()
 
 
 def _tables(context):
@@ -52,7 +65,7 @@ def _tables(context):
 def _own_seeds(*, env, env_context, env_runner, **more):
     """RLlib calls it in each runner that has made its tables; ``worker_index`` begins with 1, of the main process with 0."""
     if env_runner.config.seed is not None:
-        env.first_seed = env_runner.config.seed + env_context.worker_index * env.num_envs
+        env.own_seeds = seeds_of_runner(env_runner.config.seed, env_context.worker_index, env.num_envs)
 
 
 def started(runners, paths):

@@ -36,6 +36,8 @@ with needs("agents.train_rllib"):
 
     import snooker_env
     from commands.files import write_atomic
+    from commands.lock import NAME as LOCK
+    from commands.lock import Lock
     from snooker_env import Options
     from snooker_env.benchmark import play_visits, summary, tables_of
     from snooker_env.checks import integer, refuse
@@ -43,8 +45,6 @@ with needs("agents.train_rllib"):
 
     from ..evaluation.training_summary import show
     from ..learning.callback import Stop
-    from ..learning.lock import NAME as LOCK
-    from ..learning.lock import Lock
     from ..learning.models import POLICY
     from ..learning.policy_files import read_policy, write_policy
     from ..players.built_in import GhostBall, Random

@@ -41,8 +41,10 @@ def _pip(python, *arguments):
 
 
 def environment():
-    """The Python of a virtual environment that holds pooltool; made on first use in the temporary folder."""
-    folder = Path(tempfile.gettempdir()) / f"snooker_env_pooltool_{VERSION}_py{sys.version_info[0]}{sys.version_info[1]}"
+    """The Python of a virtual environment that holds pooltool; made on first use."""
+    from .._common.kept import BUILD  # not at the top: pooltool's Python runs this file alone
+
+    folder = BUILD / f"pooltool_{VERSION}_py{sys.version_info[0]}{sys.version_info[1]}"
     python, ready = folder / "bin" / "python", folder / "ready"
     if os.name == "nt":
         python = folder / "Scripts" / "python.exe"

@@ -22,7 +22,7 @@ from ..tasks.matches import Matches
 from ..tasks.options import Options, observation_space_of, options_of
 from ..tasks.rewards import frame_reward
 from ..tasks.tables import Crew
-from .one_table import ShowsBalls
+from .one_table import ShowsBalls, TakesTurns
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import HasHistory, Record
 from .reset_options import Start, breakers_of, start_of
@@ -30,7 +30,7 @@ from .reset_options import Start, breakers_of, start_of
 PLAYERS = ("player_0", "player_1")
 
 
-class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
+class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
     """A frame of snooker between two players, one stroke a step; with ``task="match"`` the best of ``frames`` frames.
 
     ## Turns
@@ -50,9 +50,8 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
     * ``nominate=True`` adds the nomination before the decision; ``concede``, ``claim`` and ``lot`` add a declaration at the end: see
       ``SnookerEnv``. Without them the colour after a red, and the free ball, is the one first struck, and nobody concedes or claims.
 
-    ``action="discrete"``: ``Discrete(540)`` or longer as in ``Snooker-v0``, without place and decision.
-    The available choices of the player whose
-    turn it is are ``action_mask(agent)`` and, as in PettingZoo's own games, ``infos[agent]["action_mask"]``.
+    ``action="discrete"``: ``Discrete(540)`` or longer as in ``Snooker-v0``, without place and decision. The available choices of the
+    player whose turn it is are ``action_mask(agent)`` and, as in PettingZoo's own games, ``infos[agent]["action_mask"]``.
 
     ## Observation space
     That of ``Snooker-v0`` with the same task, from each player's point of view: his own score first, and whether it is his turn.
@@ -63,8 +62,8 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
 
     ## Start and end
     The seed determines who breaks off, or ``reset(options={"breaker": 0 or 1})``. In a match the players break in turn, and the next rack
-    follows in the step that ends a frame. Both players terminate when the frame or match ends by the rules. Both are truncated when
-    they have played ``max_strokes`` strokes together (default 1000, None for never): the referee stops the frame, without a winner. No ball
+    follows in the step that ends a frame. Both players terminate when the frame or match ends by the rules. Both are truncated when they
+    have played ``max_strokes`` strokes together (default 1000, None for never): the referee stops the frame, without a winner. No ball
     leaves the table, because the physics is planar.
 
     ## Infos
@@ -132,8 +131,7 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
         super().__init__()
         if options is None:
             box = given.get("action", "box") == "box"
-            task = "match" if "frames" in given else "frame"  # only a match has a length
-            given = {"task": task, "placement": box, "decision": box, **given}
+            given = {"task": "match" if "frames" in given else "frame", "placement": box, "decision": box, **given}
         self.options = options_of(options, given)
         if self.options.task == "visit" or self.options.opponent != "none" or self.options.trust:
             what = f"task={self.options.task!r}, opponent={self.options.opponent!r}, trust={self.options.trust!r}"
@@ -211,8 +209,9 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
         numpy.ndarray or dict
             As in the observation space; new arrays.
         """
+        turn = agent == self.agent_selection  # an error before reset()
         rows = self.tables.observe(np.zeros(1, np.int64), PLAYERS.index(agent))
-        masks = self.action_mask(agent) if self.options.observation == "masked" else None
+        masks = self._mask(turn) if self.options.observation == "masked" else None
         return observations.shaped(self.options.observation, rows[0], masks)
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
@@ -235,8 +234,10 @@ class MatchEnv(ShowsBalls, HasHistory, AECEnv[str, Any, Any]):
         """
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
-        there = agent == self.agent_selection and not self.tables.ended()[0]
-        return (self.tables.action_masks()[0] & there).astype(np.int8)
+        return self._mask(agent == self.agent_selection)
+
+    def _mask(self, turn):
+        return (self.tables.action_masks()[0] & (turn and not self.tables.ended()[0])).astype(np.int8)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame.

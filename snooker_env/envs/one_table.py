@@ -34,6 +34,23 @@ class ShowsBalls:
         return self.tables.on_table[0].copy()
 
 
+class TakesTurns:
+    """Whose turn it is in an environment of several agents."""
+
+    _selected: str | None = None
+
+    @property
+    def agent_selection(self) -> str:
+        """The agent whose turn it is. Before ``reset`` there is none: then AttributeError, as PettingZoo's own environments have it."""
+        if self._selected is None:
+            raise AttributeError("agent_selection cannot be read before reset(): call reset(), then observe(), last() or action_mask()")
+        return self._selected
+
+    @agent_selection.setter
+    def agent_selection(self, agent: str) -> None:
+        self._selected = agent
+
+
 class OneTable(ShowsBalls):
     """Properties and states of an environment with one table."""
 

@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from .._check import array, choice, number, refuse, refuse_what
+from .._check import array, choice, flags, number, refuse, refuse_what
 from .._types import Batches, FlagRows, Flags, Floats, TableName, Vectors
 from ..geometry import PRESETS, Bed, Pocket, parts
 from .bounds import bounds_of, deepest, narrowest
@@ -288,7 +288,7 @@ class Table:
         field : str
             Name of the positions in messages.
         on_table : array_like, bool (n,) or (b, n), optional
-            False for the balls to leave out; None: all are on the table.
+            False for the balls to leave out, one for each place; None: all are on the table.
 
         Returns
         -------
@@ -297,7 +297,8 @@ class Table:
         Raises
         ------
         ValueError
-            If a layout is not sound, or the table is made for other balls; the message names the layout, the ball and the reason.
+            If a layout is not sound, or the table is made for other balls; the message names the layout, the ball and the reason. Also if
+            an array has another shape.
 
         Examples
         --------
@@ -315,10 +316,10 @@ class Table:
             raise refuse("physics.R", R, allowed)
         positions = np.ascontiguousarray(positions, np.float64)
         many = positions.ndim == 3
-        places = positions if many else positions[None]
-        here = (
-            np.ones(places.shape[:2], bool) if on_table is None else np.asarray(on_table, np.bool_, order="C").reshape(-1, places.shape[1])
-        )
+        if positions.ndim not in (2, 3) or positions.shape[-1] != 2:
+            raise refuse_what(field, f"array of shape {positions.shape}", "must have shape (n, 2) or (b, n, 2)")
+        places, shape = positions if many else positions[None], positions.shape[:-1]
+        here = (np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)).reshape(places.shape[:2])
         width, *pair = self._narrowest
         if width - 2 * R < PLAY:  # it would bounce between them infinitely often in a finite time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"

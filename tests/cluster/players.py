@@ -6,9 +6,27 @@ from pathlib import Path
 
 import numpy as np
 
+from agents.players.stroke_players import StrokePlayer
+
+
+def note(decision, n):
+    """Note this process and its decision for n tables in the file of $NOTED, if there is one, and take the time of $SLOW for it.
+
+    If the file of $HANGS is there, a node with $DIES says so in it and hangs: it is to be killed. The others wait until it does.
+    """
+    if "NOTED" in os.environ:
+        with Path(os.environ["NOTED"]).open("a") as file:
+            file.write(f"{os.getpid()} {decision} {n}\n")
+        time.sleep(float(os.environ.get("SLOW", "0")))
+    hangs, began = Path(os.environ.get("HANGS", "none")), time.monotonic()
+    if hangs.exists() and "DIES" in os.environ:
+        hangs.write_text(str(os.getpid()))
+    while hangs.exists() and ("DIES" in os.environ or not hangs.read_text()) and time.monotonic() - began < 60:
+        time.sleep(0.05)
+
 
 class Noted:
-    """Plays one soft stroke a table, slowly, and notes each decision's process in the file of $NOTED."""
+    """Plays one soft stroke a table, slowly, and notes each decision."""
 
     options = {"action": "discrete"}  # noqa: RUF012 - read, never changed
 
@@ -16,12 +34,28 @@ class Noted:
         self._decisions = 0
 
     def act(self, tables, observations, going):
-        if "NOTED" in os.environ:
-            with Path(os.environ["NOTED"]).open("a") as file:
-                file.write(f"{os.getpid()} {self._decisions} {len(going)}\n")
-            time.sleep(float(os.environ.get("SLOW", "0")))
+        note(self._decisions, len(going))
         self._decisions += 1
         return np.full(len(going), 20)
+
+
+class Thinking(StrokePlayer):
+    """Searches, slowly, and notes each decision."""
+
+    def __init__(self):
+        super().__init__("lookahead", 30)
+
+    def rank(self, tables, observations, going):
+        note(self._decisions, len(going))
+        return super().rank(tables, observations, going)
+
+
+class Slow(float):
+    """A factor that notes, slowly, each product that it is in."""
+
+    def __mul__(self, other):
+        note(0, len(other))
+        return float(self) * other
 
 
 class Failing(Noted):

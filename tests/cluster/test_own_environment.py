@@ -6,7 +6,6 @@
 import os
 import re
 import subprocess
-import sys
 import sysconfig
 import venv
 from pathlib import Path
@@ -47,4 +46,3 @@ def test_the_tests_of_the_cluster_pass(tests, tmp_path):
     done = subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True, timeout=1800)
     assert done.returncode == 0, done.stdout[-6000:]
     assert " skipped" not in done.stdout.splitlines()[-1] and " passed" in done.stdout, done.stdout[-500:]
-    assert sys.version_info >= (3, 10)

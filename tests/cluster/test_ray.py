@@ -1,9 +1,9 @@
 """Is what a cluster plays what one machine plays, even if a node dies in the middle? On two nodes of Ray on this machine."""
 
 import os
-import sys
 import threading
 import time
+from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import Path
 
@@ -13,13 +13,16 @@ import pytest
 pytest.importorskip("ray", reason='Ray is not installed: pip install -e ".[cluster]"')
 from ray.cluster_utils import Cluster as Nodes
 
-from agents.cluster.faults import ClusterError
+from agents.cluster.faults import ClusterError, answers
 from agents.cluster.job import Here, Job
 from agents.cluster.ray_cluster import connected
-from agents.evaluation import protocol, visits
+from agents.cluster.store import Folder, unpacked
+from agents.evaluation import protocol, searched, visits
 from agents.evaluation.entrants import Entrant
+from agents.evaluation.travel import sent
 from agents.learning import self_play
-from snooker_env.benchmark import tables_of
+from snooker_env.benchmark import processor, tables_of
+from tests.cluster.players import Slow
 
 ROOT = Path(__file__).resolve().parents[2]
 NODE = {"num_cpus": 1, "object_store_memory": 100 * 2**20, "include_dashboard": False}
@@ -41,9 +44,11 @@ def nodes(tmp_path, monkeypatch):
     """Two nodes with a core each, and the second of them; all their processes end with the test."""
     monkeypatch.setenv("NOTED", str(tmp_path / "noted"))
     monkeypatch.setenv("SLOW", "0.15")
+    monkeypatch.setenv("HANGS", str(tmp_path / "hangs"))
     made = Nodes(initialize_head=True, head_node_args=NODE)
     try:
-        second = made.add_node(**{name: value for name, value in NODE.items() if name != "include_dashboard"})
+        node = {name: value for name, value in NODE.items() if name != "include_dashboard"}
+        second = made.add_node(**node, env_vars={"DIES": "1"})
         made.wait_for_nodes()
         yield made, second
     finally:
@@ -57,6 +62,24 @@ def cluster(nodes):
         yield found
     finally:
         found.close()
+
+
+@contextmanager
+def killed(nodes, tmp_path, ready=lambda: True):
+    """The second node is killed amid a part at which it hangs, once all is ``ready``."""
+    hangs = tmp_path / "hangs"
+    hangs.touch()
+
+    def kill():
+        while not (hangs.read_text() and ready()):
+            time.sleep(0.05)
+        nodes[0].remove_node(nodes[1], allow_graceful=False)
+
+    killer = threading.Thread(target=kill, daemon=True)
+    killer.start()
+    yield
+    killer.join(60)
+    assert nodes[1] not in nodes[0].list_all_nodes()
 
 
 def noted(tmp_path):
@@ -90,13 +113,9 @@ def test_two_nodes_play_what_one_machine_plays(cluster, monkeypatch):
 def test_a_node_killed_amid_an_evaluation_is_survived_and_nothing_counts_twice(nodes, cluster, tmp_path, monkeypatch):
     monkeypatch.setattr(visits, "SIZE", 5)
     agent, seeds, told = Entrant.of("tests.cluster.players:Noted"), tables_of("held_out", 60), []
-
-    def tick(part, result):
-        told.append(part.given["first"])
-        if len(told) == 3:
-            nodes[0].remove_node(nodes[1], allow_graceful=False)  # while it plays
-
-    found = protocol.play_agent(agent, AT, seeds, 100, 100, False, job_of([agent], seeds, cluster, tick))
+    job = job_of([agent], seeds, cluster, lambda part, result: told.append(part.given["first"]))
+    with killed(nodes, tmp_path, lambda: len(told) >= 3):
+        found = protocol.play_agent(agent, AT, seeds, 100, 100, False, job)
     begun = [process for process, decision, _ in noted(tmp_path) if decision == 0]
     assert sorted(told) == list(range(0, 60, 5)) and len(begun) > 12  # some part was begun twice
     monkeypatch.delenv("NOTED")
@@ -161,6 +180,49 @@ def test_what_befalls_a_worker_is_one_line(cluster):
         assert "\n" not in str(error.value)
 
 
+def test_a_worker_that_ray_ends_for_its_memory_is_one_line(tmp_path, monkeypatch):
+    """On a node whose limit is already passed; the head, which plays nothing, has none of it."""
+    monkeypatch.setenv("NOTED", str(tmp_path / "noted"))
+    monkeypatch.setenv("SLOW", "60")
+    made, found = Nodes(initialize_head=True, head_node_args=NODE | {"num_cpus": 0}), None
+    try:
+        found = connected(made.address)
+        limit = {"RAY_memory_usage_threshold": "0.001", "RAY_memory_monitor_refresh_ms": "100"}
+        made.add_node(num_cpus=1, object_store_memory=100 * 2**20, env_vars=limit)
+        made.wait_for_nodes()
+        agent, seeds = Entrant.of("tests.cluster.players:Noted"), tables_of("held_out", 2)
+        with pytest.raises(ClusterError, match=r"^a worker ran out of memory: give the node fewer workers \(ray start --num-cpus\)"):
+            protocol.play_agent(agent, AT, seeds, 100, 100, False, job_of([agent], seeds, found))
+    finally:
+        if found is not None:
+            found.close()
+        made.shutdown()
+
+
+def test_a_cluster_on_this_machine_is_its_own_whatever_the_environment_says(nodes, monkeypatch):
+    monkeypatch.setenv("RAY_ADDRESS", nodes[0].address)
+    found = connected("local", 1)
+    try:
+        assert found._head != nodes[0].address and found.cores == 1
+    finally:
+        found.close()
+
+
+def test_processors_that_differ_are_said_in_one_line(nodes, tmp_path, capsys):
+    made, _ = nodes
+    connected(made.address).close()
+    assert "processor" not in capsys.readouterr().err
+    (tmp_path / "sitecustomize.py").write_text("import commands.provenance as its\nits.processor = lambda: 'Other Processor 9000'\n")
+    made.add_node(num_cpus=1, object_store_memory=100 * 2**20, env_vars={"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"})
+    made.wait_for_nodes()
+    connected(made.address).close()
+    (line,) = [line for line in capsys.readouterr().err.splitlines() if "processor" in line]
+    both = ", ".join(sorted(["Other Processor 9000", processor()]))
+    assert (
+        line == f"the nodes have different processors ({both}): the last bits of a network's results may differ from those of one machine"
+    )
+
+
 @pytest.mark.parametrize("lack", ["numba is missing", "numpy is older"])
 def test_a_node_with_other_software_or_none_is_refused(nodes, tmp_path, lack):
     """A third node finds another version of a library first, or one that cannot be imported."""
@@ -193,15 +255,52 @@ def test_the_data_of_imitation_are_the_same(cluster, monkeypatch):
     assert np.array_equal(here, there_too) and here.any()
 
 
+def test_a_node_killed_amid_a_search_for_data_is_survived_and_nothing_counts_twice(nodes, cluster, tmp_path, monkeypatch):
+    agent, told = sent(Entrant.of("tests.cluster.players:Thinking"), 0), []
+    parts = searched.parts_of(6 * searched.TABLES * searched.ROUNDS, 0, AT | {"layout": "random:6"}, 30)
+    store = Folder(tmp_path / "data")
+    with killed(nodes, tmp_path, lambda: len(told) >= 2):
+        Job(parts, {"search": agent}, cluster, store, {}, lambda part, result: told.append(part.given["first"])).finish()
+    begun = [process for process, decision, _ in noted(tmp_path) if decision == 0]
+    assert sorted(told) == [searched.TABLES * k for k in range(6)] and len(begun) > 6  # some part was begun twice
+    monkeypatch.delenv("NOTED")
+    alone = Job(parts, {"search": agent}, Here(), Folder(tmp_path / "alone"), {})
+    alone.finish()
+    assert store.names("parts") == {f"{alone.key(part)}.npz" for part in parts}
+    for name in store.names("parts"):
+        there, here = (unpacked(Folder(tmp_path / folder).read(f"parts/{name}"), name) for folder in ("data", "alone"))
+        assert there.keys() == here.keys() and len(here["scores"]) == searched.TABLES * searched.ROUNDS
+        assert all(np.array_equal(one, there[what], equal_nan=one.dtype.kind == "f") for what, one in here.items())
+
+
+def test_a_node_killed_amid_the_data_of_imitation_is_survived_and_nothing_counts_twice(nodes, cluster, tmp_path, monkeypatch):
+    """In the second of three rounds, while both nodes are at work."""
+    from agents.learning.imitation import Expert
+    from snooker_env import SnookerVectorEnv
+
+    monkeypatch.setattr(self_play, "SLICE", 3)
+    env = SnookerVectorEnv(36, action="discrete", noise="club", layout="random:9")
+    env.reset(seed=5)
+    picks = np.array([np.flatnonzero(mask)[[1, 8, 20]] for mask in env.action_masks()])
+    there, expert = np.ones(picks.shape, bool), Expert(env, 1, np.random.default_rng(0), where=cluster)
+    expert._sent["ahead"] = Slow(1.0)
+    rounds = [expert.worth(picks, there)]
+    with killed(nodes, tmp_path):
+        rounds.append(expert.worth(picks, there))
+    rounds.append(expert.worth(picks, there))
+    assert len(noted(tmp_path)) > 3 * 12  # some slice was begun twice
+    monkeypatch.delenv("NOTED")
+    expert = Expert(env, 1, np.random.default_rng(0))
+    assert all(np.array_equal(expert.worth(picks, there), one) and one.any() for one in rounds)
+
+
 def test_nothing_is_left_running():
     """After a cluster on this machine alone was closed."""
     found = connected("local")
     address = found._head
+    assert answers(address, 1.0) is None
     found.close()
-    from agents.cluster.faults import answers
-
     began = time.monotonic()
     while answers(address, 1.0) is None and time.monotonic() - began < 20:
         time.sleep(0.5)
     assert answers(address, 1.0) is not None
-    assert "ray" in sys.modules

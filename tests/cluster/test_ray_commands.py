@@ -35,14 +35,12 @@ def environment(tmp_path, monkeypatch):
     return dict(os.environ)
 
 
-def started(command, environment):
-    return subprocess.Popen(
-        [sys.executable, *command], cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+def started(command, environment, at=ROOT):
+    return subprocess.Popen([sys.executable, *command], cwd=at, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def finished(command, environment):
-    process = started(command, environment)
+def finished(command, environment, at=ROOT):
+    process = started(command, environment, at)
     out, err = process.communicate(timeout=300)
     return process.returncode, out, err
 
@@ -101,6 +99,41 @@ def test_an_evaluation_goes_on_after(end, tmp_path, environment):
     alone = tmp_path / "alone.json"
     assert finished([*EVALUATE, "--json", str(alone)], environment | {"SLOW": "0"})[0] == 0
     assert rows(alone) == rows(out)
+
+
+def test_of_two_equal_jobs_at_once_the_second_is_refused(tmp_path, environment):
+    """Both keep their parts in one folder, which goes with the one that ends first."""
+    nodes = Nodes(initialize_head=True, head_node_args=NODE)
+    command, kept, first = [*EVALUATE, "--ray", nodes.address], tmp_path / "runs" / "kept", None
+    try:
+        first = started([*command, "--json", str(tmp_path / "out.json")], environment, tmp_path)
+        until(lambda: len(list(kept.glob("*/parts/*.npz"))) >= 1, first)
+        code, _, err = finished(command, environment, tmp_path)
+        assert code == 2 and f"must be a folder that no other process uses: process {first.pid} on " in err.splitlines()[-1], err
+        _, err = first.communicate(timeout=300)
+        assert first.returncode == 0 and not lines_of(err), err
+    finally:
+        if first is not None and first.poll() is None:
+            first.kill()
+        nodes.shutdown()
+    assert len(rows(tmp_path / "out.json")) == 1 and not list(kept.iterdir())
+
+
+def test_searched_data_are_the_same_files_with_a_cluster_and_without(tmp_path, environment):
+    command = ["-m", "agents.search", "--agent", "lookahead_30", "--positions", "300", "--noise", "club", "--layout", "random:6"]
+    nodes = Nodes(initialize_head=True, head_node_args=NODE)
+    try:
+        code, out, err = finished([*command, "--out", str(tmp_path / "there"), "--ray", nodes.address], environment)
+    finally:
+        nodes.shutdown()
+    assert code == 0 and not lines_of(err) and out.startswith("384 positions"), err
+    assert finished([*command, "--out", str(tmp_path / "here")], environment)[0] == 0
+    here, there = (
+        {file.relative_to(tmp_path / name): file.read_bytes() for file in (tmp_path / name).rglob("*") if file.is_file()}
+        for name in ("here", "there")
+    )
+    assert here == there and sorted(file.name for file in here if file.suffix == ".json") == ["index.json", "job.json"]
+    assert len(here) == 2 + 3
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ import sys
 import warnings
 from pathlib import Path
 
+import gymnasium
 import numpy as np
 import pytest
 
@@ -47,6 +48,21 @@ def test_pettingzoo_checks_its_interface_with_masked_observations(options, capsy
     with pytest.warns(UserWarning, match="Observation"):
         api_test(sn.match_env(action="discrete", observation="masked", layout="random:3", **options), num_cycles=80)
     assert "Passed API test" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("options", [{}, {"action": "discrete"}, {"action": "discrete", "observation": "masked"}, {"frames": 3}])
+def test_nothing_is_observed_before_the_first_reset(options):
+    env = sn.match_env(**options)
+    for look in (lambda: env.observe("player_0"), env.last, lambda: env.agent_selection):
+        with pytest.raises(AttributeError, match=r"^agent_selection cannot be read before reset\(\): call reset\(\)"):
+            look()
+    if "action" in options:
+        with pytest.raises(AttributeError, match=r"before reset\(\)"):
+            env.action_mask("player_1")
+    with pytest.raises(gymnasium.error.ResetNeeded, match=r"call reset\(\) before step\(\)"):
+        env.step(None)
+    env.reset(seed=1)
+    assert all(env.observation_space(name).contains(env.observe(name)) for name in env.agents)
 
 
 def test_masked_observations_of_both_players_hold_their_masks():

@@ -1,6 +1,7 @@
 """Does TorchRL collect what the tables play, and does its PPO run? Rollouts against single tables, and a short training."""
 
 import numpy as np
+import pytest
 import torch
 
 from agents.players.trained import load_player
@@ -52,3 +53,10 @@ def test_it_trains_and_its_file_is_played_by_our_protocol(tmp_path, capsys):
     points = [float(line.partition(" shots, ")[2].partition(" ")[0]) for line in lines]
     assert len(points) == 3 and points[-1] > 1.2 * points[0]
     assert load_player(tmp_path / "p.npz").model.num_timesteps == 24576
+
+
+def test_a_wrong_name_of_noise_is_one_line(tmp_path, capsys):
+    with pytest.raises(SystemExit) as stop:
+        example.main(["--noise", "pro", "--out", str(tmp_path / "p.npz")])
+    line = capsys.readouterr().err.splitlines()[-1]
+    assert stop.value.code == 2 and "--noise: invalid choice: 'pro'" in line and "professional" in line

@@ -117,3 +117,19 @@ NOSE, JAW = "must be axis 0 or 1, side -1 or 1, level, and lo <= hi", "must be x
 )
 def test_odd_shapes(call, field, value, allowed):
     refused(call, field, value, allowed)
+
+
+@pytest.mark.parametrize(
+    ("places", "there", "says"),
+    [
+        ([(0.0, 0.0), (0.1, 0.5)], [True], r"on_table = bool array of shape \(1,\): must be bool of shape \(2,\)"),
+        ([(0.0, 0.0), (0.1, 0.5)], [True] * 4, r"on_table = bool array of shape \(4,\): must be bool of shape \(2,\)"),
+        (np.zeros((3, 2, 2)), [True, False], r"on_table = bool array of shape \(2,\): must be bool of shape \(3, 2\)"),
+        ([(0.0, 0.0)], [1], r"on_table = int64 array of shape \(1,\): must be bool of shape \(1,\)"),
+        ([0.0, 1.0], None, r"positions = array of shape \(2,\): must have shape \(n, 2\) or \(b, n, 2\)"),
+        ([(0.0, 0.0, 0.0)], None, r"positions = array of shape \(1, 3\): must have shape \(n, 2\) or \(b, n, 2\)"),
+    ],
+)
+def test_a_layout_of_another_shape_is_refused_by_name(places, there, says):
+    with pytest.raises(ValueError, match=says):
+        sn.Table.preset("match").check(places, 0.02625, on_table=there)

@@ -11,9 +11,20 @@ import pytest
 
 import snooker_env
 from snooker_env import _inner
-from snooker_env.physics import engine
 
 PACKAGE = Path(snooker_env.__file__).parent
+KERNELS = """
+from snooker_env.kernels import entry, kernel
+
+@kernel
+def double(x):
+    return 2.0 * x
+
+@entry
+def outer(x):
+    return double(x) + 1.0
+"""
+"""Not in a file: they are compiled in every process."""
 SHOT = """
 import json
 import snooker_env as sn
@@ -26,10 +37,11 @@ print(json.dumps([_inner.KNOWN, machine, shot.positions.tolist(), shot.duration,
 
 
 def test_inner_kernels_are_only_linked():
-    snooker_env.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)])
-    assert _inner.KNOWN
-    for made in engine._predict.overloads.values():  # none if the engine came from the cache
-        assert isinstance(made.entry_point, _inner.EntryPoint)
+    here = {}
+    exec(KERNELS, here)
+    assert here["outer"](3.0) == 7.0 and _inner.KNOWN
+    ((inner,), (outer,)) = (here[name].overloads.values() for name in ("double", "outer"))
+    assert isinstance(inner.entry_point, _inner.EntryPoint) and not isinstance(outer.entry_point, _inner.EntryPoint)
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ import zipfile
 import numpy as np
 import pytest
 
+import train
 from agents.evaluation import protocol
 from agents.evaluation.entrants import Entrant
 from agents.learning import policy_files
@@ -54,6 +55,29 @@ def test_it_plays_frames_as_an_opponent(tmp_path):
     tables.reset(seed=1)
     played = sum(tables.step(tables.action_masks().argmax(axis=1))[-1]["opponent_strokes"].sum() for _ in range(5))
     assert played > 3
+
+
+def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, capsys):
+    """A planner wants a value, a training the whole network: by the file and by its folder."""
+    file = tmp_path / POLICY
+    write_policy(file, WEIGHTS, **ABOUT)
+    wanted = "must be a model that train.py saved, its .zip or a run's folder: an .npz holds plain weights alone"
+    quick = ["--visits", "2", "--layouts", "held_out", "--noise", "none"]
+    for path in (file, tmp_path):
+        for name, main, command in (
+            ("agent", protocol.main, [*quick, "--agent", f"planner@{path}"]),
+            ("start", train.main, ["--start", str(path), "--out", str(tmp_path / "run")]),
+        ):
+            with pytest.raises(SystemExit) as stop:
+                main(command)
+            line = capsys.readouterr().err.strip().splitlines()[-1]
+            assert stop.value.code == 2 and line.endswith(f"error: {name} = {str(file)!r}: {wanted}"), line
+
+
+def test_the_help_of_evaluations_names_it(capsys):
+    with pytest.raises(SystemExit):
+        protocol.main(["--help"])
+    assert "MODEL (a .zip, an .npz of plain weights, or a run's folder)" in " ".join(capsys.readouterr().out.split())
 
 
 def test_it_is_evaluated_like_any_other_agent(tmp_path, capsys):

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 import train
-from agents.learning import callback, lock
+from agents.learning import callback
 from agents.learning.imitation import Imitation
 from agents.players.trained import load_player
+from commands import lock
 from commands.files import write_atomic
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -40,7 +41,7 @@ def other(tmp_path):
     code = f"""
 import time
 from pathlib import Path
-from agents.learning.lock import Lock
+from commands.lock import Lock
 held = Lock(Path({str(tmp_path)!r}))
 print("held", flush=True)
 time.sleep(600)
@@ -59,7 +60,7 @@ def test_a_folder_in_use_is_refused_by_the_name_of_the_process(other, tmp_path, 
     for name in holds:
         (tmp_path / name).write_bytes(b"of the other")
     error = refused(capsys, *TINY, "--out", str(tmp_path), *more)
-    assert f"out = {str(tmp_path)!r}: must be a folder that no other train.py uses: process {other.pid} on " in error
+    assert f"out = {str(tmp_path)!r}: must be a folder that no other process uses: process {other.pid} on " in error
     assert " since 20" in error and f"(kill -INT {other.pid})" in error and "another --out" in error
     assert sorted(p.name for p in tmp_path.iterdir()) == [*holds, "train.lock"]
     assert all((tmp_path / name).read_bytes() == b"of the other" for name in holds)
@@ -298,5 +299,5 @@ def test_a_folder_that_was_moved_leaves_the_lock_of_another_run_alone(tmp_path):
     folder.mkdir()
     with lock.Lock(folder):
         first.release()
-        with pytest.raises(ValueError, match="no other train"):
+        with pytest.raises(ValueError, match="no other process"):
             lock.Lock(folder)

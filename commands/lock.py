@@ -1,4 +1,4 @@
-"""Which process owns a run's folder? The one that holds its lock; no process once that one has ended, however it ended."""
+"""Which process owns a folder? The one that holds its lock; no process once that one has ended, however it ended."""
 
 import os
 import platform
@@ -13,18 +13,28 @@ except ImportError:  # Windows has none
     fcntl = None
 
 NAME = "train.lock"
+"""The file in the folder of a training."""
 
 
 class Lock:
-    """Holds ``folder`` until ``release`` or the end of the process. Raises ValueError, naming the holder, if another process does.
+    """Holds a folder until ``release`` or the end of the process. Raises ValueError, naming the holder, if another process does.
 
-    The system's lock (flock) on the file ``train.lock`` counts, not the file's existence: one left by kill -9 is no obstacle. Without
-    flock (Windows) the file itself is the lock: after a kill it has to be deleted, as the error explains. On a file system without locks
-    a warning is printed and nothing is locked.
+    The system's lock (flock) on a file counts, not the file's existence: one left by kill -9 is no obstacle. Without flock (Windows) the
+    file itself is the lock: after a kill it has to be deleted, as the error explains. On a file system without locks a warning is printed
+    and nothing is locked.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+    field : str
+        Name of the option that gave it, for the error.
+    path : Path, optional
+        The file; default ``train.lock`` in the folder. Who removes the whole folder keeps it elsewhere.
     """
 
-    def __init__(self, folder):
-        self._folder, self._path = folder, folder / NAME
+    def __init__(self, folder, field="out", path=None):
+        self._folder, self._field, self._path = folder, field, path or folder / NAME
         self._file = self._held_by_file() if fcntl is None else self._held_by_system(fcntl)
         try:
             self._file.truncate(0)
@@ -64,8 +74,8 @@ class Lock:
         who = self._path.read_text(encoding="utf-8", errors="replace").strip() if self._path.exists() else ""
         pid = who.split()[1] if who.startswith("process ") else "PID"
         return refuse(
-            "out", str(self._folder), f"must be a folder that no other train.py uses: {who or 'another process'} does. Wait, or stop "
-            f"it, which saves it (kill -INT {pid}), or give another --out{more}",
+            self._field, str(self._folder), f"must be a folder that no other process uses: {who or 'another process'} does. Wait, or "
+            f"stop it, which saves what it did (kill -INT {pid}), or give another --{self._field}{more}",
         )  # fmt: skip
 
     def release(self):

@@ -1,0 +1,67 @@
+"""Does a benchmark run what it made itself? Not what another user put in the temporary folder."""
+
+import importlib
+from pathlib import Path
+
+import pytest
+
+from benchmarks._common import kept, package_copies
+from benchmarks.speed import against_pooltool
+from tests.processes import ROOT
+
+
+@pytest.fixture
+def build(tmp_path, monkeypatch):
+    monkeypatch.setattr(kept, "BUILD", tmp_path / "build")
+    return tmp_path / "build"
+
+
+def test_folders_are_made_once_and_whole(build):
+    made = []
+
+    def make(folder):
+        made.append(folder)
+        (folder / "file").write_text("whole")
+        if len(made) == 1:
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match="No space"):
+        kept.kept_folder("x", make)
+    assert not list(build.iterdir())
+    for _ in range(2):
+        assert (kept.kept_folder("x", make) / "file").read_text() == "whole"
+    assert len(made) == 2 and [file.name for file in build.iterdir()] == ["x"] and build / "x" not in made
+
+
+def test_the_faster_of_two_processes_counts(build):
+    def make(folder):
+        (folder / "file").write_text("slower")
+        (build / "x").mkdir()
+        (build / "x" / "file").write_text("faster")
+
+    assert (kept.kept_folder("x", make) / "file").read_text() == "faster"
+    assert [file.name for file in build.iterdir()] == ["x"]
+
+
+def test_commits_and_copies_of_the_package_are_kept_there(build):
+    learner = importlib.import_module("benchmarks.learner")
+    tree = learner.tree_of("HEAD")
+    assert tree.parent == build and (tree / "train.py").is_file()
+    (module,) = package_copies.load("snooker_env_copy", {"__init__.py": "", "here.py": "VALUE = 3"}, ["here"])
+    assert module.VALUE == 3 and build in Path(module.__file__).parents
+
+
+def test_pooltool_is_kept_in_the_build_folder_of_the_clone(monkeypatch):
+    """Which git ignores. Its environment is made in place."""
+    made = []
+    monkeypatch.setattr(against_pooltool.venv, "create", lambda folder, **options: made.append(folder) or (folder.mkdir(parents=True)))
+    monkeypatch.setattr(against_pooltool, "_pip", lambda *arguments: None)
+    monkeypatch.setattr(kept, "BUILD", kept.BUILD / "of_the_test")
+    try:
+        assert kept.BUILD in against_pooltool.environment().parents and made[0].parent == kept.BUILD
+    finally:
+        for folder in made:
+            (folder / "ready").unlink()
+            folder.rmdir()
+            folder.parent.rmdir()
+    assert kept.BUILD.is_relative_to(ROOT / "build")
