@@ -18,12 +18,14 @@ from numba.core import codegen, compiler
 from numba.core.registry import CPUDispatcher
 from numba.core.types.functions import BaseFunction
 
+FIND = "get_call_type"
+"""The method of numba's functions that finds what they give for some types."""
 _PARTS = (
     (codegen.JITCodeLibrary, ("_finalize_final_module", "_finalize_dynamic_globals", "_verify_declare_only_symbols")),
     (compiler.CompileResult, ("_replace", "entry_point")),
     (CPUDispatcher, ("add_overload",)),
     (compiler.Compiler, ("compile_extra",)),
-    (BaseFunction, ("get_call_type",)),
+    (BaseFunction, (FIND,)),
 )
 KNOWN = all(hasattr(owner, name) for owner, names in _PARTS for name in names)
 """Whether this numba has the parts."""
@@ -39,7 +41,7 @@ class _Library(codegen.JITCodeLibrary):
 
 
 _found: dict[Any, Any] = {}
-_find: Any = getattr(BaseFunction, "get_call_type", None)
+_find: Any = getattr(BaseFunction, FIND, None)
 
 
 def _find_once(function, context, args, kws):
@@ -56,11 +58,12 @@ def _find_once(function, context, args, kws):
 @contextmanager
 def _finding_once():
     """Let numba use ``_find_once``. Whoever compiles holds numba's lock: no other thread compiles meanwhile."""
-    before, BaseFunction.get_call_type = BaseFunction.get_call_type, _find_once
+    before = getattr(BaseFunction, FIND)
+    setattr(BaseFunction, FIND, _find_once)
     try:
         yield
     finally:
-        BaseFunction.get_call_type = before
+        setattr(BaseFunction, FIND, before)
 
 
 class _Compiler(compiler.Compiler):

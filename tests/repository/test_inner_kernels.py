@@ -1,6 +1,7 @@
 """What is compiled of an inner kernel? No machine code of its own; and with a numba whose parts are others, what numba makes by itself."""
 
 import json
+import operator
 import os
 import shutil
 import subprocess
@@ -8,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from numba.core.types.functions import BaseFunction
 
 import snooker_env
 from snooker_env import _inner
@@ -42,6 +44,15 @@ def test_inner_kernels_are_only_linked():
     assert here["outer"](3.0) == 7.0 and _inner.KNOWN
     ((inner,), (outer,)) = (here[name].overloads.values() for name in ("double", "outer"))
     assert isinstance(inner.entry_point, _inner.EntryPoint) and not isinstance(outer.entry_point, _inner.EntryPoint)
+
+
+def test_numba_finds_by_itself_what_is_not_of_an_inner_kernel():
+    """What was found once is for the types alone: of ``max``, which is compiled for its caller's options, nothing is kept."""
+    here = {}
+    exec(KERNELS.replace("2.0 * x", "max(2.0 * x, 1.0)"), here)
+    assert here["outer"](3.0) == 7.0 and here["outer"](0.0) == 2.0
+    assert any(called is operator.mul for called, _ in _inner._found) and not any(called is max for called, _ in _inner._found)
+    assert getattr(BaseFunction, _inner.FIND) is _inner._find
 
 
 @pytest.mark.slow
