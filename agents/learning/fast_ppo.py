@@ -24,8 +24,9 @@ class BoolMasks(MaskableRolloutBuffer):
 
     def reset(self):
         self.mask_dims = int(self.action_space.n)
-        if self.action_masks is None:  # later rollouts write over it
-            self.action_masks = np.ones((self.buffer_size, self.n_envs, self.mask_dims), np.bool_)
+        shape = (self.buffer_size, self.n_envs, self.mask_dims)
+        if self.action_masks is None or self.action_masks.shape != shape:  # else the next rollout writes over it; ``get`` makes it flat
+            self.action_masks = np.ones(shape, np.bool_)
         RolloutBuffer.reset(self)
 
 

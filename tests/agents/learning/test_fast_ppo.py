@@ -106,6 +106,19 @@ def test_the_buffer_is_sb3s_with_masks_as_bool():
     assert np.array_equal(np.maximum(1, offered), flat[1].reshape(-1, 4, 135)[:, :, 0].sum(1))
 
 
+def test_the_next_rollout_has_its_masks_by_steps_and_tables():
+    """SB3 makes them flat when it reads a rollout in minibatches."""
+    buffer = with_rollout(made()).rollout_buffer
+    masks, shape = buffer.action_masks, buffer.action_masks.shape
+    buffer.reset()
+    assert buffer.action_masks is masks  # not allocated again
+    buffer.full = True
+    next(buffer.get(8))
+    assert buffer.action_masks.ndim == 2
+    buffer.reset()
+    assert buffer.action_masks.shape == shape
+
+
 def test_same_seed_same_weights():
     found = [weights(made(seed=seed).learn(256)) for seed in (3, 3, 4)]
     assert torch.equal(found[0], found[1]) and not torch.equal(found[0], found[2])
