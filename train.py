@@ -49,7 +49,7 @@ with needs("train.py"):
     from agents.learning.hyperparameters import Recipe, names
     from agents.learning.imitation import Imitation
     from agents.learning.models import load_weights, zipped
-    from agents.learning.run_folder import claimed, go_on, kept, load_model, read_checkpoint
+    from agents.learning.run_folder import claimed, go_on, kept, load_model, options_of, read_checkpoint
     from commands.files import write_atomic
     from commands.physics_option import physics_option
     from commands.provenance import commit
@@ -194,6 +194,8 @@ def prepared(parser, given, rest, ending):
             ending.enter_context(claimed(out, resume))
         settings, state = open_run(parser, given, out, resume)
         recipe = recipe_of(settings)
+        if state:
+            recipe = replace(recipe, env_kwargs=options_of(out, state))
         checked_ray(ray)
         if ray and not recipe.imitation:
             raise refuse("ray", ray, f"must be left out for {recipe.name}: only expert iteration and imitation are played on a cluster")

@@ -61,7 +61,10 @@ class Lock:
 
     def _is(self, file):
         """Is this open file the one at the lock's path?"""
-        return self._path.exists() and os.path.samestat(os.fstat(file.fileno()), os.stat(self._path))
+        try:
+            return os.path.samestat(os.fstat(file.fileno()), os.stat(self._path))
+        except FileNotFoundError:
+            return False
 
     def _held_by_file(self):
         try:
@@ -71,7 +74,10 @@ class Lock:
 
     def _taken(self, more):
         """The ValueError for a folder that another process holds."""
-        who = self._path.read_text(encoding="utf-8", errors="replace").strip() if self._path.exists() else ""
+        try:
+            who = self._path.read_text(encoding="utf-8", errors="replace").strip()
+        except FileNotFoundError:  # released in between
+            who = ""
         pid = who.split()[1] if who.startswith("process ") else "PID"
         return refuse(
             self._field, str(self._folder), f"must be a folder that no other process uses: {who or 'another process'} does. Wait, or "

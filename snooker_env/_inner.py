@@ -16,7 +16,7 @@ from typing import Any
 
 from numba.core import codegen, compiler
 from numba.core.registry import CPUDispatcher
-from numba.core.types.functions import BaseFunction
+from numba.core.types.functions import BaseFunction, Function
 
 FIND = "get_call_type"
 """The method of numba's functions that finds what they give for some types."""
@@ -46,11 +46,13 @@ _find: Any = getattr(BaseFunction, FIND, None)
 
 def _find_once(function, context, args, kws):
     """What ``function`` gives for these types: found before, if that depends on the types alone, or by ``_find``."""
-    called, known = function.typing_key, getattr(function, "_impl_keys", {})
-    signature = _found.get((called, args)) if not kws else None
+    if type(function) is not Function or kws:
+        return _find(function, context, args, kws)
+    called, known = getattr(function, "typing_key", None), getattr(function, "_impl_keys", {})
+    signature = _found.get((called, args))
     if signature is None or signature.args not in known:
         signature = _find(function, context, args, kws)
-        if not kws and known.get(signature.args) is called:  # else it was compiled for its caller's options
+        if called is not None and known.get(signature.args) is called:  # else it was compiled for its caller's options
             _found[called, args] = signature
     return signature
 

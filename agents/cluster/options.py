@@ -87,7 +87,11 @@ class Keep:
                 self._lock = Lock(folder, "keep", folder.with_name(f"{folder.name}.lock"))  # beside it: the folder is removed
             except OSError as error:
                 raise refuse("keep", str(folder), f"must be a folder that can be written ({error.strerror})") from None
-            self.store = store_of(str(folder))
+            try:
+                self.store = store_of(str(folder))
+            except BaseException:
+                self._lock.release()
+                raise
 
     def __enter__(self):
         return self

@@ -19,7 +19,7 @@ from ..players.trained import ModelPlayer, player_options
 def evaluate(recipe, model, visits):
     """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, on the same tables, under the training's noise and physics.
 
-    Of an agent with a value of positions, also of the planner with it and of the planner by the rule of thumb (``lookahead``). These are
+    The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also of the planner with it and of the planner by the rule of thumb (``lookahead``). These are
     the first tables of ``agents.evaluate``. Raises ValueError if there are not so many tables.
     """
     options = player_options(recipe.env_kwargs)
@@ -27,8 +27,8 @@ def evaluate(recipe, model, visits):
     if hasattr(model.policy, "position_value"):
         players |= {"planner": StrokePlayer("planner", model=model.policy), "lookahead": StrokePlayer("lookahead")}
     shared: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS}
-    if recipe.expert:  # it learns on "fast" to save time, and is meant to play on the usual fidelity
-        shared["fidelity"] = "standard"
+    if not recipe.fidelity_given:  # some learn on "fast" to save time, and are meant to play on the usual fidelity
+        shared.pop("fidelity", None)
     seeds = tables_of("held_out", visits)
     return {name: summary(play_visits(player, visits, first_seed=seeds, **shared)) for name, player in players.items()}
 

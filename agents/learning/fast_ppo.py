@@ -25,8 +25,9 @@ class BoolMasks(MaskableRolloutBuffer):
     def reset(self):
         self.mask_dims = int(self.action_space.n)
         shape = (self.buffer_size, self.n_envs, self.mask_dims)
-        if self.action_masks is None or self.action_masks.shape != shape:  # else the next rollout writes over it; ``get`` makes it flat
-            self.action_masks = np.ones(shape, np.bool_)
+        if self.action_masks is None or self.action_masks.shape != shape:  # ``get`` has made them flat
+            self.action_masks = np.empty(shape, np.bool_)
+        self.action_masks.fill(True)
         RolloutBuffer.reset(self)
 
 

@@ -54,7 +54,10 @@ def names():
 
 @dataclass
 class Recipe:
-    """The definition of an agent: the keys named here, and in ``settings`` the algorithm's own hyperparameters."""
+    """The definition of an agent: the keys named here, and in ``settings`` the algorithm's own hyperparameters.
+
+    ``fidelity_given``: whether the fidelity of ``env_kwargs`` was asked for; else it is the recipe's, which saves time in training alone.
+    """
 
     name: str
     algo: str
@@ -67,6 +70,7 @@ class Recipe:
     imitation: int
     expert: bool
     settings: dict
+    fidelity_given: bool = False
 
     @classmethod
     def of(cls, name, changes=(), env_kwargs=None, **given):
@@ -84,7 +88,8 @@ class Recipe:
                 found[key] = check(key, found[key], low, high)
         found["env_kwargs"] = _options(found["env_kwargs"], env_kwargs or {}, usual, found["policy"])
         own = ("algo", "policy", "n_timesteps", "n_envs", "env_kwargs", "first_aim_std", "view", "imitation", "expert")
-        return cls(name, **{key: found.pop(key) for key in own}, settings=found)
+        fidelity_given = any("fidelity" in options for options in (env_kwargs or {}, changed.get("env_kwargs", {})))
+        return cls(name, **{key: found.pop(key) for key in own}, settings=found, fidelity_given=fidelity_given)
 
     def new_model(self, tables, seed):
         """The untrained agent on these tables."""

@@ -8,6 +8,7 @@ from dataclasses import asdict
 
 import numpy as np
 import torch
+from stable_baselines3.common.save_util import load_from_zip_file
 
 from commands.files import write_atomic
 from commands.lock import NAME as LOCK
@@ -98,6 +99,14 @@ def read_checkpoint(out, settings):
     except Exception:  # any error of pickle on a file of another kind
         raise stale(out) from None
     return state, was
+
+
+def options_of(out, state):
+    """The options of the tables of a checkpoint: its recipe may have others by now. Raises ValueError."""
+    try:
+        return load_from_zip_file(io.BytesIO(state["model"]), device="cpu")[0]["env_options"]
+    except Exception:
+        raise stale(out) from None
 
 
 def load_model(out, state, algo, envs):

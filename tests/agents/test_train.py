@@ -3,6 +3,7 @@
 import json
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,7 +16,8 @@ from sb3_contrib import MaskablePPO
 
 import train
 from agents.evaluation import training_summary
-from agents.learning import callback
+from agents.learning import callback, hyperparameters
+from agents.learning.hyperparameters import names
 from agents.players.built_in import GhostBall, Random
 from agents.players.by_name import player_of
 from agents.players.trained import load_player
@@ -277,6 +279,37 @@ def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
     assert all(own == {"action": "discrete"} for own, _ in played)
 
 
+@pytest.mark.parametrize("agent", names())
+def test_agents_are_judged_at_the_usual_fidelity(finished, agent, monkeypatch):
+    """Those whose recipe learns at another too, unless one is asked for."""
+    seen = []
+    monkeypatch.setattr(training_summary, "play_visits", lambda player, n, **options: seen.append(options.get("fidelity")))
+    monkeypatch.setattr(training_summary, "summary", lambda visits: None)
+    model = load_player(finished / "ppo_mask").model
+    for settings in ({}, {"fidelity": "fast"}, {"set": ("env_kwargs={'action': 'discrete', 'fidelity': 'reference'}",)}):
+        if "set" not in settings or agent in ("ppo_mask", "ppo_value"):
+            training_summary.evaluate(train.recipe_of(train.Settings(agent=agent, **settings)), model, 2)
+    assert seen[:6] == [None] * 3 + ["fast"] * 3 and set(seen[6:]) <= {"reference"}
+    assert len(seen) == (9 if agent in ("ppo_mask", "ppo_value") else 6)
+
+
+def test_a_run_goes_on_with_the_tables_that_it_began_with(tmp_path, monkeypatch):
+    """Whatever its recipe says by then."""
+    folder, seen = tmp_path / "recipes", []
+    shutil.copytree(hyperparameters.FOLDER, folder)
+    monkeypatch.setattr(hyperparameters, "FOLDER", folder)
+    recipe = folder / "ppo_mask.yml"
+    now = recipe.read_text()
+    assert "fidelity: fast" in now
+    recipe.write_text(now.replace("fidelity: fast", "fidelity: standard"))
+    assert run(tmp_path / "run", "--steps", "64") == 0
+    recipe.write_text(now)
+    original = train.training_tables
+    monkeypatch.setattr(train, "training_tables", lambda *args, **options: seen.append(options) or original(*args, **options))
+    assert train.main(["--resume", "--no-progress", "--steps", "128", "--out", str(tmp_path / "run")]) == 0
+    assert [options["fidelity"] for options in seen] == ["standard"] and results(tmp_path / "run")["steps"] == 128
+
+
 def test_random_play_is_the_same_for_every_agent(finished):
     """It is that of agents.evaluate, not any action of the agent's own."""
     of_each = [results(finished / agent)["evaluation"] for agent in AGENTS]
@@ -364,7 +397,7 @@ def test_whole_rollouts_are_announced_and_a_finished_run_says_so(tmp_path, capsy
     more = ["--set", "train_freq=3"] if agent == "tqc_target" else []
     assert run(tmp_path / "run", "--agent", agent, "--steps", "1", *more) == 0
     steps = results(tmp_path / "run")["steps"]
-    whole = {"ppo_mask": 128, "tqc_target": 6}[agent]  # two tables
+    whole = {"ppo_mask": 64, "tqc_target": 6}[agent]  # two tables
     assert f": 0 of {steps:,} shots played (1 asked for; whole rollouts of {whole:,})" in capsys.readouterr().out
     assert steps == whole
     assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0

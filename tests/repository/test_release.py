@@ -12,7 +12,8 @@ import yaml
 import snooker_env as sn
 
 ROOT = Path(__file__).parents[2]
-TEXTS = [p for p in ROOT.rglob("*") if p.suffix in (".py", ".md", ".sh", ".toml") and not set(p.parts) & {".venv", "tests", ".git"}]
+SKIPPED = {".venv", ".venv-ray", "tests", ".git", "build", "runs"}
+TEXTS = [p for p in ROOT.rglob("*") if p.suffix in (".py", ".md", ".sh", ".toml") and not set(p.relative_to(ROOT).parts) & SKIPPED]
 
 
 @pytest.fixture(scope="module")

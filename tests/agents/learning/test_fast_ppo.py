@@ -110,8 +110,9 @@ def test_the_next_rollout_has_its_masks_by_steps_and_tables():
     """SB3 makes them flat when it reads a rollout in minibatches."""
     buffer = with_rollout(made()).rollout_buffer
     masks, shape = buffer.action_masks, buffer.action_masks.shape
+    assert not masks.all()
     buffer.reset()
-    assert buffer.action_masks is masks  # not allocated again
+    assert buffer.action_masks is masks and masks.all()  # not allocated again, and a rollout without masks has all choices
     buffer.full = True
     next(buffer.get(8))
     assert buffer.action_masks.ndim == 2
