@@ -28,11 +28,11 @@ runs() { # name, then the options of train.py
     for k in 0 1 2; do echo "lineup-$k --agent ppo_mask --layout line_up --steps 300000 --seed $k"; done
 }
 later() { # these start from the weights of earlier runs
-    echo "taught-0 --agent ppo_mask --start $folder/value-0 --fidelity fast --set learning_rate=lin_5e-4 n_epochs=2 batch_size=2048"
+    echo "taught-0 --agent ppo_mask --start $folder/value-0 --envs 256 --set learning_rate=lin_5e-4 n_epochs=2 batch_size=2048 n_steps=64"
     for k in 0 1 2; do echo "curriculum-$k --agent ppo_mask --start $folder/lineup-$k --steps 700000 --seed $k"; done
 }
 last() { # this one from those of a later one
-    echo "again-0 --agent ppo_mask --start $folder/taught-0 --fidelity fast --steps 3000000 --set learning_rate=lin_5e-4 n_epochs=2 batch_size=2048"
+    echo "again-0 --agent ppo_mask --start $folder/taught-0 --envs 256 --steps 3000000 --set learning_rate=lin_5e-4 n_epochs=2 batch_size=2048 n_steps=64"
 }
 
 train() {

@@ -19,8 +19,9 @@ from ..players.trained import ModelPlayer, player_options
 def evaluate(recipe, model, visits):
     """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, on the same tables, under the training's noise and physics.
 
-    The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also of the planner with it and of the planner by the rule of thumb (``lookahead``). These are
-    the first tables of ``agents.evaluate``. Raises ValueError if there are not so many tables.
+    The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also figures of the planner with
+    it and of the planner by the rule of thumb (``lookahead``). These are the first tables of ``agents.evaluate``. Raises ValueError if
+    there are not so many tables.
     """
     options = player_options(recipe.env_kwargs)
     players = {"trained": ModelPlayer(model, options, view_of(recipe.view)), "ghost_ball": GhostBall(), "random": Random()}

@@ -104,7 +104,8 @@ def read_checkpoint(out, settings):
 def options_of(out, state):
     """The options of the tables of a checkpoint: its recipe may have others by now. Raises ValueError."""
     try:
-        return load_from_zip_file(io.BytesIO(state["model"]), device="cpu")[0]["env_options"]
+        data, *_ = load_from_zip_file(io.BytesIO(state["model"]), device="cpu")
+        return dict(data or {})["env_options"]
     except Exception:
         raise stale(out) from None
 
