@@ -305,6 +305,16 @@ def test_a_ball_wedges_only_where_both_frictions_hold_it(mu_c, mu_s, sin_theta, 
             assert v == pytest.approx(same, abs=2e-3) and w * R == pytest.approx(spin * R, abs=2e-3)
 
 
+def test_without_restitution_the_balls_close_no_more():
+    """The impact ends with compression, so that end has to be located as exactly as any."""
+    rng, physics = np.random.default_rng(0), {"mu_s": 0.8, "mu_bb": 1.0, "e_b": 0.0}
+    for _ in range(1000):
+        cut, speed, size = rng.uniform(-1.4, 1.4), 10.0 ** rng.uniform(-1, 1.5), 10.0 ** rng.uniform(-1, 3)
+        v, w = (speed * np.sin(cut), speed * np.cos(cut), 0.0), rng.normal(0.0, size, 3)
+        v1, _, v2, _ = sn.collide_balls(v, w, (0, 0, 0), (0, 0, 0), normal=(0, 1.0, 0), physics=physics)
+        assert abs(v1[1] - v2[1]) < 1e-11 * v[1]
+
+
 def test_a_very_thin_impact_of_a_ball_that_all_but_rolls_is_solved():
     """Its slip is 30,000 times the closing speed: high terms of a series in it overflow."""
     args = (0.08358090371814696, 0.37146166544987175, 0), (-14.150920588566544, 3.1840344273579793, 71.65426314348102)

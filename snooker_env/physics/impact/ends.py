@@ -39,8 +39,7 @@ def _end_of_compression(series, degree, span, closing, near):
     bend = (closing - first - slope * span) / (span * span)
     root = slope * slope - 4.0 * bend * first
     guess = 2.0 * first / (sqrt(root) - slope) if root > 0.0 and slope < 0.0 else 0.5 * span
-    # The work is stationary there: its error is that of the time squared.
-    return time_of(series, degree, CLOSING, 0.0, 0.0, span, guess, sqrt(near * span))
+    return time_of(series, degree, CLOSING, 0.0, 0.0, span, guess, near)
 
 
 @kernel
@@ -62,7 +61,9 @@ def locate_end(series, degree, span, end, closing, target, e, tol):
     """For such a step: whether the impact ends in it, the time of that (or of the end of compression), and the target from now on."""
     over, t, near = False, 0.0, _CLOSE * tol * span
     if target.compressing:
-        t = _end_of_compression(series, degree, span, closing, near)
+        # The work is stationary there: its error is that of the time squared, about _CLOSE tol. The speed after the impact then errs by
+        # that over e.
+        t = _end_of_compression(series, degree, span, closing, near if e < _CLOSE else sqrt(near * span))
         top = value_at(series, degree, WORK_DONE, t)[0]
         target = Target(False, top, (1.0 - e * e) * top)
     if target.work >= end.W:
