@@ -17,13 +17,12 @@ with needs("agents.publish"):
     from commands.files import write_atomic
     from snooker_env.checks import refuse
 
-    from ..learning.hyperparameters import Recipe
     from ..learning.model_files import packed
     from ..learning.models import PRETRAINED, load_trained
     from ..players.by_name import NAMES
 
-AS_IT_STANDS = {"layout": [""], "noise": [""], "fidelity": [""], "physics": [""], "start": [""], "set": [[]]}
-"""What these settings may be in a run of its recipe as it stands."""
+AS_IT_STANDS = {"layout": "", "noise": "", "fidelity": "", "physics": "", "start": "", "set": []}
+"""What these settings are in a run of its recipe as it stands. A fidelity that was given is also that of its final evaluation."""
 
 
 def results_of(run):
@@ -51,8 +50,7 @@ def card_of(found, limits):
 def name_of(found, name):
     """What the model is called: ``name``, or its recipe if the run is one of it. Raises ValueError."""
     agent, settings = found["settings"]["agent"], found["settings"]
-    usual = AS_IT_STANDS | {"fidelity": ["", Recipe.of(agent).env_kwargs.get("fidelity", "standard")]}
-    other = [key for key, values in usual.items() if settings[key] not in values]
+    other = [key for key, usual in AS_IT_STANDS.items() if settings[key] != usual]
     if name is None and other:
         raise refuse(
             "name", name, f"must be given: the run is not one of {agent} as its recipe stands ({', '.join(other)} is not the same)"

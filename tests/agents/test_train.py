@@ -3,7 +3,6 @@
 import json
 import os
 import pickle
-import shutil
 import signal
 import subprocess
 import sys
@@ -12,11 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sb3_contrib import MaskablePPO
 
 import train
 from agents.evaluation import training_summary
-from agents.learning import callback, hyperparameters
+from agents.learning import callback
 from agents.learning.hyperparameters import names
 from agents.players.built_in import GhostBall, Random
 from agents.players.by_name import player_of
@@ -293,47 +291,12 @@ def test_agents_are_judged_at_the_usual_fidelity(finished, agent, monkeypatch):
     assert len(seen) == (9 if agent in ("ppo_mask", "ppo_value") else 6)
 
 
-def test_a_run_goes_on_with_the_tables_that_it_began_with(tmp_path, monkeypatch):
-    """Whatever its recipe says by then."""
-    folder, seen = tmp_path / "recipes", []
-    shutil.copytree(hyperparameters.FOLDER, folder)
-    monkeypatch.setattr(hyperparameters, "FOLDER", folder)
-    recipe = folder / "ppo_mask.yml"
-    now = recipe.read_text()
-    assert "fidelity: fast" in now
-    recipe.write_text(now.replace("fidelity: fast", "fidelity: standard"))
-    assert run(tmp_path / "run", "--steps", "64") == 0
-    recipe.write_text(now)
-    original = train.training_tables
-    monkeypatch.setattr(train, "training_tables", lambda *args, **options: seen.append(options) or original(*args, **options))
-    assert train.main(["--resume", "--no-progress", "--steps", "128", "--out", str(tmp_path / "run")]) == 0
-    assert [options["fidelity"] for options in seen] == ["standard"] and results(tmp_path / "run")["steps"] == 128
-
-
 def test_random_play_is_the_same_for_every_agent(finished):
     """It is that of agents.evaluate, not any action of the agent's own."""
     of_each = [results(finished / agent)["evaluation"] for agent in AGENTS]
     for name in ("random", "ghost_ball"):
         assert all(figures[name] == of_each[0][name] for figures in of_each)
     assert of_each[0]["random"] == summary(play_visits(player_of("random"), 4))
-
-
-def test_agents_with_longer_actions_are_judged(tmp_path):
-    out, given = tmp_path / "run", "env_kwargs={'aim': 'target', 'elevation': True, 'placement': True}"
-    assert run(out, "--agent", "ppo_target", "--steps", "128", "--set", given) == 0
-    assert load_player(out).options == {"aim": "target", "elevation": True, "placement": True}
-    again = summary(play_visits(load_player(out), 4, noise="none"))
-    assert again == results(out)["evaluation"]["trained"]
-
-
-def test_imitation_comes_first_and_is_kept(tmp_path):
-    assert train.main([*TINY[:-1], "256", "--agent", "ppo_foresight", "--out", str(tmp_path / "run")]) == 0
-    found = results(tmp_path / "run")
-    assert found["settings"]["imitate"] == 256 and found["imitation"][-1]["states"] == 256
-    assert "after 256 positions of imitation, ppo_" in found["learned"]
-    assert train.main(["--resume", "--no-progress", "--steps", "1024", "--out", str(tmp_path / "run")]) == 0
-    assert results(tmp_path / "run")["imitation"] == found["imitation"]
-    assert "after 256 positions of imitation, ppo_" in results(tmp_path / "run")["learned"]
 
 
 def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, capsys):
@@ -349,35 +312,6 @@ def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, capsys):
     with pytest.raises(SystemExit) as stop:
         run(tmp_path / "other", "--start", start, "--agent", "ppo_target")
     assert stop.value.code == 2 and "must be a model of ppo_target" in capsys.readouterr().err
-
-
-def test_what_starts_from_a_model_does_not_imitate_again(tmp_path, capsys):
-    assert train.recipe_of(train.Settings(start="x")).imitation == 0 < train.recipe_of(train.Settings()).imitation
-    error = refused(capsys, "--start", "x", "--imitate", "5", "--out", str(tmp_path / "run"))
-    assert "imitate = 5: must be 0 or left out with --start" in error
-
-
-def test_start_refuses_a_model_with_other_actions(tmp_path, capsys):
-    assert run(tmp_path / "run", "--agent", "ppo_target", "--steps", "128") == 0
-    error = refused(
-        capsys, "--agent", "ppo_target", "--start", str(tmp_path / "run"), "--out", str(tmp_path / "new"),
-        "--set", "env_kwargs={'aim':'target','elevation':True}",
-    )  # fmt: skip
-    assert "start = " in error and "must be a model with actions" in error
-
-
-def test_only_agents_with_masks_can_imitate(tmp_path, capsys):
-    assert "imitate = 100: must be 0 for ppo_target" in refused(
-        capsys, "--agent", "ppo_target", "--imitate", "100", "--out", str(tmp_path / "run")
-    )
-
-
-def test_hyperparameters_can_be_changed(tmp_path):
-    assert run(tmp_path / "run", "--set", "gamma=0", "n_steps=32") == 0
-    model = MaskablePPO.load(tmp_path / "run" / "model.zip", device="cpu")  # the zip stays one of Stable-Baselines3
-    assert model.gamma == 0 and model.n_steps == 32 and load_player(tmp_path / "run").model.gamma == 0
-    assert results(tmp_path / "run")["settings"]["set"] == ["gamma=0", "n_steps=32"]
-    assert results(tmp_path / "run")["command"].endswith("--agent ppo_mask --steps 512 --envs 2 --imitate 0 --set gamma=0 n_steps=32")
 
 
 def test_an_interruption_before_the_first_save_is_reported_in_one_line(tmp_path):

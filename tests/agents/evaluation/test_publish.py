@@ -164,7 +164,9 @@ def test_a_published_model_is_replaced_only_when_asked(run, capsys):
     assert b"second" in (run.parent / "pretrained" / "ppo_mask.json").read_bytes()
 
 
-@pytest.mark.parametrize("settings", [{"set": ["gamma=0"]}, {"noise": "club"}, {"start": "runs/a"}, {"fidelity": "standard"}])
+@pytest.mark.parametrize(
+    "settings", [{"set": ["gamma=0"]}, {"noise": "club"}, {"start": "runs/a"}, {"fidelity": "standard"}, {"fidelity": "fast"}]
+)
 def test_another_way_to_train_needs_another_name(run, capsys, settings):
     write(run, settings)
     assert "name = None: must be given" in refused(capsys, run, "--limits", "none")
