@@ -19,9 +19,9 @@ from . import fused_kernels as kernels
 from .fused_kernels import BALL_INPUTS, STATE
 
 BLOCK = 128
-"""Tables of a block: their intermediate results take 2.5 MB."""
+"""Tables of a block: their intermediate results take 3 MB."""
 SCORED = -(-STROKES // 16) * 16
-"""Columns of the scores: 144 take a quarter less time than 135, because whole registers are written."""
+"""Columns of the scores: 144 take a sixth less time than 135, because whole registers are written."""
 
 
 class FusedTable:
