@@ -246,7 +246,7 @@ _KEPT = threading.local()
 
 
 def _take_space(log_size, path_size):
-    """``_log_space`` of one shot: that of the last one in this thread where the sizes are the same, for to make it takes longer than most
+    """``_log_space`` of one shot: that of the last one in this thread if the sizes are the same, because making it takes longer than most
     shots. It is taken out until the results are copied: a shot inside a shot (a signal, a trace function) makes its own."""
     space = _KEPT.__dict__.pop("space", None)
     if space is None or (space[0].shape[1], space[2].shape[1]) != (log_size, path_size):

@@ -193,7 +193,7 @@ class _Block(SimpleNamespace):
         at = 3 * width + layers["pot_2"].outputs  # where the game's state begins in the input of the context
         made["balls"], made["pots"] = torch.zeros(most, BALL_INPUTS), torch.zeros(n * POTS, POT_ENTRIES)
         made["context"], made["d_context"] = torch.zeros(n, at + STATE + 3), torch.zeros(n, at)
-        made["scores"] = torch.zeros(n * POTS, SCORED)
+        made["scores"] = torch.zeros(n * POTS, SCORED)  # wider than its gradient
         made["by_table"], made["d_by_table"] = torch.zeros(n, CHOICES), made["d_scores"].view(n, CHOICES)
         made["likely"], made["mean"] = torch.zeros(n, CHOICES), torch.zeros(n)
         super().__init__(**made, **{f"{name}_": array.numpy() for name, array in made.items()})
