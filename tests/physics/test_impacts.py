@@ -103,6 +103,18 @@ def test_standard_keeps_its_promise_on_many_impacts(preset):
     assert max(errors) < 1e-5
 
 
+@pytest.mark.parametrize("preset", ["paper", "match", None])
+def test_standard_keeps_its_promise_at_cushions(preset):
+    """Against ``reference``: with the constants of play, and (None) with any, for which docs/physics/model.md promises less."""
+    errors = []
+    for c in cushion_impacts(2000, seed=7):
+        physics = sn.Physics.preset(preset) if preset else sn.Physics(e_c=c["e"], mu_c=c["mu_w"], mu_s=c["mu_s"])
+        found, truth = (sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity) for fidelity in ("standard", "reference"))
+        errors.append(worst(found, truth, np.linalg.norm(c["v"])))
+    assert np.quantile(errors, 0.99) < (1e-6 if preset else 1.3e-6)
+    assert max(errors) < 1e-5
+
+
 def test_marlow_law_agrees_with_the_oracle():
     a, b, c_ = 9.951e-3, 0.108, 1.088
     for c in impacts(40, seed=5):
