@@ -3,9 +3,9 @@
 * The files are pickles: whoever can write there can run code here. So the folders are made for the user alone, and a folder that belongs
   to somebody else, or that others can write to, is not used. root is trusted, because it can do anything anyway.
 * numba notices a change only in the file that *defines* a cached function. After a change of a callee or a constant in another file it
-  would silently run old machine code. So the name of the cache folder is a hash of the whole package source. Kernels defined outside the
-  package (agents, benchmarks) have a folder in it, named by a hash of the whole package that they come from. The place of the source does
-  not matter: equal copies share their machine code.
+  would silently run old machine code. So the name of the cache folder is a hash of all source in the rooms of the package that kernels are
+  made from. Kernels defined elsewhere (a view, agents, benchmarks) have a folder in it, named by a hash of the whole package that they come
+  from. The place of the source does not matter: equal copies share their machine code.
 * Each file ends with a checksum: unpickling a truncated file would raise, but damaged machine code would crash the process.
 * Whatever goes wrong, the kernel is compiled again, and the process warns once.
 """
@@ -27,17 +27,28 @@ _WRITE_GROUP, _WRITE_OTHERS, _STICKY = 0o020, 0o002, 0o1000
 _DIGEST = hashlib.sha256().digest_size
 
 
-def source_hash(root: Path = _PACKAGE) -> str:
-    """A hash of all Python files of the package and their names (16 hex digits)."""
+KERNEL_ROOMS = ("_inner.py", "_jit.py", "_lanes.py", "game", "geometry.py", "impacts.py", "physics", "planning", "simulation.py", "tasks")
+"""Files and folders of the package that hold kernels, and all that their kernels take from (tests/repository/test_kernel_rooms.py)."""
+
+
+def source_hash(root: Path, rooms: tuple[str, ...] = ()) -> str:
+    """A hash of the Python files of a package and their names (16 hex digits); with ``rooms``, of what is in these files and folders."""
     h = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):
-        h.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+        inside = path.relative_to(root)
+        if not rooms or inside.parts[0] in rooms:
+            h.update(inside.as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
     return h.hexdigest()[:16]
+
+
+def kernel_hash(root: Path = _PACKAGE) -> str:
+    """The hash of this package's ``KERNEL_ROOMS``: the name of its cache folder."""
+    return source_hash(root, KERNEL_ROOMS)
 
 
 @cache  # the modules imported from there do not change in this process
 def _hash_of(folder: Path) -> str:
-    """The hash of the whole package that a folder outside this package belongs to; of the folder alone if it is in no package."""
+    """The hash of the whole package that a folder outside the rooms belongs to; of the folder alone if it is in no package."""
     while (folder / "__init__.py").is_file() and (folder.parent / "__init__.py").is_file():
         folder = folder.parent
     return source_hash(folder)
@@ -78,11 +89,11 @@ def _claim(home: Path, folder: Path) -> None:
 def cache_folder() -> Path | None:
     """The folder for compiled entry kernels, or None if they can be kept in memory only.
 
-    ``$NUMBA_CACHE_DIR`` if set, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it ``snooker_env/<source hash>``.
+    ``$NUMBA_CACHE_DIR`` if set, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it ``snooker_env/<kernel hash>``.
     """
     chosen = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     home = Path(chosen).absolute()
-    folder = home / "snooker_env" / source_hash()
+    folder = home / "snooker_env" / kernel_hash()
     try:
         if chosen == "~/.cache":  # expanduser found no home; this would be a folder below the working directory
             raise UnsafeFolderError("there is no home folder")
@@ -119,7 +130,8 @@ class _Place(_CacheLocator):
         assert CACHE_FOLDER is not None
         self._py_file, self._line = file, function.__code__.co_firstlineno
         folder = Path(file).resolve().parent
-        inside = folder.is_relative_to(_PACKAGE)
+        path = Path(file).resolve()
+        inside = path.is_relative_to(_PACKAGE) and path.relative_to(_PACKAGE).parts[0] in KERNEL_ROOMS
         self._folder = CACHE_FOLDER / (".".join(folder.relative_to(_PACKAGE.parent).parts) if inside else _hash_of(folder))
 
     @classmethod

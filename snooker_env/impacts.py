@@ -144,7 +144,7 @@ def strike(
     speed : float
         Speed that the cue gives the ball, along the cue [m/s], in [0, 1000].
     aim : float
-        Direction of the cue [rad], anticlockwise from +x.
+        Direction of the cue [rad], anticlockwise from +x, in [-2 pi, 2 pi].
     side, top : float
         Offset of the tip over R, + right and + up as the player sees the ball; the two together at most ``Physics.max_offset``.
     elevation : float
@@ -162,8 +162,8 @@ def strike(
     Raises
     ------
     ValueError
-        For a miscue (an offset beyond ``Physics.max_offset``, 0.5 by default), a speed or elevation out of range, and numbers that are
-        not finite.
+        For a miscue (an offset beyond ``Physics.max_offset``, 0.5 by default), a speed, aim or elevation out of range, and numbers that
+        are not finite.
 
     Examples
     --------

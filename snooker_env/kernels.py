@@ -21,10 +21,10 @@ from .game.pots import (
     find_pots,
     window,
 )
-from .tasks.box_actions import line_of
+from .tasks.lines import LINE_ROWS, line_of
 from .tasks.noise import executed
 
 __all__ = [
-    "COS_CUT", "GHOST_X", "GHOST_Y", "POT_BALL", "POT_COLUMNS", "POT_POCKET", "TOLERANCE", "balls_on", "bits", "clear_segment", "entry",
-    "executed", "find_pots", "kernel", "line_of", "window",
+    "COS_CUT", "GHOST_X", "GHOST_Y", "LINE_ROWS", "POT_BALL", "POT_COLUMNS", "POT_POCKET", "TOLERANCE", "balls_on", "bits", "clear_segment",
+    "entry", "executed", "find_pots", "kernel", "line_of", "window",
 ]  # fmt: skip

@@ -93,7 +93,7 @@ class Shot:
         Raises
         ------
         ValueError
-            If a time is negative or not finite.
+            If a time is negative or not finite, or if the shot has no path.
 
         Examples
         --------
@@ -106,6 +106,7 @@ class Shot:
         times = array("t", [t] if single else t, (-1,))
         if times.size and times.min() < 0:
             raise refuse("t", float(times.min()), "must not be negative")
+        check_path(self)
         n, m = len(self.positions), len(times)
         out = np.zeros((m, n, 2)), np.zeros((m, n, 2)), np.zeros((m, n, 3))
         segments = np.require(self.segments, np.float64, ["C", "W"])  # the compiled type; an unpickled shot may be read-only
@@ -147,6 +148,12 @@ class Shot:
         from .render.diagrams import plot
 
         return plot(self, ax, **options)
+
+
+def check_path(shot: Shot) -> None:
+    """Raise ValueError unless the shot has its path."""
+    if not len(shot.segments):
+        raise refuse("shot.segments", "none", "must be there: simulate() keeps them, environments with keep_history = True")
 
 
 @dataclass(frozen=True, eq=False)

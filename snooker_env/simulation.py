@@ -17,6 +17,7 @@ from .physics.impact import contact
 from .physics.parameters import FASTEST, MOST_SPIN, Physics, PhysicsLike
 from .physics.table import Table, TableLike
 from .shot import EVENT, Shot, ShotBatch, SimulationError
+from .shot import check_path as check_path  # for the layers above
 
 MAX_EVENTS = 100_000
 MAX_BALLS = 4096
@@ -263,7 +264,7 @@ def _run(state, physics, table, fidelity, max_events, log_size, path_size, threa
     positions, velocities, spins, on_table = state
     balls, setup = (
         Balls(positions, velocities, spins, on_table, out.potted),
-        Setup(physics._packed, table.noses, table.jaws, table.falls, *fidelity),
+        Setup(physics._packed, table.noses, table.jaws, table.falls, table._reach(physics.R), *fidelity),
     )
     log, ends = Log(out.event_time, out.event_what, out.segments), Ends(out.status, out.n_events, out.n_segments, out.duration)
 
@@ -289,5 +290,6 @@ def _failure(out, k, events):
     why = {
         Status.TOO_MANY_EVENTS: "did not come to rest in time; a ball may be held against another: allow more max_events",
         Status.IMPACT_UNSOLVED: "holds an impact that did not end; try another fidelity, or less extreme friction",
+        Status.ASTRAY: "holds a ball that left the table through a cushion, or where the table is open",
     }[Status(out.status[k])]
     return SimulationError(f"shot {k} {why} (after {out.n_events[k]} events{last})")

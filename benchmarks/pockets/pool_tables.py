@@ -144,9 +144,9 @@ def pocket(kind):
         jaws.append((*centre, _FLAT, *-into, sqrt(_FLAT**2 - _FACING**2 / 4) / _FLAT))
     if kind == "corner":
         level = pool.p / 2 / sqrt(2) * INCH
-        noses = [(0, 1, level, -pool.L * INCH, -level), (1, 1, level, -pool.L * INCH, -level)]
+        noses = [(0, 1, level, -100.0, -level), (1, 1, level, -100.0, -level)]  # without other ends
     else:
-        noses = [(0, 1, 0.0, -pool.L / 2 * INCH, -half), (0, 1, 0.0, half, pool.L / 2 * INCH)]
+        noses = [(0, 1, 0.0, -100.0, -half), (0, 1, 0.0, half, 100.0)]
     hole = (pool.R_h + pool.b) * INCH * u
     table = sn.Table(f"pool {kind}", np.array(noses), np.array(jaws), np.array([(*hole, pool.R_h * INCH)]))
     return LonePocket(table, (0.0, 0.0), axis)

@@ -25,6 +25,8 @@ SCAN = 151
 """... in so many steps, here of 1 mm."""
 HALVINGS = 18
 """Halvings of a step: 4e-9 m."""
+AT_POCKET = 0.25
+"""Noses that end and jaws whose centre is nearer than this to a pocket [m] are its own."""
 NEAR = 0.05
 """A ball that would stop less than this [m] past the aim point is not counted as arriving: its speed decides, not the pocket."""
 
@@ -47,20 +49,22 @@ class LonePocket:
     """Direction into the pocket [rad]."""
 
 
+def endless(noses, x, y):
+    """The noses with an end near (x, y), their other ends so far away that no ball comes round them."""
+    out, level, kept = noses.copy(), noses[:, 1] * noses[:, 2], np.zeros(len(noses), bool)
+    for end, other in ((3, 4), (4, 3)):
+        far = np.hypot(np.where(noses[:, 0] == 0, level, noses[:, end]) - x, np.where(noses[:, 0] == 0, noses[:, end], level) - y)
+        out[far < AT_POCKET, other] = 100.0 if other == 4 else -100.0
+        kept |= far < AT_POCKET
+    return out[kept]
+
+
 def alone(table, pocket):
     """Pocket number ``pocket`` of a preset, or of a table like it: its fall, its jaws, and the noses that end at it."""
     x, y, _ = table.falls[pocket]
     ax, ay, ux, uy, _ = POCKET_AIMS[pocket]
-
-    def near(a, b):
-        return np.hypot(a - x, b - y) < 0.25
-
-    noses, ends = table.noses, []
-    for end in (3, 4):
-        level = noses[:, 1] * noses[:, 2]
-        ends.append(near(np.where(noses[:, 0] == 0, level, noses[:, end]), np.where(noses[:, 0] == 0, noses[:, end], level)))
-    jaws = table.jaws[near(table.jaws[:, 0], table.jaws[:, 1])]
-    here = sn.Table(f"pocket {pocket} alone", noses[ends[0] | ends[1]], jaws, table.falls[[pocket]])
+    jaws = table.jaws[np.hypot(table.jaws[:, 0] - x, table.jaws[:, 1] - y) < AT_POCKET]
+    here = sn.Table(f"pocket {pocket} alone", endless(table.noses, x, y), jaws, table.falls[[pocket]])
     return LonePocket(here, (float(ax), float(ay)), float(np.arctan2(uy, ux)))
 
 

@@ -76,10 +76,6 @@ MODELS = {
     "cushion: cloth (the ODE)": LeftOut("a smooth cloth, closed form", ALWAYS, variants.SMOOTH_CLOTH),
     "cushion: friction, nose, ODE": LeftOut("a mirror with e_c", ALWAYS, variants.MIRROR),
     "jaw arcs": LeftOut("the throat's points", "snooker_env has them on every table", table=sharp_jaws()),
-    "jaws at all": LeftOut(
-        "no jaws: only noses and falls", "snooker_env has them on every table",
-        table=sn.Table("no jaws", sn.Table.preset("match").noses, np.zeros((0, 6)), sn.Table.preset("match").falls),
-    ),
     "drop takes time": LeftOut("dropped at once at the edge", ALWAYS, variants.AT_ONCE),
     "Marlow's law": LeftOut("mu_bb 0.05", 'snooker_env has it in "match"; "paper" keeps the paper\'s 0.05', physics={"mu_bb": 0.05}),
     "spin decay": LeftOut("spin about the vertical stays", "snooker_env has it everywhere", physics={"spin_decel": 0.0}),

@@ -18,6 +18,8 @@ class Setup(NamedTuple):
     """(k, 5), and the next two: as in ``table.Table``."""
     jaws: np.ndarray
     falls: np.ndarray
+    reach: np.ndarray
+    """(2, 2): the lowest and highest x and y that a ball's centre may have [m]."""
     fidelity: int
     """As ``contact.parse_fidelity`` returns it, together with n_steps."""
     n_steps: int
@@ -87,8 +89,9 @@ class Forecast(NamedTuple):
     """(n,) its nose, jaw or pocket; -1 if it has none."""
 
 
-IN_X, IN_Y, POCKET, Z0, U0, Z1, U1, END_VX, END_VY, KIND, INDEX = range(11)
-FLIGHT = 11
-"""Columns of ``flight``. IN_X, IN_Y: where the ball came in, relative to the pocket's centre [m]; POCKET: the pocket. Z0, U0 and Z1, U1:
-drop of the centre [m] and its rate [m/s] at the start and at the end of this leg. END_VX, END_VY, KIND, INDEX: velocity [m/s],
+IN_X, IN_Y, POCKET, HAD, Z0, U0, Z1, U1, END_VX, END_VY, KIND, INDEX = range(12)
+FLIGHT = 12
+"""Columns of ``flight``. IN_X, IN_Y: where the ball came in, relative to the pocket's centre [m]; POCKET: the pocket. HAD: its
+energy of translation and height at the start of this leg, per unit mass [m^2/s^2]. Z0, U0 and Z1, U1: drop of the centre [m] and its
+rate [m/s] at the start and at the end of this leg. END_VX, END_VY, KIND, INDEX: velocity [m/s],
 kind of event and its index at the end."""

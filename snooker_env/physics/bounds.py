@@ -40,9 +40,11 @@ def deepest(jaws: Floats, falls: Floats, bounds: Floats, R: float) -> float:
 
 
 def _in_a_jaw(x, y, jaws, R):
-    dx, dy = x - jaws[:, JAW_X], y - jaws[:, JAW_Y]
-    far = np.hypot(dx, dy)
-    return bool(np.any((far < jaws[:, JAW_RADIUS] + R - 1e-6) & (dx * jaws[:, JAW_UX] + dy * jaws[:, JAW_UY] >= jaws[:, JAW_COS] * far)))
+    """As ``placement.in_jaw``, for all jaws."""
+    dx, dy, radius, cos_half = x - jaws[:, JAW_X], y - jaws[:, JAW_Y], jaws[:, JAW_RADIUS], jaws[:, JAW_COS]
+    far, width = np.hypot(dx, dy), 2.0 * radius * np.where(cos_half > 0.0, np.sqrt(1.0 - cos_half**2), 1.0)
+    deep = (far < radius + R - 1e-6) & (far > radius - R - width)
+    return bool(np.any(deep & (dx * jaws[:, JAW_UX] + dy * jaws[:, JAW_UY] >= cos_half * far)))
 
 
 def narrowest(noses: Floats) -> tuple[float, int, int]:

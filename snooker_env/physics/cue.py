@@ -1,6 +1,6 @@
 """How does the cue move the ball? Speed, aim, tip offset and elevation -> velocity and spin; squirt and miscue."""
 
-from math import atan, cos, hypot, sin, sqrt
+from math import atan, cos, hypot, pi, sin, sqrt
 
 from .._check import number, refuse
 from .._jit import entry, kernel
@@ -46,6 +46,8 @@ def strike(
     """``struck`` for Python, with its input checked; see ``snooker_env.strike``."""
     speed = number("speed", speed, 0, FASTEST)
     aim = number("aim", aim)
+    if abs(aim) > 2.0 * pi:
+        raise refuse("aim", aim, "must be in radians, within a turn of 0; from degrees: np.radians(degrees)")
     side, top = number("side", side), number("top", top)
     elevation = number("elevation", elevation, 0, MAX_ELEVATION)
     if hypot(side, top) > physics.max_offset * (1 + 1e-12):

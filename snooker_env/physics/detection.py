@@ -7,6 +7,12 @@ Bodies in touch. Two bodies whose gap is below TOUCH and which approach faster t
 rest or separate, their next contact is where the gap falls through -SKIN (at once if it is there already). So bodies that friction
 presses together from rest gain a closing speed before they meet, and do not meet infinitely often at speed zero. And bodies that separate
 do not meet again because of rounding.
+
+Noses and arcs. The places that a ball's centre cannot pass are made of pieces: a line beside each nose, and a circle about each arc in the
+sector of that arc. (A facing is an arc, too.) Neighbours join with a common tangent, so a ball at the end of one is at the same depth in
+the next. A path is judged by each piece from where it comes into that piece's range: there the rule for bodies in touch holds again, so a
+ball pressed SKIN deep into a nose is handed on to the arc. Each range is longer by SEAM at its ends, so that there is no crack between
+two. A place deeper than HELD behind a piece is another part of the table.
 """
 
 from math import inf, sqrt
@@ -31,12 +37,16 @@ from .columns import (
     NOSE_LOW,
     NOSE_SIDE,
 )
+from .placement import OVERLAP_ALLOWED
 from .roots import quadratic_crossing, quartic_crossing
 
 TOUCH = 1e-10  # m
 SKIN = 5e-10  # m; so the overlap stays under the 1e-9 that the tests allow
 _DEEP = SKIN * (1.0 - 1e-6)  # an overlap of at least this is SKIN, up to rounding
 _MARGIN = 1e-9  # m; bodies nearer than this to a path may touch it
+_AROUND = 1e-5  # m^2; more than SEAM and HELD add to the square of a half chord of 1 m or less
+SEAM = 1e-9  # m; past its end a line is 1e-17 m off the arc that goes on
+HELD = 2.0 * OVERLAP_ALLOWED  # m
 STILL = 1e-12  # m/s; rounding may leave this much of a closing speed after a meeting
 CREEP = 5e-5  # m/s; the speed gained over SKIN at the largest relative acceleration on cloth, about 2 mu_s g
 
@@ -112,10 +122,22 @@ def pair_time(motion, state, i, j, t, d):
 
 
 @kernel
-def _apart(lo_x, hi_x, lo_y, hi_y, x, y, r):
-    """Whether the circle of radius r about (x, y) and the rectangle have no common point."""
+def _apart(lo_x, hi_x, lo_y, hi_y, x, y, r2):
+    """Whether the circle about (x, y) whose radius has the square r2 and the rectangle have no common point."""
     dx, dy = max(lo_x - x, x - hi_x, 0.0), max(lo_y - y, y - hi_y, 0.0)
-    return dx * dx + dy * dy > r * r
+    return dx * dx + dy * dy > r2
+
+
+@kernel
+def _arc_outside(lo_x, hi_x, lo_y, hi_y, jaws, k, d):
+    """Whether the part of the circle of radius d about jaw k that lies in its sector is outside the rectangle, by its bounds."""
+    x, y, ux, uy, cos_half = jaws[k, JAW_X], jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY], jaws[k, JAW_COS]
+    sin_half = sqrt(1.0 - cos_half * cos_half)
+    x1, y1 = cos_half * ux - sin_half * uy, cos_half * uy + sin_half * ux
+    x2, y2 = cos_half * ux + sin_half * uy, cos_half * uy - sin_half * ux
+    left, right = -1.0 if -ux >= cos_half else min(x1, x2), 1.0 if ux >= cos_half else max(x1, x2)
+    low, high = -1.0 if -uy >= cos_half else min(y1, y2), 1.0 if uy >= cos_half else max(y1, y2)
+    return x + d * right < lo_x + _MARGIN or x + d * left > hi_x - _MARGIN or y + d * high < lo_y + _MARGIN or y + d * low > hi_y - _MARGIN
 
 
 @kernel
@@ -130,25 +152,78 @@ def clear_box(noses, jaws, falls, R):
             lo_y, hi_y = (lo_y, min(hi_y, level)) if noses[k, NOSE_SIDE] > 0.0 else (max(lo_y, -level), hi_y)
     free = True
     for k in range(jaws.shape[0]):
-        free = free and _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, JAW_X], jaws[k, JAW_Y], jaws[k, JAW_RADIUS] + R - _MARGIN)
+        d = jaws[k, JAW_RADIUS] + R
+        r2 = (d - _MARGIN) * (d - _MARGIN)
+        free = free and (
+            _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, JAW_X], jaws[k, JAW_Y], r2) or _arc_outside(lo_x, hi_x, lo_y, hi_y, jaws, k, d)
+        )
     for k in range(falls.shape[0]):
-        free = free and _apart(lo_x, hi_x, lo_y, hi_y, falls[k, FALL_X], falls[k, FALL_Y], falls[k, FALL_RADIUS] - _MARGIN)
+        r2 = (falls[k, FALL_RADIUS] - _MARGIN) * (falls[k, FALL_RADIUS] - _MARGIN)
+        free = free and _apart(lo_x, hi_x, lo_y, hi_y, falls[k, FALL_X], falls[k, FALL_Y], r2)
     if not free:
         return inf, -inf, inf, -inf
     return lo_x, hi_x, lo_y, hi_y
 
 
 @kernel
-def _level_crossing(gap, closing, closing2, beside, T):
-    """Earliest time x in [0, T] at which gap - closing x - closing2 x^2 falls through 0 [s], or inf.
-
-    beside: whether the ball is beside the nose itself. In the mouth of a pocket it may be far past the nose's line and touch nothing.
-    """
-    if beside and gap < TOUCH:
+def _level_crossing(gap, closing, closing2, held, T):
+    """Earliest time x in [0, T] at which gap - closing x - closing2 x^2 falls through 0 [s], or inf; ``held``: they may touch."""
+    if held and gap < TOUCH:
         if closing > CREEP or (gap <= -_DEEP and closing > STILL):
             return 0.0
         gap = gap + SKIN if gap > -1.5 * SKIN else SKIN
     return quadratic_crossing(gap, -closing, -closing2, T)
+
+
+@kernel
+def _beside_later(gap, closing, closing2, q, q1, q2, low, high, T):
+    """Earliest contact in [0, T] with a nose of a ball that comes in touch from the next arc [s], or inf.
+
+    The gap to its line is gap - closing t - closing2 t^2, the place along it q + q1 t + q2 t^2. The ball is not beside the nose, which is
+    from ``low`` to ``high``, when it passes the line.
+    """
+    first = inf
+    for x in (quadratic_crossing(low - q, -q1, -q2, T), quadratic_crossing(q - high, q1, q2, T)):
+        if x < inf and gap - (closing + closing2 * x) * x > -HELD:
+            s = x + _level_crossing(gap - (closing + closing2 * x) * x, closing + 2.0 * closing2 * x, closing2, True, T - x)
+            if s < first and low <= q + (q1 + q2 * s) * s <= high:
+                first = s
+    return first
+
+
+@kernel
+def _past_end(x, y, ux, uy, cos_half, sin_half):
+    """How far outside the arc's sector the place (x, y) from the arc's centre is, along the arc [m]; 0 or less inside. Near its ends."""
+    past = cos_half * sqrt(x * x + y * y) - (x * ux + y * uy)
+    return past / sin_half if past > 0.0 and sin_half > 0.0 else past
+
+
+@kernel
+def _jaw_time(x0, y0, x1, y1, x2, y2, d, ux, uy, cos_half, T):
+    """Earliest contact in [0, T] with a jaw's arc [s], or inf: |c| falls through d while c lies in the arc's sector."""
+    s = distance_crossing(x0, y0, x1, y1, x2, y2, d, T)
+    far2, sin_half = x0 * x0 + y0 * y0, sqrt(1.0 - cos_half * cos_half)
+    held = far2 > (d - HELD) * (d - HELD) and _past_end(x0, y0, ux, uy, cos_half, sin_half) <= SEAM
+    if far2 > (d + TOUCH) * (d + TOUCH) or held:
+        if s == inf:
+            return s
+        px, py = x0 + (x1 + x2 * s) * s, y0 + (y1 + y2 * s) * s
+        past = _past_end(px, py, ux, uy, cos_half, sin_half)
+        closing = -(px * (x1 + 2.0 * x2 * s) + py * (y1 + 2.0 * y2 * s))
+        if past <= 0.0 or (past <= SEAM and closing > CREEP * d):  # (a ball that glides along the nose only grazes the circle)
+            return s
+    first = inf  # not in the sector when it meets the circle: it may come into it in touch, from the nose or the next arc, over either end
+    for side in (-1.0, 1.0):
+        ex, ey = cos_half * ux - side * sin_half * uy, cos_half * uy + side * sin_half * ux  # from the centre to the end of the arc
+        x = quadratic_crossing(side * (y0 * ex - x0 * ey), side * (y1 * ex - x1 * ey), side * (y2 * ex - x2 * ey), T)
+        if x == inf:
+            continue
+        px, py = x0 + (x1 + x2 * x) * x, y0 + (y1 + y2 * x) * x
+        if px * ex + py * ey > max(0.0, d - HELD):
+            s = x + distance_crossing(px, py, x1 + 2.0 * x2 * x, y1 + 2.0 * y2 * x, x2, y2, d, T - x)
+            if s < first and _past_end(x0 + (x1 + x2 * s) * s, y0 + (y1 + y2 * s) * s, ux, uy, cos_half, sin_half) <= SEAM:
+                first = s
+    return first
 
 
 @kernel
@@ -165,21 +240,23 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
     T = motion[i, T_END] - motion[i, T0]
     x0, y0, x1, y1, x2, y2 = motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY], 0.5 * motion[i, AX], 0.5 * motion[i, AY]
     for k in range(noses.shape[0]):
-        side, level = noses[k, NOSE_SIDE], noses[k, NOSE_LEVEL]
+        side, level, low, high = noses[k, NOSE_SIDE], noses[k, NOSE_LEVEL], noses[k, NOSE_LOW], noses[k, NOSE_HIGH]
         if noses[k, NOSE_AXIS] == AXIS_X:
-            if (hi_x if side > 0.0 else -lo_x) < level - R or hi_y < noses[k, NOSE_LOW] or lo_y > noses[k, NOSE_HIGH]:
+            if (hi_x if side > 0.0 else -lo_x) < level - R or hi_y < low or lo_y > high:
                 continue
             p, p1, p2, q, q1, q2 = x0, x1, x2, y0, y1, y2
         else:
-            if (hi_y if side > 0.0 else -lo_y) < level - R or hi_x < noses[k, NOSE_LOW] or lo_x > noses[k, NOSE_HIGH]:
+            if (hi_y if side > 0.0 else -lo_y) < level - R or hi_x < low or lo_x > high:
                 continue
             p, p1, p2, q, q1, q2 = y0, y1, y2, x0, x1, x2
-        beside = noses[k, NOSE_LOW] <= q <= noses[k, NOSE_HIGH]
-        s = _level_crossing(level - R - side * p, side * p1, side * p2, beside, min(T, best))
+        gap, low, high = level - R - side * p, low - SEAM, high + SEAM
+        beside = low <= q <= high
+        s = _level_crossing(gap, side * p1, side * p2, beside and gap > -HELD, min(T, best))
+        past = not low <= q + (q1 + q2 * s) * s <= high if s < inf else gap <= 0.0 and not beside
+        if past:
+            s = _beside_later(gap, side * p1, side * p2, q, q1, q2, low, high, min(T, best))
         if s < best:
-            along = q + (q1 + q2 * s) * s
-            if noses[k, NOSE_LOW] <= along <= noses[k, NOSE_HIGH]:
-                best, kind, index = s, events.CUSHION, k
+            best, kind, index = s, events.CUSHION, k
     if best < T:  # only something on the way to the nose can come first
         lo_x, hi_x = extent(x0, x1, motion[i, AX], best)
         lo_y, hi_y = extent(y0, y1, motion[i, AY], best)
@@ -187,28 +264,22 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
     # one limit for all falls, then one for all jaws: so the result does not depend on their order
     T = min(T, best)
     for k in range(falls.shape[0]):
-        if _apart(lo_x, hi_x, lo_y, hi_y, falls[k, FALL_X], falls[k, FALL_Y], falls[k, FALL_RADIUS]):
+        radius = falls[k, FALL_RADIUS]
+        if _apart(lo_x, hi_x, lo_y, hi_y, falls[k, FALL_X], falls[k, FALL_Y], radius * radius):
             continue
-        s = distance_crossing(x0 - falls[k, FALL_X], y0 - falls[k, FALL_Y], x1, y1, x2, y2, falls[k, FALL_RADIUS], T)
+        s = distance_crossing(x0 - falls[k, FALL_X], y0 - falls[k, FALL_Y], x1, y1, x2, y2, radius, T)
         if s < best:
             best, kind, index = s, events.POT, k
     T = min(T, best)
     for k in range(jaws.shape[0]):
-        if _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, JAW_X], jaws[k, JAW_Y], jaws[k, JAW_RADIUS] + R):
+        x, y, d = jaws[k, JAW_X], jaws[k, JAW_Y], jaws[k, JAW_RADIUS] + R
+        if _apart(lo_x, hi_x, lo_y, hi_y, x, y, d * d):
             continue
-        cx, cy = x0 - jaws[k, JAW_X], y0 - jaws[k, JAW_Y]
-        s = distance_crossing(cx, cy, x1, y1, x2, y2, jaws[k, JAW_RADIUS] + R, T)
+        ux, uy, cos_half = jaws[k, JAW_UX], jaws[k, JAW_UY], jaws[k, JAW_COS]
+        chord2 = 2.0 * (1.0 - cos_half) * d * d  # of the half arc; of a facing this is a small part of a very large circle
+        if _apart(lo_x, hi_x, lo_y, hi_y, x + d * ux, y + d * uy, chord2 + _AROUND):
+            continue
+        s = _jaw_time(x0 - x, y0 - y, x1, y1, x2, y2, d, ux, uy, cos_half, T)
         if s < best:
-            dx, dy = cx + (x1 + x2 * s) * s, cy + (y1 + y2 * s) * s
-            d = sqrt(dx * dx + dy * dy)
-            before = jaws[k, JAW_COS] - (dx * jaws[k, JAW_UX] + dy * jaws[k, JAW_UY]) / d
-            if before > 0.0:
-                # The nose ends where the arc starts, with a common tangent: a ball pressed SKIN deep into the nose falls through the circle
-                # an angle of sqrt(2 SKIN / d) before that. A ball that moves along the nose only grazes it, by less than a tenth of that.
-                seam = sqrt(2.5 * SKIN / (jaws[k, JAW_RADIUS] + R))
-                vx, vy = x1 + 2.0 * x2 * s, y1 + 2.0 * y2 * s
-                grazes = -(dx * vx + dy * vy) < 0.3 * seam * d * sqrt(vx * vx + vy * vy)
-                if before > seam * sqrt(1.0 - jaws[k, JAW_COS] * jaws[k, JAW_COS]) or grazes:
-                    continue
             best, kind, index = s, events.JAW, k
     return motion[i, T0] + best, kind, index

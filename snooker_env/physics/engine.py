@@ -10,16 +10,17 @@ import numpy as np
 
 from .._jit import entry, inlined, kernel
 from . import cloth, events, pocket
-from .arrays import END_VX, END_VY, FLIGHT, IN_X, IN_Y, INDEX, KIND, POCKET, U0, U1, Z0, Z1, Balls, Forecast, Log, Motions, Setup
+from .arrays import END_VX, END_VY, FLIGHT, HAD, IN_X, IN_Y, INDEX, KIND, POCKET, U0, U1, Z0, Z1, Balls, Forecast, Log, Motions, Setup
 from .cloth import AX, AY, FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, VX, VY, WX, WY, WZ, X, Y
 from .columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_SIDE
-from .detection import TOUCH, boundary_event, clear_box, may_meet, pair_time
+from .detection import HELD, TOUCH, boundary_event, clear_box, may_meet, pair_time
 from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
 from .impact.contact import collide_balls, collide_cushion
 from .impact.polynomial import WORK
 from .meetings import meet, rebound
-from .parameters import P_R, P_SIN, P_SPIN
+from .parameters import P_G, P_R, P_SIN, P_SPIN
+from .placement import SOUND, place_fault
 
 
 @kernel
@@ -39,18 +40,35 @@ def _fly(motion, state, flight, i, t, x, y, z, vx, vy, u, w, falls, jaws, phys):
     motion[i, WX], motion[i, WY], motion[i, WZ] = w
     motion[i, T0], motion[i, T_END] = t, t + T
     motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y] = min(x, x1), max(x, x1), min(y, y1), max(y, y1)
+    flight[i, HAD] = 0.5 * (vx * vx + vy * vy + u * u) - phys[P_G] * z
     flight[i, Z0], flight[i, U0], flight[i, Z1], flight[i, U1], flight[i, END_VX], flight[i, END_VY] = z, u, z1, u1, vx1, vy1
     flight[i, KIND] = events.JAW if end == pocket.JAW else events.RETURN if end == pocket.BACK else events.POT
     flight[i, INDEX] = jaw if end == pocket.JAW else here
 
 
 @kernel
+def _aloft(motion, flight, i, t, v, phys):
+    """Ball i in the air meets another ball at time t, when its leg has the velocity v: its velocity. The leg starts anew there.
+
+    A leg with the edge or a soft jaw on its way is not straight, and its mean speed in the plane is not that of any moment. Together with
+    the drop it may come to more energy than the ball had at the start of the leg: then the ball is slower.
+    """
+    s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
+    z, u = flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0]), flight[i, U0] + s * (flight[i, U1] - flight[i, U0])
+    vx, vy = v
+    has, had = 0.5 * (vx * vx + vy * vy + u * u), max(0.0, flight[i, HAD] + phys[P_G] * z)
+    if has > had:
+        k = sqrt(had / has)
+        vx, vy, u = vx * k, vy * k, u * k
+    flight[i, Z0], flight[i, U0] = z, u
+    return vx, vy
+
+
+@kernel
 def _begin_again(motion, state, flight, i, t, r, v, w, falls, jaws, phys):
     """Ball i has new velocities at time t, after a meeting with another ball: write its next phase, on the bed or in the air."""
     if state[i] == FALLING:
-        s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
-        z, u = flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0]), flight[i, U0] + s * (flight[i, U1] - flight[i, U0])
-        _fly(motion, state, flight, i, t, r[0], r[1], z, v[0], v[1], u, w, falls, jaws, phys)
+        _fly(motion, state, flight, i, t, r[0], r[1], flight[i, Z0], v[0], v[1], flight[i, U0], w, falls, jaws, phys)
     else:
         _begin(motion, state, i, t, r, v, w, phys)
 
@@ -102,6 +120,20 @@ def _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, be
             s, index = motion[i, T_END], -1
             kind = events.STOP if state[i] == cloth.ROLL else events.ROLL if state[i] == cloth.SLIDE else events.BEND
         own_time[i], own_kind[i], own_index[i] = s, kind, index
+
+
+@kernel
+def _is_clear(motion, i, clear):
+    """Whether ball i is in the rectangle that noses, jaws and falls leave free, or at most ``HELD`` outside: it is in none of them."""
+    x, y = motion[i, X], motion[i, Y]
+    lo_x, hi_x, lo_y, hi_y = clear
+    return (lo_x - HELD <= x) & (x <= hi_x + HELD) & (lo_y - HELD <= y) & (y <= hi_y + HELD)
+
+
+@kernel
+def _is_astray(motion, state, i, reach, noses, jaws, falls, R):
+    """Whether ball i lies or moves on the bed where no ball can be: deeper than ``HELD`` in a cushion, over a pocket, or off the table."""
+    return state[i] != FALLING and place_fault(motion[i, X], motion[i, Y], reach, noses, jaws, falls, R, HELD, HELD)[0] != SOUND
 
 
 @kernel
@@ -160,7 +192,7 @@ def run(balls, setup, max_events, log, paths, forecast, series):
     6 to 16 % longer at "fast" (measured in turn, machine code of both from the cache).
     """
     positions, velocities, spins, on_table, potted = balls
-    phys, noses, jaws, falls, fidelity, n_steps = setup
+    phys, noses, jaws, falls, reach, fidelity, n_steps = setup
     time, what, segments = log
     motion, state, flight = paths
     pair, best_time, best_ball, own_time, own_kind, own_index = forecast
@@ -207,6 +239,10 @@ def run(balls, setup, max_events, log, paths, forecast, series):
         if kind == events.BALL_BALL:
             r1, v1, w1 = cloth.evaluate(motion, state, i, t, phys)
             r2, v2, w2 = cloth.evaluate(motion, state, j, t, phys)
+            if state[i] == FALLING:
+                v1 = _aloft(motion, flight, i, t, v1, phys)
+            if state[j] == FALLING:
+                v2 = _aloft(motion, flight, j, t, v2, phys)
             nx, ny = r2[0] - r1[0], r2[1] - r1[1]
             d = sqrt(nx * nx + ny * ny)
             v1, w1, v2, w2, solved = meet(v1, w1, v2, w2, nx / d, ny / d, phys, fidelity, n_steps, series)
@@ -217,9 +253,12 @@ def run(balls, setup, max_events, log, paths, forecast, series):
             solved = True
         elif kind == events.POT:
             r, v, w = cloth.evaluate(motion, state, i, t, phys)
+            _lie(motion, i, r[0], r[1])
+            if _is_astray(motion, state, i, reach, noses, jaws, falls, R):
+                status = events.ASTRAY
+                break
             potted[i] = j
             _leave(state, i, pair, best_time, best_ball, own_time)
-            _lie(motion, i, r[0], r[1])
             motion[i, T0], motion[i, T_END] = t, inf
             n_segments = _record(segments, n_segments, motion, state, i)
             continue
@@ -252,6 +291,9 @@ def run(balls, setup, max_events, log, paths, forecast, series):
         if not solved:
             status = events.IMPACT_UNSOLVED
             break
+        if not _is_clear(motion, i, clear) and _is_astray(motion, state, i, reach, noses, jaws, falls, R):
+            status = events.ASTRAY
+            break
         n_segments = _record(segments, n_segments, motion, state, i)
         _predict(motion, state, flight, i, t, noses, jaws, falls, clear, R, pair, best_time, best_ball, own_time, own_kind, own_index)
         if kind == events.BALL_BALL:
@@ -272,8 +314,8 @@ def run(balls, setup, max_events, log, paths, forecast, series):
 
 
 @entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion))
-def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, fidelity, n_steps, max_events, time, what, segments,
-              status, n_events, n_segments, duration, start, stop):  # fmt: skip
+def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws, falls, reach, fidelity, n_steps, max_events, time, what,
+              segments, status, n_events, n_segments, duration, start, stop):  # fmt: skip
     """Simulate shots ``start`` to ``stop`` of a batch. All arrays of the balls, the log and the outcome have a leading batch axis.
 
     The arguments are those of ``Balls``, ``Setup``, ``Log`` and ``Ends``, in their order: ``run_batch(*balls, *setup, max_events, *log,
@@ -281,7 +323,7 @@ def run_batch(positions, velocities, spins, on_table, potted, phys, noses, jaws,
     every call (measured; a shot of two balls takes 6 us). The work space is made once.
     """
     n = positions.shape[1]
-    setup = Setup(phys, noses, jaws, falls, fidelity, n_steps)
+    setup = Setup(phys, noses, jaws, falls, reach, fidelity, n_steps)
     paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, FLIGHT)))
     forecast = Forecast(np.zeros((n, n)), np.zeros(n), np.zeros(n, np.int64), np.zeros(n), np.zeros(n, np.int64), np.zeros(n, np.int64))
     series = np.zeros(WORK)

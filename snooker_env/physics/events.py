@@ -43,23 +43,25 @@ class EventKind(IntEnum):
 class Status(IntEnum):
     """How a run ended.
 
-    ================= =====================================================
+    ================= ============================================================================
     OK                All balls came to rest.
     TOO_MANY_EVENTS   There were more events than allowed.
     LOG_FULL          The log was too short; run the shot again with more.
     IMPACT_UNSOLVED   An impact did not end.
-    ================= =====================================================
+    ASTRAY            A ball on the bed was where none can be: in a cushion, or off the table.
+    ================= ============================================================================
     """
 
     OK = 0
     TOO_MANY_EVENTS = 1
     LOG_FULL = 2
     IMPACT_UNSOLVED = 3
+    ASTRAY = 4
 
 
 # The same as plain integers, because kernels compare them with numbers in integer arrays.
 BALL_BALL, CUSHION, JAW, POT, ROLL, STOP, DROP, RETURN, BEND = (int(kind) for kind in EventKind)
-OK, TOO_MANY_EVENTS, LOG_FULL, IMPACT_UNSOLVED = (int(status) for status in Status)
+OK, TOO_MANY_EVENTS, LOG_FULL, IMPACT_UNSOLVED, ASTRAY = (int(status) for status in Status)
 
 NONE = len(EventKind)
 """No event; its number is higher than that of every kind."""

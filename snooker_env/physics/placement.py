@@ -2,7 +2,7 @@
 
 from math import sqrt
 
-from .._jit import entry
+from .._jit import entry, kernel
 from .columns import (
     FALL_RADIUS,
     FALL_X,
@@ -27,6 +27,42 @@ SOUND, OFF, IN_NOSE, OVER_POCKET, IN_JAW, IN_BALL = range(6)
 """Kinds of faults: none; off the table; in a cushion; over a pocket; in a jaw; in another ball."""
 
 
+@kernel
+def in_jaw(x, y, jaws, k, R, allowed):
+    """Whether a ball at (x, y) is deeper than ``allowed`` [m] in jaw k.
+
+    A jaw is as deep as it is wide: far behind a straight facing, an arc of a very large circle, lies another part of the table.
+    """
+    dx, dy, radius, cos_half = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_RADIUS], jaws[k, JAW_COS]
+    d2, least = dx * dx + dy * dy, radius + R - allowed
+    if not (d2 < least * least and dx * jaws[k, JAW_UX] + dy * jaws[k, JAW_UY] >= cos_half * sqrt(d2)):
+        return False
+    width = 2.0 * radius * (sqrt(1.0 - cos_half * cos_half) if cos_half > 0.0 else 1.0)
+    return sqrt(d2) > radius - R - width
+
+
+@kernel
+def place_fault(x, y, reach, noses, jaws, falls, R, allowed, edge):
+    """What is wrong with a ball on the bed at (x, y) [m]: kind of fault, and index of the nose, fall or jaw; (SOUND, -1) if nothing.
+
+    ``allowed``: how deep it may be in a cushion; ``edge``: how far over a pocket [m]. Else as in ``first_fault``.
+    """
+    if not (reach[0, 0] < x < reach[0, 1] and reach[1, 0] < y < reach[1, 1]):
+        return OFF, -1
+    for j in range(noses.shape[0]):
+        along, across = (y, x) if noses[j, NOSE_AXIS] == 0.0 else (x, y)
+        if noses[j, NOSE_LOW] <= along <= noses[j, NOSE_HIGH] and noses[j, NOSE_LEVEL] - R - noses[j, NOSE_SIDE] * across < -allowed:
+            return IN_NOSE, j
+    for j in range(falls.shape[0]):
+        dx, dy, radius = x - falls[j, FALL_X], y - falls[j, FALL_Y], falls[j, FALL_RADIUS] - edge
+        if dx * dx + dy * dy < radius * radius:
+            return OVER_POCKET, j
+    for j in range(jaws.shape[0]):
+        if in_jaw(x, y, jaws, j, R, allowed):
+            return IN_JAW, j
+    return SOUND, -1
+
+
 @entry
 def first_fault(positions, on_table, reach, noses, jaws, falls, R):
     """The first unsound place in positions (b, n, 2) [m]: table, ball, kind of fault, and index of the nose, fall, jaw or ball.
@@ -36,27 +72,10 @@ def first_fault(positions, on_table, reach, noses, jaws, falls, R):
     """
     for k in range(positions.shape[0]):
         for i in range(positions.shape[1]):
-            if not on_table[k, i]:
-                continue
-            x, y = positions[k, i, 0], positions[k, i, 1]
-            if not (reach[0, 0] < x < reach[0, 1] and reach[1, 0] < y < reach[1, 1]):
-                return k, i, OFF, -1
-            for j in range(noses.shape[0]):
-                along, across = (y, x) if noses[j, NOSE_AXIS] == 0.0 else (x, y)
-                if (
-                    noses[j, NOSE_LOW] <= along <= noses[j, NOSE_HIGH]
-                    and noses[j, NOSE_LEVEL] - R - noses[j, NOSE_SIDE] * across < -OVERLAP_ALLOWED
-                ):
-                    return k, i, IN_NOSE, j
-            for j in range(falls.shape[0]):
-                dx, dy = x - falls[j, FALL_X], y - falls[j, FALL_Y]
-                if dx * dx + dy * dy < falls[j, FALL_RADIUS] * falls[j, FALL_RADIUS]:
-                    return k, i, OVER_POCKET, j
-            for j in range(jaws.shape[0]):
-                dx, dy = x - jaws[j, JAW_X], y - jaws[j, JAW_Y]
-                d2, least = dx * dx + dy * dy, jaws[j, JAW_RADIUS] + R - OVERLAP_ALLOWED
-                if d2 < least * least and dx * jaws[j, JAW_UX] + dy * jaws[j, JAW_UY] >= jaws[j, JAW_COS] * sqrt(d2):
-                    return k, i, IN_JAW, j
+            if on_table[k, i]:
+                fault, j = place_fault(positions[k, i, 0], positions[k, i, 1], reach, noses, jaws, falls, R, OVERLAP_ALLOWED, 0.0)
+                if fault != SOUND:
+                    return k, i, fault, j
         least = 2.0 * R - OVERLAP_ALLOWED
         for i in range(positions.shape[1]):
             for j in range(i + 1, positions.shape[1]):

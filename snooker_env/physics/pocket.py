@@ -154,6 +154,27 @@ def strike_jaw(vx, vy, u, w, nx, ny, sin_phi, phys):
 
 
 @kernel
+def _deepest_jaw(x, y, z, vx, vy, u, jaws, first, last, R, sin_theta):
+    """Of the jaws that the ball touches and moves into, the deepest: its index (-1: none), gap [m], closing speed [m/s] and normal.
+
+    Also: whether the ball touches any jaw, and whether one behind its arc.
+    """
+    jaw, deepest, hard, touches, behind = -1, 0.0, 0.0, False, False
+    px, py, pz = 0.0, 0.0, 0.0
+    for k in range(first, last):
+        gap, nx, ny, sin_phi, part = jaw_gap(x, y, z, jaws, k, R, sin_theta)
+        touches = touches or gap < 0.0
+        behind = behind or (gap < 0.0 and part == 1)
+        if gap < deepest:
+            cos_phi = sqrt(1.0 - sin_phi * sin_phi)
+            closing = (vx * nx + vy * ny) * cos_phi - u * sin_phi
+            if closing > 0.0:
+                jaw, deepest, hard = k, gap, closing
+                px, py, pz = nx * cos_phi, ny * cos_phi, sin_phi
+    return jaw, deepest, hard, px, py, pz, touches, behind
+
+
+@kernel
 def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
     """One leg of a flight over the fall of ``pocket``, up to the next event.
 
@@ -185,6 +206,12 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
         dx, dy = x - falls[pocket, FALL_X], y - falls[pocket, FALL_Y]
         far = sqrt(dx * dx + dy * dy)
         depth, high = falls[pocket, FALL_RADIUS] - far, R - z
+        jaw, deepest, hard, px, py, pz, touches, behind = _deepest_jaw(x, y, z, vx, vy, u, jaws, first, last, R, sin_theta)
+        if behind and depth > 0.0:
+            return LOST, -1, T, x, y, z, vx, vy, u  # through the throat
+        if hard > SOFT:  # it met the jaw within the step, with the velocity of the step: the edge comes after it
+            back = min(0.9 * h, -deepest * sqrt(1.0 - pz * pz) / hard)  # time since the contact
+            return JAW, jaw, T - back, x - vx * back, y - vy * back, z - (u - 0.5 * g * back) * back, vx, vy, u - g * back
         reach2 = depth * depth + high * high
         if depth > 0.0 and reach2 < R * R:  # in contact with the edge
             reach = sqrt(reach2)
@@ -193,23 +220,10 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
             if closing > 0.0:
                 p = closing * (1.0 + EDGE if closing > SOFT else 1.0)
                 vx, vy, u = vx + p * ex, vy + p * ey, u - p * ez
-        jaw, deepest, hard, touches = -1, 0.0, 0.0, False
-        px, py, pz = 0.0, 0.0, 0.0
-        for k in range(first, last):
-            gap, nx, ny, sin_phi, part = jaw_gap(x, y, z, jaws, k, R, sin_theta)
-            if gap < 0.0 and part == 1 and depth > 0.0:
-                return LOST, -1, T, x, y, z, vx, vy, u  # through the throat
-            touches = touches or gap < 0.0
-            if gap < deepest:
-                cos_phi = sqrt(1.0 - sin_phi * sin_phi)
-                closing = (vx * nx + vy * ny) * cos_phi - u * sin_phi
-                if closing > 0.0:
-                    jaw, deepest, hard = k, gap, closing
-                    px, py, pz = nx * cos_phi, ny * cos_phi, sin_phi
-        if hard > SOFT:
-            back = min(0.9 * h, -deepest * sqrt(1.0 - pz * pz) / hard)  # time since the contact
-            return JAW, jaw, T - back, x - vx * back, y - vy * back, z - (u - 0.5 * g * back) * back, vx, vy, u - g * back
-        vx, vy, u = vx - hard * px, vy - hard * py, u + hard * pz  # it stays on the jaw
+        if touches:
+            _, _, hard, px, py, pz, _, _ = _deepest_jaw(x, y, z, vx, vy, u, jaws, first, last, R, sin_theta)
+            if hard <= SOFT:  # it stays on the jaw; if the edge has driven it into the jaw harder, the next step finds it there
+                vx, vy, u = vx - hard * px, vy - hard * py, u + hard * pz
         if depth < 0.0 and dx * vx + dy * vy > 0.0 and not touches:
             speed2, climb2 = vx * vx + vy * vy, 2.0 * g * max(z, 0.0)
             if dx * in_x + dy * in_y > 0.0 and speed2 > climb2:

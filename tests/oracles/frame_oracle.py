@@ -22,6 +22,7 @@ from .frame_oracle_kinds import KINDS
 from .frame_oracle_mutants import mutants, strokes_to_see
 from .frame_oracle_opponent import OpponentChecker
 from .frame_oracle_play import Case, Checker
+from .frame_oracle_tables import with_free_ball
 
 
 def check(name: str, frames: int, seed: int) -> Checker:
@@ -91,7 +92,10 @@ def recorded(frames: int, tables: int, seed: int = 0) -> list[Case]:
         for k in range(many):
             checker.frame(seed + k)
         cases += checker.cases
-    return cases
+    checker = Checker(KINDS["tables_nominate"], record=True)
+    for k in range(tables):
+        checker.frame(seed + k, begin=with_free_ball)
+    return cases + checker.cases
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -18,8 +18,8 @@ D2 = 2 * R
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
 BAULK, D_RADIUS = -1.0475, 0.292
 SPOTS = {16: (0.292, BAULK), 17: (-0.292, BAULK), 18: (0.0, BAULK), 19: (0.0, 0.0), 20: (0.0, 0.89225), 21: (0.0, 1.4605)}
-CLEARANCE = 2e-6
-"""A ball that is placed beside another is placed this far off it, so that it does not touch [m]."""
+TOUCH, CLEARANCE = 50e-6, 1e-4
+"""A referee sees no gap below the first [m]; a ball that is put down beside another, so that it does not touch, is this far off it [m]."""
 NEAR = 1e-9
 """Two lengths that differ by less are equal to rounding [m]."""
 
@@ -134,6 +134,12 @@ def _d_grid(step):
     x = np.concatenate([x[inside], D_RADIUS * np.cos(rim)])
     y = np.concatenate([y[inside], D_RADIUS * np.sin(rim)])
     return np.stack([x, BAULK - y], axis=1)
+
+
+def _bed_grid(step):
+    x, y = np.meshgrid(np.arange(-0.86, 0.87, step), np.arange(-1.75, 1.76, step))
+    places = np.stack([x.ravel(), y.ravel()], axis=1)
+    return places[[free_anywhere(place, []) for place in places]]
 
 
 GRID = _d_grid(0.008)
@@ -283,17 +289,17 @@ def free_anywhere(place, others, slack=0.0):
 def spotted_place(ball, others, slack=0.0):
     """Where a colour is spotted among ``others`` (Section 3 Rule 7)."""
     for k in [ball, *range(21, 15, -1)]:
-        if free(SPOTS[k], others, slack):
+        if free(SPOTS[k], others, TOUCH + slack):
             return SPOTS[k]
     x, y = SPOTS[ball]
     others = np.asarray(others, float).reshape(-1, 2)
     for sense in (1, -1):
-        beside = others[np.abs(others[:, 0] - x) < D2]
+        beside = others[np.abs(others[:, 0] - x) < D2 + CLEARANCE]
         reach = np.sqrt((D2 + CLEARANCE) ** 2 - (beside[:, 0] - x) ** 2)
         limits = sorted(t for t in np.concatenate([sense * (beside[:, 1] - y) + reach]) if t > 0)
         for t in limits:
             at = (x, y + sense * t)
-            if abs(at[1]) <= HALF_LENGTH - R and free(at, others, -NEAR):
+            if abs(at[1]) <= HALF_LENGTH - R - CLEARANCE and free(at, others, CLEARANCE - NEAR):
                 return at
     raise AssertionError(f"no room for ball {ball}")
 
@@ -301,10 +307,10 @@ def spotted_place(ball, others, slack=0.0):
 def nearest_in_d(wish, others):
     """The nearest place to ``wish`` where the cue ball may stand in the D without touching a ball: one of finitely many candidates."""
     wish, others = np.asarray(wish, float), np.asarray(others, float).reshape(-1, 2)
-    if free(wish, others, 25 * CLEARANCE):  # not within what a referee sees as a touch
+    if free(wish, others, TOUCH):
         return wish
     centre = np.array([0.0, BAULK])
-    circles = [(o, D2 + 50 * CLEARANCE) for o in others if np.hypot(*(o - centre)) < D_RADIUS + D2]
+    circles = [(o, D2 + CLEARANCE) for o in others if np.hypot(*(o - centre)) < D_RADIUS + D2]
     points = [centre + np.array([s * D_RADIUS, 0.0]) for s in (1, -1)]
     for o, r in circles:
         off = wish - o
@@ -323,3 +329,7 @@ def nearest_in_d(wish, others):
                 points += [a + along * u + s * h * np.array([-u[1], u[0]]) for s in (1, -1)]
     allowed = [p for p in points if p[1] <= BAULK + NEAR and np.hypot(*(p - centre)) <= D_RADIUS + NEAR and free(p, others, -NEAR)]
     return min(allowed, key=lambda p: float(np.hypot(*(p - wish))))
+
+
+BED = _bed_grid(0.07)
+"""Places all over the bed where the cue ball may stand anywhere."""

@@ -25,7 +25,7 @@ RULES = {
     "spots from the lowest value up": ("waiting = sorted(colours, reverse=True)", "waiting = sorted(colours)"),
     "the same player goes on after a miss": ("after.striker, after.ball_on = other, after.next_on()", "after.ball_on = after.next_on()"),
     "a red again after a red": ("after.ball_on = ANY\n", "after.ball_on = RED\n"),
-    "the ball on moves on when only the free ball went down": ("or real:", "or True:"),
+    "the ball on stays when it went down": ("or real:", "or False:"),
     "a foul keeps the break": (
         "after.break_points, after.miss_called, after.saved = 0",
         "after.break_points, after.miss_called, after.saved = 1",
@@ -42,8 +42,8 @@ RULES = {
     "behind the free ball after a scoring stroke too": ("and not costs and not worth", "and not costs"),
     "a miss whatever the score": ("poor and (again or not needed)", "poor"),
     "no miss when level with what is left": (
-        "before >= available(state) or later >= available(after)",
-        "before > available(state) or later > available(after)",
+        "lead > for_both or abs(lead) == available(state)",
+        "lead > for_both",
     ),
     "a miss for a wrong pot": ("{NO_CONTACT, WRONG_FIRST})", "{NO_CONTACT, WRONG_FIRST, WRONG_POT})"),
     "a part of a ball is enough for the third miss": ("if full else 0\n", "\n"),

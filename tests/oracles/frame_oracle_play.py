@@ -163,13 +163,13 @@ class Checker:
         self.at = {name: k for k, name in enumerate(names)}
         """The number of an action that says what."""
 
-    def frame(self, seed: int, most: int = 5000) -> None:
-        """Play and check one frame."""
+    def frame(self, seed: int, most: int = 5000, begin=table) -> None:
+        """Play and check one frame; of a kind with tables it begins from one that ``begin`` makes."""
         env, rng = self.env, np.random.default_rng(seed)
         env.reset(seed=seed)
         self._seed = seed
         if self.kind.tables:
-            env.set_state(table(env.get_state(), rng))
+            env.set_state(begin(env.get_state(), rng))
             most = 8
         self._last = env.get_state()
         state = state_of(self._last)

@@ -28,9 +28,21 @@ ATTEMPT = geometry.D2
 
 
 def available(state: State) -> int:
-    """Points that are left on the table."""
+    """Points that are left on the table for the striker; a free ball is one more red with its black, or the ball on once more."""
     seven = 7 if state.ball_on == ANY else 0
-    return 8 * state.reds + seven + sum(value(i) for i in state.balls if i in COLOURS)
+    extra = 0
+    if state.free_ball and set(state.balls) - set(state.on()):
+        extra = 8 if state.ball_on == RED else state.ball_on
+    return 8 * state.reds + seven + extra + sum(value(i) for i in state.balls if i in COLOURS)
+
+
+def short(state: State) -> bool:
+    """Whether a player needs penalty points, of whom only the striker has the colour after a red and the free ball; or just as many are
+    left on the table as the players differ by.
+    """
+    lead = state.scores[state.striker] - state.scores[1 - state.striker]
+    for_both = 8 * state.reds + sum(value(i) for i in state.balls if i in COLOURS)
+    return -lead > available(state) or lead > for_both or abs(lead) == available(state)
 
 
 def touching(state: State, cue: np.ndarray) -> list[int]:
@@ -149,7 +161,7 @@ def _spot(colours: list[int], after: State, verdict: Verdict) -> None:
     for own in (True, False):
         for i in list(waiting):
             others = after.positions[standing]
-            is_free = geometry.decided(lambda slack, i=i, others=others: geometry.free(geometry.SPOTS[i], others, slack), 2e-6)
+            is_free = geometry.decided(lambda slack, i=i, others=others: geometry.free(geometry.SPOTS[i], others, geometry.TOUCH + slack))
             if is_free is None:
                 verdict.unsure.add("spot")
             if own and not is_free:
@@ -297,11 +309,11 @@ def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
     where = stroke.cue, state.positions[on], state.positions[others]
     clear = geometry.decided(lambda slack: geometry.clear_path(*where, slack))
     full = geometry.decided(lambda slack: _full_ball(state, on, others, stroke.cue, slack))
+    if state.in_hand and not full:  # the striker chose the place: from the best one
+        clear, full = _best_in_hand(state, on, others, clear)
     if clear is None or full is None:
         verdict.unsure.add("miss")
-    before = abs(state.scores[0] - state.scores[1])
-    later = abs(after.scores[0] - after.scores[1])
-    needed = before >= available(state) or later >= available(after)
+    needed = short(state) or short(after)
     again = state.failures > 0 and full
     poor = bool(clear)
     if rules.miss == "attempt" and not clear:
@@ -330,6 +342,17 @@ def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
         return
     after.miss_called, after.warned = True, False
     after.saved = deepcopy(state)
+
+
+def _best_in_hand(state: State, on: list[int], others: list[int], clear: bool | None) -> tuple[bool | None, bool | None]:
+    """Whether there is a clear and a full-ball path from some place in hand; ``clear``: from that played from. None: none was found."""
+    found: bool | None = clear or None
+    for place in (geometry.BED if state.anywhere else geometry.GRID)[::7]:
+        if geometry.free(place, state.positions[state.balls], TOUCH):
+            if _full_ball(state, on, others, place, geometry.NEAR):
+                return True, True
+            found = found or geometry.clear_path(place, state.positions[on], state.positions[others], geometry.NEAR) or None
+    return found, None
 
 
 def _full_ball(state: State, on: list[int], others: list[int], cue: np.ndarray, slack: float) -> bool:

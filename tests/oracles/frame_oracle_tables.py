@@ -35,10 +35,31 @@ def table(state: dict, rng: np.random.Generator) -> dict:
     frame |= {
         "scores": scores, "striker": int(rng.integers(2)), "break_points": 1 if ball_on == 0 else 0, "ball_on": ball_on, "in_hand": in_hand,
         "free_ball": bool(ball_on != 0 and first < 21 and rng.random() < 0.3), "respotted_black": False,
-        "on_table": int(sum(1 << int(i) for i in np.flatnonzero(on_table) if i)),
+        "on_table": int(sum(1 << int(i) for i in np.flatnonzero(on_table) if i)), "rack": 0x3FFFFE,
     }  # fmt: skip
     if ball_on == 0:
         frame["scores"][frame["striker"]] += 1
+    return state | {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame}
+
+
+def with_free_ball(state: dict, rng: np.random.Generator) -> dict:
+    """The colours with a free ball; two of them hang before one pocket: the ball on and another go down now and then, alone or together."""
+    state = table(state, rng)
+    positions, pocket = np.array(state["positions"], float), POCKETS[rng.integers(4)]
+    on_table = np.zeros(22, bool)
+    on_table[[0, *range(16, 22)]] = True
+    while True:
+        positions[16:] = list(geometry.SPOTS.values())
+        positions[[16, 17]] = pocket * 0.975 + rng.normal(0, 0.03, (2, 2))
+        positions[0] = pocket * 0.7 + rng.normal(0, 0.05, 2)
+        here, inside = positions[on_table], np.abs(positions[on_table]) < (0.8627, 1.758)
+        apart = np.hypot(*(here[:, None] - here).transpose(2, 0, 1)) + np.eye(len(here))
+        if inside.all() and apart.min() > geometry.D2 + 1.5e-6:
+            break
+    frame = state["frame"] | {
+        "ball_on": 2, "free_ball": True, "in_hand": False, "break_points": 0,
+        "on_table": int(sum(1 << int(i) for i in np.flatnonzero(on_table) if i)),
+    }  # fmt: skip
     return state | {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame}
 
 

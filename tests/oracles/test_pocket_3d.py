@@ -143,9 +143,13 @@ PATHS = [(CORNER, 0), (CORNER, 20), (CORNER, 40), (MIDDLE, 0), (MIDDLE, 30), (MI
 
 @functools.cache
 def alone(index):
-    """A table with this pocket and its two rails only: a ball that comes out again falls nowhere else."""
+    """A table with this pocket and its two rails only, so long that no ball comes round their ends: it falls nowhere else."""
     fall = MATCH.falls[index]
-    rails = [n for n in MATCH.noses if n[1] == 1.0 and (n[0] == 0.0 if index == MIDDLE else n[0] == 1.0 or n[4] > 0.5)]
+    rails = [n.copy() for n in MATCH.noses if n[1] == 1.0 and (n[0] == 0.0 if index == MIDDLE else n[0] == 1.0 or n[4] > 0.5)]
+    for rail in rails:
+        along = fall[1] if rail[0] == 0.0 else fall[0]
+        far = 3 if abs(rail[4] - along) < abs(rail[3] - along) else 4
+        rail[far] = math.copysign(100.0, rail[far] - along)
     jaws = [j for j in MATCH.jaws if math.hypot(j[0] - fall[0], j[1] - fall[1]) < 0.2]
     return sn.Table("one pocket", np.array(rails), np.array(jaws), MATCH.falls[index : index + 1])
 

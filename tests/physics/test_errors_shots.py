@@ -170,6 +170,10 @@ STRIKES = [
         ]
         for wrong in (*wrongs, "1", None, True, [1.0, 2.0], 1j, b"1", np.array([2.0]), np.ma.masked, [[1.0], 2.0], {})
     ],
+    *[
+        case(strike(aim=aim), "aim", str(aim), "must be in radians, within a turn of 0; from degrees: np.radians(degrees)", f"aim {aim}")
+        for aim in (90.0, -180.0, 6.3)
+    ],
     case(strike(side=0.6), "(side, top)", "(0.6, 0.0)", "0.6 R is a miscue, must be within 0.5 R of the ball's centre", "miscue"),
     case(strike(side=-0.4, top=0.4), "(side, top)", "(-0.4, 0.4)", "miscue, must be within 0.5 R", "miscue of the pair"),
     case(strike(top=-0.5001), "(side, top)", "(0.0, -0.5001)", "miscue, must be within 0.5 R", "just a miscue"),
@@ -244,7 +248,7 @@ def test_what_is_just_allowed_is_played():
     assert sn.simulate(touching, np.zeros((2, 2)), np.zeros((2, 3))).duration == 0.0
     wall = HALF_WIDTH - BALL_RADIUS
     assert sn.simulate([(wall + 0.9e-6, 0.5)], np.zeros((1, 2)), np.zeros((1, 3))).duration == 0.0
-    sn.strike(0.0, 1e6, side=0.3, top=-0.4, elevation=1.5)
+    sn.strike(0.0, -2 * np.pi, side=0.3, top=-0.4, elevation=1.5)
     assert sn.collide_cushion((1, 0, 0), Z, (1 + 5e-7, 0, 0))[0][0] < 0
     assert sn.simulate(touching[:1], [(1.0, 0.0)], [Z], table=None, max_events=2**31).positions[0, 0] > 1.0
 

@@ -87,3 +87,52 @@ def test_what_a_ball_is_given_in_the_air_counts_as_no_gain():
     table, fidelity = sn.Table.preset("match"), contact.parse_fidelity("standard")
     found = invariants.play(p, v, w, np.ones((1, 2), bool), physics, table, fidelity)
     assert found.worst[0, invariants.ENERGY] < 1e-12
+
+
+FROM_NOTHING = (
+    [(0.84710353135693, -0.10921281685196961), (0.8229077045477607, 0.0445875871039423)],
+    [(0.5194258654983255, 0.9285623682746166), (2.646667837326085, -0.9057727354293397)],
+    [(-35.37380450569968, 19.787652018983827, 0.0), (34.5056280163558, 100.8254414219461, 0.0)],
+)  # fmt: skip
+"""Two balls meet at the edge of a middle pocket: they once came to three times the energy of the shot."""
+
+
+def test_two_balls_at_an_edge_keep_the_energy_of_their_shot():
+    p, v, w = (np.array([a]) for a in FROM_NOTHING)
+    found = invariants.play(p, v, w, np.ones((1, 2), bool), sn.Physics(), sn.Table.preset("match"), contact.parse_fidelity("standard"))
+    assert found.worst[0, invariants.ALL] < 1e-12
+
+
+@pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9"])
+def test_no_leg_of_a_flight_gains_energy(name):
+    """Kinetic and potential together. And a ball that meets a jaw gets there with the velocity that brought it, not with what the edge
+    makes of it at the end of the step: its path once had 9 times the difference more."""
+    table = sn.Table.preset(name)
+    physics, fly, strike, rng = sn.Physics(**table.ball), from_python(pocket.fly), from_python(pocket.strike_jaw), np.random.default_rng(0)
+    gap, R, phys, ends, short = from_python(pocket.jaw_gap), physics.R, physics.pack(), [], 0
+    for _ in range(1500):
+        k = int(rng.integers(len(table.falls)))
+        fx, fy, radius = table.falls[k]
+        turn = np.arctan2(-fy if abs(fy) > 0.1 else 0.0, -fx) + rng.uniform(-1.2, 1.2)
+        x, y = fx + radius * np.cos(turn), fy + radius * np.sin(turn)
+        way, speed = turn + np.pi + rng.uniform(-1.4, 1.4), rng.uniform(0.4, 5)
+        state, spin, came = (x, y, 0.0, speed * np.cos(way), speed * np.sin(way), 0.0), tuple(rng.normal(0, 50, 3)), (x - fx, y - fy)
+        for _ in range(20):
+            x, y, z, vx, vy, u = state
+            had = 0.5 * (vx * vx + vy * vy + u * u) - G * z
+            end, jaw, time, *state = fly(*state, *came, table.falls, k, table.jaws, phys)
+            has = 0.5 * (state[3] ** 2 + state[4] ** 2 + state[5] ** 2) - G * state[2]
+            assert has <= had + 1e-12 * speed**2
+            size = np.sqrt(vx * vx + vy * vy + u * u)
+            if end == pocket.JAW and pocket.SHORTEST < time < min(pocket.STEP, pocket.STRIDE / size):  # within one step: a straight line
+                short += 1
+                assert (state[0] - x, state[1] - y) == pytest.approx((vx * time, vy * time), abs=1e-12)
+                assert state[3:5] == [vx, vy]
+            ends.append(end)
+            if end != pocket.JAW:
+                break
+            _, nx, ny, sin_phi, _ = gap(*state[:3], table.jaws, jaw, R, table.ball["sin_theta"])
+            *moves, spin = strike(*state[3:], spin, nx, ny, sin_phi, phys)
+            state = (*state[:3], *moves)
+    assert {end: ends.count(end) > 10 for end in (pocket.JAW, pocket.LOST, pocket.BACK)} == dict.fromkeys(range(3), True)
+    assert short > 10
