@@ -9,6 +9,7 @@ The public names are those in ``__all__`` of this package and of these modules. 
 * ``snooker_env.tasks``: what actions, observations and execution errors mean, in numbers
 * ``snooker_env.kernels``: for your own kernels: how they are compiled, and the inner kernels that they may call
 * ``snooker_env.checks``: reporting bad input as the package does
+* ``snooker_env.progress``: how far a long command is, for your own commands too
 * ``snooker_env.render``: the scene of a table, and its pictures
 * ``snooker_env.render.diagrams``: shots, options, fans and where a ball stops, drawn with matplotlib
 * ``snooker_env.tasks.saved_models``: the description in a model's file, read as plain data

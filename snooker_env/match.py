@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
+from ._install import missing
 from ._types import RenderMode
 
 if TYPE_CHECKING:
@@ -54,5 +55,5 @@ def match_env(options: Options | None = None, *, render_mode: RenderMode | None 
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] != "pettingzoo":
             raise
-        raise ImportError('match_env needs PettingZoo; install it, in a clone of snooker_env, with: pip install -e ".[multi]"') from error
+        raise missing("match_env needs PettingZoo", "multi") from error
     return MatchEnv(options, render_mode=render_mode, **given)

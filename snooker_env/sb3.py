@@ -1,7 +1,7 @@
 """How does Stable-Baselines3 train on many tables at once? ``SnookerVecEnv``: its ``VecEnv`` on the native vector environment.
 
 from snooker_env.sb3 import SnookerVecEnv
-PPO("MlpPolicy", SnookerVecEnv(64, aim="target")).learn(100_000)
+MaskablePPO("MlpPolicy", SnookerVecEnv(64, action="discrete")).learn(100_000)
 """
 
 import time
@@ -15,8 +15,9 @@ try:
 except ModuleNotFoundError as error:
     if (error.name or "").split(".")[0] != "stable_baselines3":
         raise
-    wanted = 'snooker_env.sb3 needs Stable-Baselines3; install it, in a clone of snooker_env, with: pip install -e ".[train]"'
-    raise ImportError(wanted) from error
+    from ._install import missing
+
+    raise missing("snooker_env.sb3 needs Stable-Baselines3", "train") from error
 
 from collections.abc import Sequence
 from typing import Any

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ._check import choice, number, truth
+from ._install import missing
 from .replays import replay
 from .replays.document import WEB
 
@@ -77,7 +78,7 @@ def _widget_class():
         import anywidget
         import traitlets
     except ImportError as error:
-        raise ImportError('widgets need anywidget; install it, in a clone of snooker_env, with: pip install -e ".[notebook]"') from error
+        raise missing("widgets need anywidget", "notebook") from error
 
     class ReplayWidget(anywidget.AnyWidget):
         """A replay in a notebook, see ``replay_widget``."""

@@ -46,10 +46,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     if given.json:
         print(json.dumps(advice.to_dict(), indent=1))
         return 0
+    print(advice.order)
     for k, one in enumerate(advice, 1):
         (low, high), (least, most) = one.chance_interval, one.points_interval
+        points = f", points {least:.1f} to {most:.1f}" if one.kind == "pot" else ""
         print(f"{k}. {one.words}")
-        print(f"   chance {100 * low:.0f} to {100 * high:.0f} %, points {least:.1f} to {most:.1f} (95 %)", end="")
+        print(f"   {'chance' if one.kind == 'pot' else 'fair'} {100 * low:.0f} to {100 * high:.0f} %{points} (95 %)", end="")
         print("" if one.stops is None else f"; cue ball stops at ({one.stops[0]:.2f}, {one.stops[1]:.2f}) m, spread {one.spread:.2f} m")
     return 0
 

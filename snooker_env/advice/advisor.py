@@ -31,7 +31,7 @@ class Advisor(ABC):
     ...         return [(CueStroke(speed=2.0, aim=1.5707963), None)]
     >>> advice = sn.advise(sn.Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), agent=StraightAhead(), samples=20, visits=0)
     >>> advice[0].kind, advice[0].speed
-    ('safety', 2.0)
+    ('contact', 2.0)
     """
 
     name: ClassVar[str]

@@ -7,6 +7,8 @@ from .._check import integer
 from ..planning.positions import PositionsLike
 from ..tasks.noise import NoiseLike
 from . import judging
+from .advisor import Advisor
+from .lookahead import LookaheadAdvisor
 from .players import player_of
 from .practice import one_position, practice_of
 from .strokes import CueStroke
@@ -22,12 +24,16 @@ def advise(
 ) -> Advice:  # fmt: skip
     """Return the strokes that a player would play in a position, best first, and their outcomes under execution errors.
 
-    The order is the player's own. The outcomes are found in the same way for every player, so that strokes of different agents can be
-    compared:
+    The outcomes are found in the same way for every player, so that strokes of different agents can be compared:
 
     1. Each stroke is played ``samples`` times, with the same execution errors for all strokes, and judged as a stroke of a visit.
     2. Of the visits that go on, ``visits`` are played to their end by a fast player (``snooker_env.advice.visits``). It plans one stroke
        ahead, less thoroughly than the built-in lookahead, so ``points`` is what a good player makes of the position.
+
+    Of the strokes that the player ranks, the first ``n`` are returned that are fair: no foul without errors, nor in most samples. They are
+    ordered by the figure in their words: pots by points expected, others by how often they are fair, because what a stroke is worth as a
+    safety is not judged. Those that the player prefers, pots or others, come first. Where none of its strokes is fair, the built-in
+    lookahead is asked instead; where that finds none either, the stroke that is fair most often is returned, and its words say so.
 
     The errors are drawn from ``seed`` alone: the same seed gives the same advice. They are independent of the random stream that a saved
     state carries, so advice never reveals the errors of the next stroke.
@@ -80,13 +86,21 @@ def advise(
     integer("visits", visits, 0, 100_000)
     integer("seed", seed, 0, 2**63)
     at, practice, player = one_position(position), practice_of(noise, options, position), player_of(agent, trust=trust)
-    ranked = player.rank(practice, at, n, seed)[: CONSIDERED * n]
-    if distinct:
-        ranked = judging.distinct(practice, at, ranked)
-    chosen = judging.judged(practice, at, ranked[:n], samples=samples, visits=visits, seed=seed)
-    said = noise if isinstance(noise, str) else asdict(practice.noise)
+
+    def ranked_by(one: Advisor) -> list[judging.Tried]:
+        tried = judging.tried(practice, at, one.rank(practice, at, CONSIDERED * n, seed)[: CONSIDERED * n])
+        return judging.distinct(tried) if distinct else tried
+
+    judge: Any = {"samples": samples, "visits": visits, "seed": seed}
+    tried = ranked_by(player)
+    chosen, of_player = judging.fair(practice, tried, n, **judge), {one.stroke for one in tried}
+    if not chosen and not isinstance(player, LookaheadAdvisor):
+        tried += ranked_by(LookaheadAdvisor())
+        chosen = judging.fair(practice, tried, n, **judge)
+    chosen = chosen or [judging.least_bad(practice, tried, **judge)]
+    own, said = all(one.stroke in of_player for one in chosen), noise if isinstance(noise, str) else asdict(practice.noise)
     return Advice(
-        suggestions=tuple(chosen), position=at[0], agent=player.name, noise=said, samples=samples, visits=visits, seed=seed
+        suggestions=tuple(chosen), position=at[0], agent=player.name, own=own, noise=said, samples=samples, visits=visits, seed=seed
     )  # fmt: skip
 
 

@@ -45,7 +45,7 @@ class Borrowed(Advisor):
         observations, going = tables.tables.observe(np.arange(1)), np.ones(1, np.bool_)
         if callable(getattr(self.player, "rank", None)):
             ((actions, scores),) = self.player.rank(tables, observations, going)
-            given = [(action, None if scores is None else float(scores[k])) for k, action in enumerate(actions[: 8 * n])]
+            given = [(action, None if scores is None else float(scores[k])) for k, action in enumerate(actions[:n])]
         else:
             given = [(self.player.act(tables, observations, going)[0], None)]
         return [(self._stroke(tables, start, bool(at.in_hand[0]), action), score) for action, score in given]

@@ -1,5 +1,6 @@
 """How does a stroke turn out under execution errors? Chances, expected points and stopping points, on common noise samples."""
 
+from dataclasses import replace
 from math import hypot, sqrt
 from typing import NamedTuple
 
@@ -17,6 +18,8 @@ from .suggestions import Suggestion
 from .visits import played_on
 from .words import RAISED, contact_words, cushion_words, figures_words, stroke_words, what_words
 
+FOULS = ("foul", "in-off")
+"""Kinds of strokes that are fouls without errors."""
 Z = 1.959964
 """Standard deviations of a 95 % interval."""
 
@@ -54,9 +57,13 @@ def points_expected(
     return mean, (max(0.0, mean - half), mean + half)
 
 
-class Trial(NamedTuple):
-    """What a stroke does without errors."""
+class Tried(NamedTuple):
+    """A stroke of a ranking, and what it does without errors."""
 
+    stroke: CueStroke
+    score: float | None
+    start: Positions
+    """The position that it is played from."""
     kind: str
     ball: int
     pocket: int
@@ -65,18 +72,22 @@ class Trial(NamedTuple):
     """What it does and how it is struck, in words."""
 
 
-def trials_of(practice: Practice, at: Positions, strokes: list[CueStroke]) -> tuple[Positions, list[Trial]]:
-    """What strokes in the one position ``at`` do without errors, and the positions that they are played from, one row each."""
-    there = [played_from(at, stroke) for stroke in strokes]
-    places, on_table, game = (np.concatenate([getattr(one, name) for one in there]) for name in ("positions", "on_table", "game"))
-    starts = Positions(places, on_table, game)
-    trial = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
+def tried(practice: Practice, at: Positions, ranked: Ranked) -> list[Tried]:
+    """What the strokes of a ranking do without errors in the one position ``at``."""
+    strokes = [stroke for stroke, _ in ranked]
+    starts = _joined([played_from(at, stroke) for stroke in strokes])
+    stops = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
     hidden = ~clear_paths(starts).any_part
-    return starts, [_trial(practice, starts, trial, k, stroke, bool(hidden[k])) for k, stroke in enumerate(strokes)]
+    return [Tried(*one, starts[k : k + 1], *_trial(practice, starts, stops, k, one[0], bool(hidden[k]))) for k, one in enumerate(ranked)]
 
 
-def _trial(practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool) -> Trial:
-    """What stroke k of the trial without errors does; ``hidden``: no straight path leads to a ball on."""
+def _joined(positions: list[Positions]) -> Positions:
+    """Several positions as the rows of one."""
+    return Positions(*(np.concatenate([getattr(one, name) for one in positions]) for name in ("positions", "on_table", "game")))
+
+
+def _trial(practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool) -> tuple[str, int, int, int, str]:
+    """Kind, ball, pocket, first ball and words of stroke k; ``hidden``: no straight path leads to a ball on."""
     first, pocket, how = int(trial.first[k]), -1, ""
     ball, (x, y) = first, starts.positions[k, CUE].tolist()
     dx, dy = (starts.positions[k, max(0, first)] - (x, y)).tolist()
@@ -89,48 +100,56 @@ def _trial(practice: Practice, starts: Positions, trial: Stops, k: int, stroke: 
     elif hidden:
         kind, how = "escape", cushion_words(x, y, stroke.aim) if stroke.elevation < RAISED else ""
     else:
-        kind, how = "safety", contact_words(dx, dy, stroke.aim)
+        kind, how = "contact", contact_words(dx, dy, stroke.aim)
     distance = None if first < 0 else max(0.0, hypot(dx, dy) - 2.0 * BALL_RADIUS)
     words = f"{what_words(kind, ball, pocket, first, how)}, {stroke_words(stroke, distance, practice.options.rules.physics)}"
-    return Trial(kind, ball, pocket, first, words)
+    return kind, ball, pocket, first, words
 
 
-def distinct(practice: Practice, at: Positions, ranked: Ranked) -> Ranked:
-    """Keep only the first of several strokes with equal descriptions, apart from the speed of a pot."""
-    _, trials = trials_of(practice, at, [stroke for stroke, _ in ranked])
-    seen, kept = set(), []
-    for one, trial in zip(ranked, trials, strict=True):
-        what = trial.words.replace(f"{one[0].speed:.1f} m/s", "") if trial.kind == "pot" else trial.words
-        if what not in seen:
-            seen.add(what)
-            kept.append(one)
-    return kept
+def distinct(strokes: list[Tried]) -> list[Tried]:
+    """Only the first of several strokes with equal descriptions, apart from the speed of a pot."""
+    said = [one.words.replace(f"{one.stroke.speed:.1f} m/s", "") if one.kind == "pot" else one.words for one in strokes]
+    return [one for k, one in enumerate(strokes) if said[k] not in said[:k]]
 
 
-def judged(practice: Practice, at: Positions, ranked: Ranked, *, samples: int, visits: int, seed: int) -> list[Suggestion]:
-    """Strokes in the one position ``at`` with their outcomes under execution errors, in their order."""
-    n = len(ranked)
-    starts, trials = trials_of(practice, at, [stroke for stroke, _ in ranked])
-    strokes = np.stack([stroke.numbers() for stroke, _ in ranked])
+def fair(practice: Practice, strokes: list[Tried], n: int, *, samples: int, visits: int, seed: int) -> list[Suggestion]:
+    """The first n of the strokes that are no foul without errors, nor in most samples, by their figure: the preferred kind first."""
+    waiting, out = [one for one in strokes if one.kind not in FOULS], []
+    while waiting and len(out) < n:
+        some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
+        out += [one for one in judged(practice, some, samples=samples, visits=visits, seed=seed) if one.foul <= 0.5]
+    return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
+
+
+def least_bad(practice: Practice, strokes: list[Tried], *, samples: int, visits: int, seed: int) -> Suggestion:
+    """The stroke that is fair in most samples, where none is fair."""
+    worst = min(judged(practice, strokes, samples=samples, visits=visits, seed=seed), key=lambda one: one.foul)
+    return replace(worst, words=f"no fair stroke found: {worst.words}")
+
+
+def judged(practice: Practice, strokes: list[Tried], *, samples: int, visits: int, seed: int) -> list[Suggestion]:
+    """Strokes with their outcomes under execution errors, in their order."""
+    n = len(strokes)
     tries, again = (1, min(1, visits)) if practice.sure else (samples, visits)
-    keys = seeds.keys(seed, seeds.JUDGING, tries)
-    stops = practice.play(starts, np.repeat(np.arange(n), tries), np.repeat(strokes, tries, 0), np.tile(keys, n))
+    keys, rows = seeds.keys(seed, seeds.JUDGING, tries), np.stack([one.stroke.numbers() for one in strokes])
+    starts = _joined([one.start for one in strokes])
+    stops = practice.play(starts, np.repeat(np.arange(n), tries), np.repeat(rows, tries, 0), np.tile(keys, n))
     rest = _rest(practice, stops, n, tries, again, seed)
     out = []
-    for k, ((stroke, score), trial) in enumerate(zip(ranked, trials, strict=True)):
+    for k, one in enumerate(strokes):
         own = slice(k * tries, (k + 1) * tries)
-        fair = stops.penalty[own] == 0
-        made = fair & (stops.potted[own, trial.ball] == trial.pocket) if trial.kind == "pot" else fair
+        no_foul = stops.penalty[own] == 0
+        made = no_foul & (stops.potted[own, one.ball] == one.pocket) if one.kind == "pot" else no_foul
         chance = float(made.mean())
         points, interval = points_expected(stops.points[own], stops.goes_on[own], rest[k])
         stayed = stops.potted[own, CUE] < 0
         middle, spread = _cloud(stops.places[own, CUE][stayed])
         out.append(Suggestion(
-            **{name: getattr(stroke, name) for name in ("speed", "aim", "side", "top", "elevation", "place")},
-            kind=trial.kind, ball=trial.ball, pocket=trial.pocket, first=trial.first,
+            **{name: getattr(one.stroke, name) for name in ("speed", "aim", "side", "top", "elevation", "place")},
+            kind=one.kind, ball=one.ball, pocket=one.pocket, first=one.first,
             chance=chance, chance_interval=(chance, chance) if practice.sure else wilson(int(made.sum()), tries),
-            points=points, points_interval=interval, foul=float((~fair).mean()), in_off=float((~stayed).mean()),
-            stops=middle, spread=spread, score=score, words=f"{trial.words}, {figures_words(trial.kind, chance, points)}",
+            points=points, points_interval=interval, foul=float((~no_foul).mean()), in_off=float((~stayed).mean()),
+            stops=middle, spread=spread, score=one.score, words=f"{one.words}, {figures_words(one.kind, chance, points)}",
         ))  # fmt: skip
     return out
 

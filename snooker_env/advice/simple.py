@@ -14,7 +14,7 @@ USUAL = 2.3
 
 
 class GhostBallAdvisor(Advisor):
-    """The built-in "ghost_ball": the widest direct pots with solved aims, no spin and one soft speed; else full at the nearest ball on.
+    """The built-in "ghost_ball": the widest direct pots with solved aims, no spin and one soft speed; else the first other line.
 
     Its scores are tolerances of the aim [mrad].
     """

@@ -25,9 +25,10 @@ class Suggestion(CueStroke):
         Elevation of the butt [rad].
     place : (float, float) or None
         Where in the D the cue ball is placed first [m]; None if it is not in hand.
-    kind : {"pot", "safety", "escape", "in-off", "foul"}
-        What the stroke does without errors. "pot": it scores. "safety": it hits a ball on fairly and scores nothing. "escape": the same
-        where no straight path leads to a ball on. "in-off": it loses the cue ball. "foul": any other foul.
+    kind : {"pot", "contact", "escape", "in-off", "foul"}
+        What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores nothing; what it is worth as a
+        safety is not judged. "escape": the same where no straight path leads to a ball on. "in-off": it loses the cue ball. "foul": any
+        other foul.
     ball : int
         Id of the ball that it pots without errors or, if none, of the ball that it strikes first; -1 if it strikes nothing.
     pocket : int
@@ -80,6 +81,11 @@ class Suggestion(CueStroke):
     words: str
 
     @property
+    def figure(self) -> float:
+        """What strokes of its kind are ordered by: the expected points of a pot, otherwise the share without a foul."""
+        return self.points if self.kind == "pot" else self.chance
+
+    @property
     def stroke(self) -> CueStroke:
         """The stroke alone, a ``CueStroke``."""
         return CueStroke.of({name: getattr(self, name) for name in ("speed", "aim", "side", "top", "elevation", "place")})
@@ -107,7 +113,7 @@ class Suggestion(CueStroke):
 
 @dataclass(frozen=True, kw_only=True)
 class Advice(Sequence[Suggestion]):
-    """The strokes that an agent would play in a position, in its own order, best first: a sequence of ``Suggestion``.
+    """The strokes that an agent would play in a position, ordered by the figure in their words: a sequence of ``Suggestion``.
 
     Attributes
     ----------
@@ -117,6 +123,8 @@ class Advice(Sequence[Suggestion]):
         The position.
     agent : str
         Name of the agent.
+    own : bool
+        Whether the strokes are the agent's own; False where none of its own is fair, so that the built-in lookahead was asked.
     noise : str or dict
         Execution errors: a level's name, or the fields of ``Noise``.
     samples : int
@@ -133,12 +141,14 @@ class Advice(Sequence[Suggestion]):
     >>> len(advice), advice.agent
     (1, 'ghost_ball')
     >>> print(advice)
+    Pots by points expected:
     1. black, top left, 2.3 m/s, plain, chance 100 %, 7 points expected
     """
 
     suggestions: tuple[Suggestion, ...]
     position: Position
     agent: str
+    own: bool
     noise: str | dict[str, float]
     samples: int
     visits: int
@@ -159,6 +169,14 @@ class Advice(Sequence[Suggestion]):
     def __iter__(self) -> Iterator[Suggestion]:
         return iter(self.suggestions)
 
+    @property
+    def order(self) -> str:
+        """Whose strokes these are if not the agent's own, and by what they are ordered, in words."""
+        by = {True: "pots by points expected", False: "strokes without a pot by how often they are fair"}
+        parts = ", then ".join(by[pot] for pot in dict.fromkeys(one.kind == "pot" for one in self))
+        whose = "" if self.own else f"{self.agent} has no fair stroke here; these are of lookahead. "
+        return f"{whose}{parts.capitalize()}:"
+
     def to_dict(self) -> dict[str, Any]:
         """Return the advice as JSON types.
 
@@ -172,10 +190,10 @@ class Advice(Sequence[Suggestion]):
         >>> import snooker_env as sn
         >>> advice = sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="ghost_ball", noise="none", n=1)
         >>> list(advice.to_dict())
-        ['position', 'agent', 'noise', 'samples', 'visits', 'seed', 'suggestions']
+        ['position', 'agent', 'own', 'order', 'noise', 'samples', 'visits', 'seed', 'suggestions']
         """
-        kept = {"agent": self.agent, "noise": self.noise, "samples": self.samples, "visits": self.visits, "seed": self.seed}
+        kept = {name: getattr(self, name) for name in ("agent", "own", "order", "noise", "samples", "visits", "seed")}
         return {"position": self.position.to_dict(), **kept, "suggestions": [one.to_dict() for one in self]}
 
     def __str__(self) -> str:
-        return "\n".join(f"{k}. {one.words}" for k, one in enumerate(self, 1))
+        return "\n".join([self.order, *(f"{k}. {one.words}" for k, one in enumerate(self, 1))])

@@ -3,7 +3,7 @@
 1. It tries twelve strokes at the two widest pots, once each and without errors. The value of a stroke is the chance of its pot, by the rule
    of thumb, times its points plus the value of the position left.
 2. The best three meet five noise samples, and the best of them is played.
-3. Where there is no direct pot, the nearest ball on is struck full.
+3. Where there is no direct pot, so it chooses among strokes at what it sees of the balls on, or escapes.
 
 This is a shallow lookahead, made to play hundreds of visits in a second. From open tables under professional noise it scores about 58
 points a visit. ``ppo_foresight`` of this repository scores 65. The built-in "lookahead", which takes a hundred times as long over a

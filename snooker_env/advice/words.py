@@ -136,13 +136,13 @@ def contact_words(x: float, y: float, aim: float) -> str:
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
-    """What a stroke does when played as intended. ``how``: the first cushion of an escape, or the contact of a safety.
+    """What a stroke does when played as intended. ``how``: the first cushion of an escape, or how full a ball is struck.
 
     Examples
     --------
     >>> from snooker_env.advice.words import what_words
-    >>> what_words("pot", 19, 2, 19), what_words("pot", 2, 5, 1), what_words("safety", 3, -1, 3)
-    ('blue, right middle', 'red by a plant, left middle', 'safety off the red')
+    >>> what_words("pot", 19, 2, 19), what_words("pot", 2, 5, 1), what_words("contact", 3, -1, 3, "full")
+    ('blue, right middle', 'red by a plant, left middle', 'contact with the red, full')
     """
     if kind == "pot":
         how = "" if ball == first else " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
@@ -153,11 +153,20 @@ def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> 
         return f"foul, {ball_words(first)} first" if first >= 0 else "foul, nothing struck"
     if kind == "escape":
         return f"escape{f' off the {how}' if how else ''} to the {ball_words(ball)}"
-    return f"safety off the {ball_words(ball)}" + (f", {how}" if how else "")
+    return f"contact with the {ball_words(ball)}, {how}"
 
 
 def figures_words(kind: str, chance: float, points: float) -> str:
-    """Chance and points expected."""
-    share = f"{'chance' if kind == 'pot' else 'fair'} {100.0 * chance:.0f} %"
+    """The figures of a stroke: chance and points expected of a pot, otherwise how often it is fair.
+
+    Examples
+    --------
+    >>> from snooker_env.advice.words import figures_words
+    >>> figures_words("pot", 0.874, 23.4), figures_words("contact", 0.98, 0.0)
+    ('chance 87 %, 23 points expected', 'fair 98 %; no pot intended, its worth as a safety is not judged')
+    """
+    if kind != "pot":
+        unjudged = "; no pot intended, its worth as a safety is not judged" if kind in ("contact", "escape") else ""
+        return f"fair {100.0 * chance:.0f} %{unjudged}"
     scored = f"{points:.0f}" if points >= 9.5 else f"{points:.1f}".removesuffix(".0")
-    return f"{share}, {scored} point{'' if scored == '1' else 's'} expected"
+    return f"chance {100.0 * chance:.0f} %, {scored} point{'' if scored == '1' else 's'} expected"

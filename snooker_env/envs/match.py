@@ -68,7 +68,7 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
 
     ## Infos
     The keys of ``SnookerEnv``, for both players: ``points`` to ``events`` are of the last stroke, whoever played it, ``opponent_strokes``
-    is 1 for the one who did not, scores and ``needs_snookers`` are as the player sees them, ``winner`` is -1, 0 or 1 for both.
+    is 1 for the one who did not, ``winner`` is -1, 0 or 1 for both. All that is of the frame is as the player sees it.
 
     ## States
     ``get_state`` and ``set_state`` save and restore everything as JSON types, the random stream included: playing on from a state
@@ -273,8 +273,7 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
         if start is None:
             self.tables.deal(np.zeros(1, np.int64), drawn=True, **breakers)
         self._begin()
-        if self.render_mode == "human":
-            self._show()
+        self._show()
 
     def _begin(self):
         """Initialise PettingZoo's attributes for the current table."""
@@ -316,12 +315,13 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
             If the shot cannot be computed.
         """
         if not self.agents:
-            raise gymnasium.error.ResetNeeded("the frame is over: call reset() before step()")
+            raise gymnasium.error.ResetNeeded(f"the frame {self.tables.unplayable}: call reset() before step()")
         name = self.agent_selection
         if self.terminations[name] or self.truncations[name]:
             self._was_dead_step(action)
             return
         a = self.options.rules.actions.check(action)
+        self._pictures.require_display()
         striker, out = int(self.tables.game[0, STRIKER]), self.tables.output()
         crew = Crew(self._record.buffers, (), self._watch)
         self._record.begin_step()
@@ -332,8 +332,7 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
         self.rewards = {player: frame_reward(self.options.reward, gained, winner, k) for k, player in enumerate(PLAYERS)}
         self._account(striker)
         self._accumulate_rewards()
-        if self.render_mode == "human":
-            self._show(played=bool(played))
+        self._show(played=bool(played))
 
     def _watch(self, k, buffers, j, own):
         self._record.saw(self.tables, k, buffers, j, own)

@@ -39,10 +39,6 @@ class Pictures:
         self.table, self.mode, self.players = table, mode, players
         self.size = checked_size(size)
         self._window, self._source = None, PictureSource()
-        if mode == "human":  # raise now, not at the first stroke
-            from ..render.window import require_display
-
-            require_display()
 
     def __getstate__(self) -> dict[str, Any]:
         return self.__dict__ | {"_window": None, "_source": PictureSource()}
@@ -79,10 +75,24 @@ class Pictures:
 
         return self._source.picture(motion, still)
 
-    def show(self, tables: Tables, history: list[Played], *, played: bool = False) -> None:
-        """Show the table in the window; with ``played``, first show the last stroke in motion."""
-        from ..render.window import Window
+    def require_display(self) -> None:
+        """Raise RuntimeError if a stroke is to be shown in a window and there is no display.
 
+        A reset does without: Gymnasium's ``check_env`` makes and resets an environment of each mode, on servers too.
+        """
+        if self.mode == "human":
+            from ..render.window import require_display
+
+            require_display()
+
+    def show(self, tables: Tables, history: list[Played], *, played: bool = False) -> None:
+        """In a window show the table; with ``played``, first show the last stroke in motion. What a reset shows needs no display."""
+        if self.mode != "human":
+            return
+        from ..render.window import Window, display_missing
+
+        if self._window is None and display_missing():
+            return
         if self._window is None:
             self._window = Window(size=None if self.size == SIZE else self.size)
         if played:

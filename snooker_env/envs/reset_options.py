@@ -8,8 +8,8 @@ import numpy as np
 
 from .._check import choice, integer, refuse, refuse_what
 from .._types import Bools, Floats, Ints
-from ..game.balls import mask_of_present
-from ..game.frame import MOST_BREAK, points_available
+from ..game.balls import mask_of_present, points_available
+from ..game.frame import MOST_BREAK
 from ..game.frame_columns import BALL_ON, POINTS
 from ..tasks.options import Options
 from ..tasks.tables import Tables

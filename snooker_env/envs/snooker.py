@@ -51,7 +51,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | side: tip offset over R | 0.5 to the left | 0.5 to the right | always |
     | top: tip offset over R | 0.5 below the middle | 0.5 above the middle | always |
     | aim, ``aim="absolute"`` | -180 deg from +x | +180 deg, anticlockwise | always |
-    | aim, ``aim="target"`` | 3 deg right of the best potting line | 3 deg left of it | always |
+    | aim, ``aim="target"`` | 3 deg right of the target line | 3 deg left of it | always |
     | elevation of the cue | 0 deg | 30 deg | ``elevation=True`` |
     | place: across the D | 0.292 m to the left (-x) | 0.292 m to the right (+x) | ``placement=True`` |
     | place: back in the D | on the baulk line | on the edge of the D | ``placement=True`` |
@@ -60,10 +60,10 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | declaration | concedes | claims the frame | ``concede``, ``claim``, ``lot`` |
 
     A tip offset outside the disc of radius 0.5 R (the miscue limit) is moved to its edge. The aim is the direction in which the cue
-    ball leaves without noise: squirt is compensated. The best potting line is that of the widest direct pot or, without one, the line to
-    the nearest ball on. The place counts only when the cue ball is in hand; without it, the cue ball stands at its usual place for the
-    break-off, or near it. The decision counts only in a frame when the opponent has just fouled. Between -1/3 and 1/3 the agent plays, with
-    this same action; above 1/3 it does so, too, unless a miss was called (``miss``).
+    ball leaves without noise: squirt is compensated. The target line is that of the widest direct pot or, without one, of what is seen
+    of a ball on, or of an escape over cushions. The place counts only when the cue ball is in hand; without it, the cue ball stands at
+    its usual place, 0.18 m beside the brown, or near it. The decision counts only in a frame when the opponent has just fouled. Between
+    -1/3 and 1/3 the agent plays, with this same action; above 1/3 it does so, too, unless a miss was called (``miss``).
 
     ``action="discrete"``: ``Discrete(540)``. A choice is one of 4 pots, 9 speeds, 3 sides and 5 tops, and the aim is solved for it
     (``snooker_env.tasks.choice_of``). ``action_masks()`` returns the available choices. ``nominate=True`` makes them 7 x 540, 540 n + the
@@ -75,13 +75,13 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     black lets the other player begin below 0.
 
     ## Observation space
-    ``observation="flat"`` (default): ``Box(-1, 1, (121,), float32)``, the 22 rows of 5 numbers of the table of balls, then the 11 numbers
-    of the state. "balls": ``Dict(balls=(22, 5), state=(11,))``, the same numbers. "masked", with ``action="discrete"``:
+    ``observation="flat"`` (default): ``Box(-1.1, 1.1, (121,), float32)``, the 22 rows of 5 numbers of the table of balls, then the
+    11 of the state. "balls": ``Dict(balls=(22, 5), state=(11,))``, the same numbers. "masked", with ``action="discrete"``:
     ``Dict(observations=(121,), action_mask=(540,))``, the flat ones and ``action_masks()`` as int8 (for RLlib and TorchRL).
 
     | column of balls | value | entry of state | value |
     |---|---|---|---|
-    | x, y | x / 0.889 m, y / 1.7845 m, 0 when off the table | reds | reds left / 15 |
+    | x, y | x / 0.889 m, y / 1.7845 m, 0 when off the table; over 1 in a pocket's mouth | reds | reds left / 15 |
     | on_table | 0 or 1 | any_colour, red, yellow .. black | one-hot: the ball on |
     | value | points of the ball / 7 | in_hand | 1 if the cue ball is in hand |
     | ball_on | 1 if it may be struck first | break | points of the visit / 155 |
@@ -192,7 +192,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     ``render()`` returns the table with the paths of the last stroke and a score bar. ``RecordVideo`` and
     ``vector.RecordVideo`` of Gymnasium and ``VecVideoRecorder`` of Stable-Baselines3, in the same process, get the motion of every stroke
     of a step, at ``render_fps`` (30 a second, in real time). They keep all pictures in memory, 6 MB each at the default size:
-    ``render_size=(960, 540)`` takes a quarter, ``sn.RecordReplay`` none. "human" raises RuntimeError where there is no display.
+    ``render_size=(960, 540)`` takes a quarter, ``sn.RecordReplay`` none. "human" raises RuntimeError at the first stroke without a display.
 
     ## Version history
     v0: first version. Results of package versions 0.1 and 0.2 are not comparable (CHANGELOG.md).
@@ -291,8 +291,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         self._record.begin_episode()
         out = self.tables.output()
         self.tables.reset(np.array([start is None]), out, self._crew(), **breakers)
-        if self.render_mode == "human":
-            self._show()
+        self._show()
         return self._shaped(out), self.tables.info(out, 0)
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -335,7 +334,8 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         a = self.options.rules.actions.check(action)
         tables = self.tables
         if tables.finished()[0]:
-            raise gymnasium.error.ResetNeeded(f"the {self.options.task} is over: call reset() before step()")
+            raise gymnasium.error.ResetNeeded(f"the {self.options.task} {tables.unplayable}: call reset() before step()")
+        self._pictures.require_display()
         out = tables.output()
         self._record.begin_step()
         try:
@@ -379,8 +379,7 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     def _watch(self, k: int, buffers: ShotBuffers, j: int, own: bool) -> None:
         """Called after each stroke of either player."""
         self._record.saw(self.tables, k, buffers, j, own)
-        if self.render_mode == "human":
-            self._show(played=True)
+        self._show(played=True)
 
     def render(self) -> Picture:
         """Return the table with the paths of the last shot. A recorder gets the motion of the strokes, see Pictures and films.

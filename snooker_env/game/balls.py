@@ -13,7 +13,7 @@ import numpy as np
 from .._check import array, integer, refuse
 from .._jit import kernel
 from .._types import Bools, Flags, Floats, Vectors
-from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS
+from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS
 
 N_BALLS = 22
 """Number of balls, the cue ball included."""
@@ -79,13 +79,16 @@ TOUCH = 1e-6
 REFEREE_TOUCH = 50e-6
 """The referee calls a touching ball when the gap to the cue ball is below this [m]. The eye resolves about one arc minute, 70 um at 25 cm,
 so nobody sees light through a smaller gap; and balls that a referee would call touching come to rest 1 to 40 um apart in the simulation.
-Physics and spotting keep ``TOUCH``."""
+The physics keeps ``TOUCH``."""
+CLEARANCE = 2.0 * REFEREE_TOUCH
+"""The gap to a ball or cushion beside which a ball is put down without touching it [m]: a colour that returns, a cue ball in hand. The
+referee sees that they do not touch."""
 
 
 def _spots():
-    """A place for each ball: the cue ball's usual place for the break-off, the racked triangle, the six spots."""
+    """A place for each ball: the cue ball's usual place in hand, the racked triangle, the six spots."""
     spots = np.empty((N_BALLS, 2))
-    spots[CUE] = D_RADIUS / 2, BAULK_Y
+    spots[CUE] = 0.18, BAULK_Y
     spots[YELLOW:] = COLOUR_SPOTS
     pink_y = spots[PINK, 1]
     # Rows sqrt(3) R apart with a pitch of 2 R: each red touches its neighbours to rounding. Places rounded to mm would overlap.
@@ -99,7 +102,7 @@ def _spots():
 
 SPOTS = _spots()
 """A place for each ball: float64 (22, 2) [m], read-only. The spot of each colour, the place of each red in the triangle, and the
-usual place of the cue ball for the break-off."""
+usual place of the cue ball in hand: on the baulk line between brown and yellow. It breaks off from there or from its mirror image."""
 
 for _constant in (VALUES, SPOTS):
     _constant.setflags(write=False)
@@ -122,6 +125,18 @@ def bits(present):
     mask = 0
     for i in range(N_BALLS):
         if present[i]:
+            mask |= 1 << i
+    return mask
+
+
+@kernel
+def touching_balls(positions, on_table):
+    """The mask of the object balls that touch the cue ball, as the referee sees it."""
+    reach = 2.0 * BALL_RADIUS + REFEREE_TOUCH
+    mask = 0
+    for i in range(1, N_BALLS):
+        dx, dy = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
+        if on_table[i] and dx * dx + dy * dy < reach * reach:
             mask |= 1 << i
     return mask
 
@@ -177,9 +192,28 @@ def balls_on(ball_on: int, on_table: int) -> int:
     return on_table & (1 << (ball_on + 14))
 
 
-# The same two for kernels; Python calls the plain ones, which need no compiling.
+def points_available(on_table: int, ball_on: int, free_ball: bool = False) -> int:
+    """The most points that the striker can still score with the balls of the mask ``on_table``, without any from fouls.
+
+    8 for each red, the value of each colour, and 7 if any colour is on, after a red. A free ball adds 8 to them with a red on: it is one
+    more red. With a colour on it adds that colour's value: it scores as much and comes back. It must be another ball than the one on.
+    """
+    points, colours = 0, 0
+    for i in range(1, N_BALLS):
+        if (on_table >> i) & 1:
+            points += i - 14 if i > N_REDS else 8
+            colours += i > N_REDS
+    if ball_on == 0:
+        points += 7
+    elif free_ball and colours > (ball_on > 1):
+        points += 8 if ball_on == 1 else ball_on
+    return points
+
+
+# The same for kernels; Python calls the plain ones, which need no compiling.
 next_on_kernel: Any = kernel(next_on)
 balls_on_kernel: Any = kernel(balls_on)
+available: Any = kernel(points_available)
 
 
 def mask_of(balls: Iterable[int]) -> int:

@@ -25,7 +25,7 @@ from typing import Any, Literal, TypeAlias
 
 from .._check import choice, integer, refuse, truth
 from .._types import MissRule
-from .balls import ALL_MASK, BLACK, COLOURS_MASK, CUE_BIT, REDS_MASK, VALUES, BallOn, ids_of, next_on
+from .balls import ALL_MASK, BLACK, CUE_BIT, BallOn, next_on, points_available
 from .frame_checks import MOST_BREAK, REPLACED, SETTLED, check_fields, check_fit, is_plain, tuples, within
 from .referee import FULL_TABLE, MOST_POINTS, Situation, Stroke, Verdict, judge
 from .rule_sets import MOST_MISSES, RuleSet, RulesName, rule_set
@@ -38,12 +38,6 @@ PHASES = ("stroke", "choice", "lot", "over")
 MISS_RULES = ("off", "clear_path", "attempt")
 MOST_CLOCK = 2**50
 """Upper limit of a frame's clock [ms]."""
-
-
-def points_available(on_table: int, ball_on: int) -> int:
-    """The most points that can still be scored: 8 for each red, 7 if a colour is on after a red, and the values of the colours."""
-    reds = bin(on_table & REDS_MASK).count("1")
-    return 8 * reds + 7 * (ball_on == BallOn.ANY_COLOUR) + int(sum(VALUES[i] for i in ids_of(on_table & COLOURS_MASK)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,6 +120,8 @@ class Frame:
         In six-red snooker: foul-and-a-miss calls in succession; otherwise 0.
     anywhere : bool
         The cue ball in hand may be placed anywhere on the table, not in the D only.
+    rack : int
+        Mask of the object balls that the frame began with, for a restart.
     """
 
     scores: tuple[int, int] = (0, 0)
@@ -148,6 +144,7 @@ class Frame:
     clock: int = 0
     misses: int = 0
     anywhere: bool = False
+    rack: int = FULL_TABLE
 
     def __post_init__(self) -> None:
         choice("phase", self.phase, PHASES)
@@ -166,6 +163,7 @@ class Frame:
         if not all(is_plain(points, MOST_POINTS) for points in self.scores):
             _set(self, "scores", tuple(integer(f"scores[{k}]", points, 0, MOST_POINTS) for k, points in enumerate(self.scores)))
         _set(self, "on_table", _object_balls(self.on_table))
+        _set(self, "rack", _object_balls(self.rack, "rack"))
         if self.saved is not None and not isinstance(self.saved, Saved):
             raise refuse("saved", self.saved, "must be a Saved or None")
         if (self.winner is None) == (self.phase == "over"):
@@ -179,9 +177,9 @@ class Frame:
     @classmethod
     def start(cls, *, breaker: int = 0, miss: MissRule = "off", on_table: int | None = None, rules: RulesName = "snooker") -> "Frame":
         """A new frame. ``on_table``: mask of the balls, for a start with others than the rule set's."""
-        balls = rule_set(rules).on_table if on_table is None else integer("on_table", on_table, 0, ALL_MASK)
+        balls = rule_set(rules).on_table if on_table is None else integer("on_table", on_table, 0, ALL_MASK) & ~CUE_BIT
         ball_on = BallOn(next_on(balls))
-        return cls(striker=breaker, breaker=breaker, rules=rules, miss=miss, on_table=balls & ~CUE_BIT, ball_on=ball_on)
+        return cls(striker=breaker, breaker=breaker, rules=rules, miss=miss, on_table=balls, ball_on=ball_on, rack=balls)
 
     @property
     def rule_set(self) -> RuleSet:
@@ -196,13 +194,14 @@ class Frame:
 
     @property
     def available(self) -> int:
-        """The most points that can still be scored (without a free ball)."""
-        return points_available(self.on_table, self.ball_on)
+        """The most points that the striker can still score."""
+        return points_available(self.on_table, self.ball_on, self.free_ball)
 
     def needs_snookers(self, player: int) -> bool:
-        """Whether ``player`` trails by more points than can still be scored, and so needs penalty points."""
-        integer("player", player, 0, 1)
-        return self.scores[1 - player] - self.scores[player] > self.available
+        """Whether ``player`` trails by more points than he can still score. The colour after a red and a free ball are the striker's."""
+        mine = integer("player", player, 0, 1) == self.striker
+        left = self.available if mine else points_available(self.on_table, BallOn.NOTHING)
+        return self.scores[1 - player] - self.scores[player] > left
 
     def _in_phase(self, phase, act):
         if self.phase != phase:
@@ -230,8 +229,8 @@ class Frame:
         """One stroke: the next frame and the referee's ``Verdict``.
 
         ``clear_path``, ``full_ball_path``: whether before the stroke a straight path was clear to any part, and to the full face, of a
-        ball on (``paths.paths``); ``attempt``: whether the cue ball came near one (``attempt.ATTEMPT_GAP``). They matter with a miss rule
-        only. ``layout``: see ``Saved``.
+        ball on, in hand from any place (``paths.paths``); ``attempt``: whether the cue ball came near one (``attempt.ATTEMPT_GAP``). They
+        matter with a miss rule only. ``layout``: see ``Saved``.
 
         ``time_to_play``, ``duration``: the time [ms] from the rest of the balls to this stroke, and to the next rest; they matter with a
         clock only. The clock starts with the first stroke. A stroke that needs longer than ``shot_clock`` is not played: the caller leaves
@@ -295,8 +294,11 @@ class Frame:
             return False
         if full_ball_path and self.failures:
             return True
-        decided = any(abs(f.scores[0] - f.scores[1]) >= f.available for f in (self, after))
-        return bool(clear_path or full_ball_path or (self.miss == "attempt" and not attempt)) and not decided
+        for frame in (self, after):
+            level = abs(frame.scores[0] - frame.scores[1]) == frame.available
+            if level or frame.needs_snookers(0) or frame.needs_snookers(1):
+                return False
+        return bool(clear_path or full_ball_path or (self.miss == "attempt" and not attempt))
 
     @property
     def choices(self) -> tuple[Choice, ...]:
@@ -307,7 +309,7 @@ class Frame:
             return ("play", "play_again")
         if self.misses < self.rule_set.most_misses or not self.rule_set.most_misses:
             return ("play", "play_again", "replace")
-        needed = self.needs_snookers(0) or self.needs_snookers(1)
+        needed = abs(self.scores[0] - self.scores[1]) > points_available(self.on_table, self.ball_on)  # a free ball would be void
         return ("play", "play_again") if needed else ("play", "play_again", "anywhere")
 
     def choose(self, what: Choice) -> "Frame":
@@ -355,10 +357,10 @@ class Frame:
         return self._over(1 - player)
 
     def restart(self) -> "Frame":
-        """The referee ends a stalemate: scores are void, the balls are set up again and the same player breaks."""
+        """The referee ends a stalemate: scores are void, the balls of ``rack`` are set up again and the same player breaks."""
         if self.phase == "over":
             raise refuse("phase", self.phase, "must not be over to restart")
-        return Frame.start(breaker=self.breaker, miss=self.miss, rules=self.rules)
+        return Frame.start(breaker=self.breaker, miss=self.miss, rules=self.rules, on_table=self.rack)
 
     def to_dict(self) -> dict[str, Any]:
         """The frame as plain numbers, strings, lists and None, for JSON."""
@@ -389,7 +391,7 @@ def _set(frozen, name, value):
     object.__setattr__(frozen, name, value)
 
 
-def _object_balls(mask):
-    if integer("on_table", mask, 0, ALL_MASK) & CUE_BIT:
-        raise refuse("on_table", mask, "must name object balls only")
+def _object_balls(mask, name="on_table"):
+    if integer(name, mask, 0, ALL_MASK) & CUE_BIT:
+        raise refuse(name, mask, "must name object balls only")
     return int(mask)

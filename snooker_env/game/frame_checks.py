@@ -30,6 +30,8 @@ def faults(frame: Any) -> Iterator[tuple[bool, str, str]]:
     """Pairs of fields that the rules forbid: (whether this is so, the field, what is allowed)."""
     stroke, after_foul, missing = frame.phase == "stroke", frame.phase == "choice", frame.miss != "off"
     rules = frame.rule_set
+    known = frame.on_table | (0 if frame.saved is None else frame.saved.on_table)
+    yield bool(known & ~frame.rack), "rack", "must hold the balls of on_table, and of saved"
     if frame.phase == "over":
         for name, value in SETTLED.items():
             yield getattr(frame, name) != value, name, f'must be {value!r} in phase "over"'

@@ -15,7 +15,7 @@ import numpy as np
 
 from .._jit import kernel
 from .._types import Bools, Floats, Ints, MissRule
-from .balls import BLACK, COLOURS_MASK, N_BALLS, REDS_MASK, VALUES, BallOn, balls_on_kernel, count, next_on_kernel
+from .balls import BLACK, COLOURS_MASK, BallOn, available, balls_on_kernel, next_on_kernel
 from .frame import PHASES, Frame, Saved
 from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED, RulesName
 from .ruling import FOUL, OUTCOME
@@ -26,14 +26,14 @@ VISIT_COLUMNS = 5
 (
     FREE_BALL, ON_TABLE, PHASE, STRIKER, BREAKER, SCORE_0, SCORE_1, WINNER, RESPOTTED_BLACK, MISS_CALLED, FAILURES, WARNED, SAVED,
     SAVED_ON_TABLE, SAVED_BALL_ON, SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT, STROKES, PAID, FRAMES_0, FRAMES_1, FIRST_BREAK, CLOCK,
-    MISSES, ANYWHERE, OPPONENT,
-) = range(5, 32)  # fmt: skip
+    MISSES, ANYWHERE, OPPONENT, RACK,
+) = range(5, 33)  # fmt: skip
 """The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether there is one); strokes of both players; the agent's lead
 that rewards have already paid; frames won in a match and who broke in its first frame; simulated time played in this frame [ms]; misses
 called in succession; whether the cue ball in hand may be placed anywhere on the table; which member of a pool of opponents plays, counted
-from 1 (0: none is drawn yet). SAVED_IN_HAND is 2 if the cue ball could be placed anywhere.
+from 1 (0: none is drawn yet); RACK. SAVED_IN_HAND is 2 if the cue ball could be placed anywhere.
 """
-COLUMNS = 32
+COLUMNS = 33
 
 (STROKE, CHOICE, LOT, FINISHED) = range(4)
 """Phases, in the order of ``frame.PHASES``."""
@@ -42,7 +42,7 @@ COLUMNS = 32
 (NO_MISSES, CLEAR_PATHS, ATTEMPTS) = range(3)
 """Miss rules, in the order of ``frame.MISS_RULES``."""
 
-_MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
+MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
 
 
 class Layouts(NamedTuple):
@@ -64,23 +64,11 @@ def strikeable(row, mask):
 
 
 @kernel
-def available(on_table, ball_on):
-    """``frame.points_available``."""
-    points = 8 * count(on_table & REDS_MASK)
-    if ball_on == 0:
-        points += 7
-    for i in range(N_BALLS):
-        if (on_table & COLOURS_MASK) >> i & 1:
-            points += VALUES[i]
-    return points
-
-
-@kernel
 def begin_frame(row, on_table, breaker, in_hand):
     """A new frame with the balls of the mask ``on_table``."""
     for c in range(row.shape[0]):
         row[c] = 0
-    row[ON_TABLE] = on_table & ~1
+    row[ON_TABLE] = row[RACK] = on_table & ~1
     row[BALL_ON], row[IN_HAND] = next_on_kernel(row[ON_TABLE]), in_hand
     row[STRIKER] = row[BREAKER] = breaker
     row[WINNER] = -1
@@ -101,14 +89,27 @@ def lead_of(row, player):
 
 
 @kernel
-def _is_miss(row, result, lead_before, available_before, failures, misses, rules, miss, clear, full, attempt):
-    """Whether a foul is also a miss, with ``row`` after the stroke: ``Frame._is_miss``."""
-    if miss == NO_MISSES or not result.fouls & _MISSED or (rules == SIX_RED and misses == MOST_MISSES):
+def needs_snookers(row, player):
+    """Whether ``player`` trails by more points than he can still score: ``Frame.needs_snookers``."""
+    left = available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL]) if row[STRIKER] == player else available(row[ON_TABLE], -1, 0)
+    return -lead_of(row, player) > left
+
+
+@kernel
+def _decided(row):
+    """Whether the scores rule a miss out: a player needs penalty points, or the difference is what is left."""
+    level = abs(lead_of(row, 0)) == available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
+    return level or needs_snookers(row, 0) or needs_snookers(row, 1)
+
+
+@kernel
+def _is_miss(row, result, decided, failures, misses, rules, miss, clear, full, attempt):
+    """Whether a foul is also a miss, with ``row`` after the stroke and ``decided`` before it: ``Frame._is_miss``."""
+    if miss == NO_MISSES or not result.fouls & MISSED or (rules == SIX_RED and misses == MOST_MISSES):
         return False
     if full and failures:
         return True
-    after = abs(lead_of(row, 0)) >= available(row[ON_TABLE], row[BALL_ON])
-    return (clear or full or (miss == ATTEMPTS and not attempt)) and not (abs(lead_before) >= available_before or after)
+    return (clear or full or (miss == ATTEMPTS and not attempt)) and not (decided or _decided(row))
 
 
 @kernel
@@ -129,13 +130,13 @@ def is_late(row, rules, time_to_play):
 def after_stroke(row, result, rules, miss, clear, full, attempt, layout, time_to_play, duration):
     """One stroke with the referee's ``Ruling`` result: ``Frame.play``.
 
-    ``rules``, ``miss``: codes; ``clear``, ``full``: the paths before the stroke; ``attempt``: whether the cue ball came near a ball on;
-    ``layout``: whether that before the stroke is stored; ``time_to_play``, ``duration`` [ms].
+    ``rules``, ``miss``: codes; ``clear``, ``full``: the paths before the stroke (``paths.best_paths``); ``attempt``: whether the cue ball
+    came near a ball on; ``layout``: whether that before the stroke is stored; ``time_to_play``, ``duration`` [ms].
     """
     me = row[STRIKER]
     other = 1 - me
     failures, warned, misses = row[FAILURES], row[WARNED], row[MISSES]
-    lead_before, available_before = lead_of(row, 0), available(row[ON_TABLE], row[BALL_ON])
+    decided = _decided(row)
     on_table, ball_on, in_hand, free_ball = row[ON_TABLE], row[BALL_ON], row[IN_HAND] + row[ANYWHERE], row[FREE_BALL]
     row[SCORE_0 + me] += result.points
     row[SCORE_0 + other] += result.penalty
@@ -161,10 +162,10 @@ def after_stroke(row, result, rules, miss, clear, full, attempt, layout, time_to
         return
     if not result.fouls:
         return
-    if warned and full and result.fouls & _MISSED:
+    if warned and full and result.fouls & MISSED:
         _end(row, other)
         return
-    called = _is_miss(row, result, lead_before, available_before, failures, misses, rules, miss, clear, full, attempt)
+    called = _is_miss(row, result, decided, failures, misses, rules, miss, clear, full, attempt)
     row[PHASE], row[MISS_CALLED] = CHOICE, called
     row[FAILURES] = failures + 1 if called and full else 0
     row[MISSES] = misses + 1 if called and rules == SIX_RED else 0
@@ -193,7 +194,7 @@ def may_replace(row, rules):
 def may_place_anywhere(row, rules):
     """Whether "anywhere" is one of ``Frame.choices``."""
     last = row[PHASE] == CHOICE and row[MISS_CALLED] and rules == SIX_RED and row[MISSES] >= MOST_MISSES
-    return last and abs(lead_of(row, 0)) <= available(row[ON_TABLE], row[BALL_ON])
+    return last and abs(lead_of(row, 0)) <= available(row[ON_TABLE], row[BALL_ON], 0)
 
 
 @kernel
@@ -264,7 +265,7 @@ def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int, rules: RulesNa
         ball_on=BallOn(at[BALL_ON]), in_hand=bool(at[IN_HAND]), free_ball=bool(at[FREE_BALL]),
         respotted_black=bool(at[RESPOTTED_BLACK]), phase=PHASES[at[PHASE]], winner=None if at[WINNER] < 0 else at[WINNER], miss=miss,
         miss_called=bool(at[MISS_CALLED]), failures=at[FAILURES], warned=bool(at[WARNED]), saved=saved,
-        rules=rules, clock=at[CLOCK], misses=at[MISSES], anywhere=bool(at[ANYWHERE]),
+        rules=rules, clock=at[CLOCK], misses=at[MISSES], anywhere=bool(at[ANYWHERE]), rack=at[RACK],
     )  # fmt: skip
 
 
@@ -276,7 +277,7 @@ def write_frame(frame: Frame, strokes: int, row: Ints, layouts: Layouts, k: int)
     row[[STRIKER, BREAKER, SCORE_0, SCORE_1]] = frame.striker, frame.breaker, *frame.scores
     row[[WINNER, RESPOTTED_BLACK]] = -1 if frame.winner is None else frame.winner, frame.respotted_black
     row[[MISS_CALLED, FAILURES, WARNED, STROKES]] = frame.miss_called, frame.failures, frame.warned, strokes
-    row[[CLOCK, MISSES, ANYWHERE]] = frame.clock, frame.misses, frame.anywhere
+    row[[CLOCK, MISSES, ANYWHERE, RACK]] = frame.clock, frame.misses, frame.anywhere, frame.rack
     saved = frame.saved
     if saved is not None:
         row[[SAVED, SAVED_ON_TABLE, SAVED_BALL_ON]] = 1, saved.on_table, saved.ball_on

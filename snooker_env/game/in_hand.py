@@ -12,15 +12,41 @@ from .._check import number, refuse
 from .._jit import entry, kernel
 from .._types import Flags, Place, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
-from .balls import N_BALLS, REFEREE_TOUCH, check_table
+from .balls import CLEARANCE, N_BALLS, REFEREE_TOUCH, check_table
 from .spotting import touches
 
-CLEARANCE = 2.0 * REFEREE_TOUCH
-"""The gap between a cue ball placed next to a ball and that ball [m]: the referee sees that they do not touch."""
 POCKET_REACH = 0.15
 """Least distance of the cue ball's centre from a pocket's nominal place, anywhere on the table [m]: clear of the jaws, as in layouts."""
 ROUNDING = 1e-12
 """Tolerance for points on the lines of the D [m]."""
+D_STEP, BED_STEP = 0.005, 0.05
+"""Distances between neighbouring places that are tried in the D, and on the whole bed [m]."""
+
+
+def _places_in_d():
+    """The ends of the baulk line's part in the D and the brown spot, then a grid of ``D_STEP`` with the arc: (n, 2) [m]."""
+    places = [(side * D_RADIUS, BAULK_Y) for side in (-1, 0, 1)]
+    rows = int(np.ceil(D_RADIUS / D_STEP))
+    for row in range(rows + 1):
+        depth = D_RADIUS * row / rows
+        half = float(np.sqrt(max(0.0, D_RADIUS * D_RADIUS - depth * depth)))
+        n = int(np.ceil(half / D_STEP))
+        places += [(half * k / n if n else 0.0, BAULK_Y - depth) for k in range(-n, n + 1)]
+    return np.array(places)
+
+
+def _places_on_bed():
+    """A grid of ``BED_STEP`` over all places where the cue ball may stand anywhere: (n, 2) [m]."""
+    room = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - CLEARANCE
+    lines = [np.linspace(-far, far, 1 + int(np.ceil(2.0 * far / BED_STEP))) for far in room]
+    places = np.stack(np.meshgrid(*lines), axis=-1).reshape(-1, 2)
+    return places[np.hypot(*(places[:, None] - POCKET_PLACES).transpose(2, 0, 1)).min(axis=1) >= POCKET_REACH]
+
+
+PLACES_IN_D, PLACES_ON_BED = _places_in_d(), _places_on_bed()
+"""Places that are tried where a rule asks what the cue ball in hand could do: float64 (n, 2) [m], read-only."""
+for _places in (PLACES_IN_D, PLACES_ON_BED):
+    _places.setflags(write=False)
 
 
 def within_d(x: float, y: float) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 from .._check import refuse
 from .._jit import entry, kernel
 from .._types import Bools, Floats
-from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
+from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_PLACES
 from .balls import CUE, GREEN, N_BALLS, N_REDS, REDS_MASK, SPOTS, YELLOW
 from .opened import NO_BANK, bank_without, kept
 from .philox import normals, pair, stream_of
@@ -48,17 +48,20 @@ def clear(positions, on_table, x, y):
 
 @kernel
 def _put(positions, on_table, ball, kind, stream):
-    """Put a ball at the first random place that is clear; the cue ball within the bounds of its kind of layout."""
+    """Put a ball at the first random place that is clear; the cue ball within the bounds of its kind of layout.
+
+    For the break-off it stands at its usual place, left or right of the brown.
+    """
     left, bottom, right, top = -HALF_WIDTH, -HALF_LENGTH, HALF_WIDTH, HALF_LENGTH
     if ball == CUE and kind == BREAK_OFF:
-        left, bottom, right, top = -D_RADIUS, BAULK_Y - D_RADIUS, D_RADIUS, BAULK_Y
-    elif ball == CUE and kind == LINE_UP:
+        u, _ = pair(stream)
+        positions[CUE, 0], on_table[CUE] = SPOTS[CUE, 0] if u < 0.5 else -SPOTS[CUE, 0], True
+        return
+    if ball == CUE and kind == LINE_UP:
         left, bottom, right, top = -0.6, -0.3, 0.6, 1.5
     while True:
         u, v = pair(stream)
         x, y = left + u * (right - left), bottom + v * (top - bottom)
-        if ball == CUE and kind == BREAK_OFF and hypot(x, y - BAULK_Y) > D_RADIUS:
-            continue
         if ball == CUE and kind == COLOURS and not 0.25 <= hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1]) <= 1.2:
             continue  # too near to the first ball on, or too far from it
         if clear(positions, on_table, x, y):
@@ -303,7 +306,7 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
 
 
 def break_off(rng: np.random.Generator) -> tuple[Floats, Bools]:
-    """The start of a frame: reds racked, colours on their spots, the cue ball at a random place in the D."""
+    """The start of a frame: reds racked, colours on their spots, the cue ball at its usual place, on either side of the brown."""
     return layout("break_off", rng)
 
 

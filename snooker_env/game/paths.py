@@ -7,18 +7,23 @@ not matter, everything else does. A colour is met in its centre only if no other
 colours could be on: the striker nominates one of them, and then the others are not on.
 
 A path leads over the bed: it ends where the cue ball would meet a cushion, a straight nose or the curved face of a jaw (R14 speaks of a
-path of the cue ball; only the test for a snooker leaves cushions out). The cue ball must have a place: if it was in hand, the place from
-which it was played.
+path of the cue ball; only the test for a snooker leaves cushions out).
+
+In hand the striker chooses the place, and the best of his ability (R14(a)) is a place with a path: a path counts that is clear from any
+place where the cue ball may stand, as for a snooker (S2 R17). Tried are the places of ``in_hand``, 5 mm apart in the D, 50 mm apart
+anywhere on the bed; an opening that falls between them is in the striker's favour.
 """
 
 import numpy as np
 
-from .._check import array, integer, refuse
+from .._check import array, integer, refuse, truth
 from .._jit import entry, kernel
 from .._types import Flags, Vectors
 from ..geometry import BALL_RADIUS
-from .balls import ALL_MASK, CUE_BIT, N_BALLS, REDS_MASK, check_table
+from .balls import ALL_MASK, CUE_BIT, N_BALLS, REDS_MASK, REFEREE_TOUCH, check_table
+from .in_hand import PLACES_IN_D, PLACES_ON_BED
 from .snookered import SLACK, segment_distance
+from .spotting import touches
 
 WINDOW = 1e-9
 """A narrower opening does not count [rad]: it is rounding."""
@@ -186,25 +191,54 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
 
 
 @entry(what="the paths of the miss rule", seconds=2)
-def _paths(positions, on_table, on, noses, jaws, radius):
-    full = full_ball_path(positions, on_table, on, noses, jaws, radius)
-    return clear_path(positions, on_table, on, noses, jaws, radius), full
+def best_paths(positions, on_table, on, in_hand, noses, jaws, radius):
+    """Both tests: (any part, full ball).
+
+    ``in_hand``: 0 the cue ball is played from where it lies, 1 from the D, 2 from anywhere on the bed. In hand, its place in ``positions``
+    is tried first, if it is on the table, then the others until there is a full-ball path.
+    """
+    if on_table[0]:
+        full = full_ball_path(positions, on_table, on, noses, jaws, radius)
+        clear = full or clear_path(positions, on_table, on, noses, jaws, radius)
+        if full or in_hand == 0:
+            return clear, full
+    else:
+        clear = False
+    at, others = positions.copy(), on_table.copy()
+    others[0] = False
+    places = PLACES_IN_D if in_hand == 1 else PLACES_ON_BED
+    for k in range(places.shape[0]):
+        if touches(at, others, places[k, 0], places[k, 1], 2.0 * radius + REFEREE_TOUCH):
+            continue
+        at[0, 0], at[0, 1] = places[k, 0], places[k, 1]
+        if full_ball_path(at, on_table, on, noses, jaws, radius):
+            return True, True
+        clear = clear or clear_path(at, on_table, on, noses, jaws, radius)
+    return clear, False
 
 
 def paths(
-    positions: Vectors, on_table: Flags, on: int, *, noses: Vectors = NO_NOSES, jaws: Vectors = NO_ARCS, radius: float = BALL_RADIUS
+    positions: Vectors,
+    on_table: Flags,
+    on: int,
+    *,
+    anywhere: bool = False,
+    noses: Vectors = NO_NOSES,
+    jaws: Vectors = NO_ARCS,
+    radius: float = BALL_RADIUS,
 ) -> tuple[bool, bool]:
     """Both tests for Python: (any part, full ball); ``noses``, ``jaws``: of a ``Table``.
 
-    Raises ``ValueError`` if the cue ball is not on the table.
+    A cue ball that is not on the table is in hand: in the D or, with ``anywhere``, on the whole bed. Raises ``ValueError`` for wrong input.
     """
     placed, present = check_table(positions, on_table)
-    if not present[0]:
-        raise refuse("on_table[0]", False, "must be True: the cue ball must be on the table")
+    if truth("anywhere", anywhere) and present[0]:
+        raise refuse("anywhere", True, "must be False with the cue ball on the table (on_table[0]): then it is not in hand")
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on", on, "must name object balls only")
     cushions = array("noses", noses, (-1, 5)), array("jaws", jaws, (-1, 6))
     for part in cushions:
         part.setflags(write=False)  # as those of a Table: numba compiles for each kind
-    any_part, full = _paths(placed, present, on, *cushions, float(radius))
+    in_hand = 0 if present[0] else 1 + anywhere
+    any_part, full = best_paths(placed, present, on, in_hand, *cushions, float(radius))
     return bool(any_part), bool(full)

@@ -5,9 +5,9 @@ the path ends at the grazing contact, and no ball not on may be nearer to it tha
 struck in this way at both edges (or touches it). Other balls on never hide a ball on. A cushion does not snooker: where the curved face of
 a jaw obstructs an edge and is nearer to the cue ball than any ball not on that does, the cue ball counts as not snookered.
 
-In hand all of the D is tested: three points of the baulk line (the ends of its part in the D, the brown spot), then a grid of ``D_STEP``
-with the arc, then places right beside each ball, where most narrow openings are. A place counts only if a ball can stand there. An opening
-narrower than the step and away from every ball may be missed; no player places a ball more exactly.
+In hand all of the D is tested: the places of ``in_hand.PLACES_IN_D``, 5 mm apart, then places right beside each ball, where most narrow
+openings are. A place counts only if a ball can stand there. An opening narrower than the step and away from every ball may be missed; no
+player places a ball more exactly.
 """
 
 import numpy as np
@@ -16,11 +16,10 @@ from .._check import array, integer, refuse
 from .._jit import entry, kernel
 from .._types import Flags, Vectors
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
-from .balls import ALL_MASK, CUE_BIT, N_BALLS, REFEREE_TOUCH, check_table
+from .balls import ALL_MASK, CLEARANCE, CUE_BIT, N_BALLS, REFEREE_TOUCH, check_table
+from .in_hand import PLACES_IN_D
 from .spotting import touches
 
-D_STEP = 0.005
-"""Distance between neighbouring places that are tested in the D [m]."""
 BESIDE = 360
 """Number of directions in which places beside a ball are tested."""
 SLACK = 1e-9
@@ -106,7 +105,7 @@ def _open_at(positions, on_table, on, x, y, jaws, radius):
 @kernel
 def _open_beside(positions, on_table, on, i, jaws, radius):
     """Whether the cue ball is not snookered from some place in the D right beside ball i: all round it, and on the baulk line."""
-    gap = 2.0 * radius + 2.0 * REFEREE_TOUCH
+    gap = 2.0 * radius + CLEARANCE
     x, y = positions[i, 0], positions[i, 1]
     if np.hypot(x, y - BAULK_Y) > D_RADIUS + gap:
         return False
@@ -125,18 +124,9 @@ def _open_beside(positions, on_table, on, i, jaws, radius):
 @kernel
 def snookered_in_hand(positions, on_table, on, jaws, radius):
     """Whether the cue ball in hand is snookered from every place in the D. The cue ball's entry in ``on_table`` must be False."""
-    for k in range(3):
-        if _open_at(positions, on_table, on, (k - 1) * D_RADIUS, BAULK_Y, jaws, radius):
+    for k in range(PLACES_IN_D.shape[0]):
+        if _open_at(positions, on_table, on, PLACES_IN_D[k, 0], PLACES_IN_D[k, 1], jaws, radius):
             return False
-    steps = int(np.ceil(D_RADIUS / D_STEP))
-    for row in range(steps + 1):
-        depth = D_RADIUS * row / steps
-        half = np.sqrt(D_RADIUS * D_RADIUS - depth * depth)
-        places = int(np.ceil(half / D_STEP))
-        for k in range(-places, places + 1):
-            x = half * k / places if places else 0.0
-            if _open_at(positions, on_table, on, x, BAULK_Y - depth, jaws, radius):
-                return False
     beside = False
     for i in range(1, N_BALLS):
         beside = beside or (on_table[i] and _open_beside(positions, on_table, on, i, jaws, radius))

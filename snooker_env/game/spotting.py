@@ -3,7 +3,8 @@
 A colour goes on its own spot. If that is occupied, it goes on the free spot of the highest value. If every spot is occupied, it goes as
 near its own spot as possible without touching another ball, on the straight line from there to the top cushion. If that line has no room,
 it goes on the same line below the spot (the rules state this for pink and black, whose line is the centre line). A spot is occupied if a
-ball placed there would touch another. Of several colours, those whose own spot is free go first, then the highest value first.
+ball placed there would touch another, as the referee sees it (``balls.REFEREE_TOUCH``): he puts no ball down where he would then call a
+touching ball. Of several colours, those whose own spot is free go first, then the highest value first.
 """
 
 import numpy as np
@@ -12,10 +13,7 @@ from .._check import integer, refuse
 from .._jit import entry, kernel
 from .._types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS, HALF_LENGTH
-from .balls import ALL_MASK, BLACK, COLOURS_MASK, N_BALLS, SPOTS, TOUCH, YELLOW, check_table
-
-CLEARANCE = 2.0 * TOUCH
-"""The gap between a spotted colour and a ball or cushion that it must not touch [m]: the least that every test of touching recognises."""
+from .balls import ALL_MASK, BLACK, CLEARANCE, COLOURS_MASK, N_BALLS, REFEREE_TOUCH, SPOTS, YELLOW, check_table
 
 
 @kernel
@@ -32,7 +30,7 @@ def touches(positions, on_table, x, y, reach):
 @kernel
 def occupied(positions, on_table, x, y, radius):
     """Whether a ball at (x, y) [m] would touch one that is on the table."""
-    return touches(positions, on_table, x, y, 2.0 * radius + TOUCH)
+    return touches(positions, on_table, x, y, 2.0 * radius + REFEREE_TOUCH)
 
 
 @kernel

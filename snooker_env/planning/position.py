@@ -1,7 +1,8 @@
 """How is a position written down? ``Position``: the balls by name and the ball on, validated; and the arrays for the kernels."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import InitVar, asdict, dataclass
+from dataclasses import InitVar, asdict, dataclass, fields
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +41,7 @@ class Position:
     ----------
     cue : (float, float), optional
         Centre of the cue ball [m]. The origin is the table's centre, +x points to the yellow side and +y to the black end. It may be
-        left out with ``in_hand=True``: then the cue ball lies at the free place of the D nearest to its usual place for the break-off.
+        left out with ``in_hand=True``: then the cue ball lies at the free place of the D nearest to its usual one, (0.18, -1.0475).
     reds : sequence of (float, float), optional
         Up to 15 centres [m]. The reds get the ids 1, 2, ... in this order. Default: none.
     yellow, green, brown, blue, pink, black : (float, float), optional
@@ -61,6 +62,8 @@ class Position:
     ------
     ValueError
         If a ball is off the table, in a cushion or over a pocket, if two balls overlap, or if the ball on contradicts the balls.
+    TypeError
+        For an unknown field.
 
     Examples
     --------
@@ -298,6 +301,24 @@ class Position:
         from . import position_file
 
         return position_file.read(path, table)
+
+
+def _known(init: Any) -> Any:
+    """``Position.__init__`` with a word on a field that it does not have: which there are, and that the reds are one list."""
+    names = (*(f.name for f in fields(Position)), "table")
+
+    @wraps(init)
+    def checked(self: Position, *args: Any, **given: Any) -> None:
+        for name in given:
+            if name not in names:
+                hint = "the reds are one list, reds=[(x, y), ...]" if name.startswith("red") else f"the fields are {', '.join(names)}"
+                raise TypeError(f"Position got an unexpected keyword argument {name!r}; {hint}")
+        init(self, *args, **given)
+
+    return checked
+
+
+Position.__init__ = _known(Position.__init__)
 
 
 def _named(on: Any, balls: int) -> str:

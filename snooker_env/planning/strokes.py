@@ -22,7 +22,8 @@ from ..physics.impact.contact import parse_fidelity
 from ..physics.impact.polynomial import WORK
 from ..physics.parameters import Physics, PhysicsLike
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
-from ..tasks.discrete_actions import POTS, SIZE, chosen, masks
+from ..tasks.discrete_actions import SIZE, chosen, masks
+from ..tasks.lines import LINE_ROWS
 from ..tasks.pot_aim import solved_aim
 from ..tasks.tables import STROKES_ONLY
 from .positions import Positions, PositionsLike, rows_of
@@ -47,8 +48,8 @@ def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
     Returns
     -------
     numpy.ndarray
-        bool (m, 540). True for each available choice. A position without a direct pot offers the strokes of the first pot, which then
-        mean full hits on the nearest ball on.
+        bool (m, 540). True for each available choice. In a position without a direct pot other lines of the cue ball stand for the
+        pots: parts of balls on that it sees, or escapes over cushions.
 
     Raises
     ------
@@ -109,7 +110,7 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
 
 @entry(what="the choices as actions", uses=(chosen,))
 def _as_actions(positions, on_table, game, rows, picks, phys, end_mass_ratio, fidelity, n_steps, out):
-    found, motion, phase, work = np.empty((POTS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    found, motion, phase, work = np.empty((LINE_ROWS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
     for i in range(len(rows)):
         k = rows[i]
         on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))

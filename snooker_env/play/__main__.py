@@ -102,7 +102,7 @@ def main(argv: list[str] | None = None) -> int:
     Returns
     -------
     int
-        0, or 2 if the command line is invalid.
+        0; 2 if the command line is invalid; 130 if it was interrupted while it loaded.
     """
     given = _arguments(argv)
     from .server import PlayServer
@@ -115,6 +115,9 @@ def main(argv: list[str] | None = None) -> int:
     except (ValueError, OSError, OverflowError) as error:
         print(f"snooker_env.play: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("snooker_env.play: interrupted", file=sys.stderr)
+        return 130
     try:
         print(
             f"Snooker is played at\n\n    {server.address}\n\nPrograms play at its api/ (docs/play/protocol.md). Ctrl-C ends it.",

@@ -68,8 +68,8 @@ def scatter(session: Session, stroke: CueStroke, *, noise: NoiseName, samples: i
     }  # fmt: skip
 
 
-def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int) -> list[dict[str, Any]]:
-    """The agent's best strokes, ranked, in words and data, each with its paths without errors."""
+def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int) -> dict[str, Any]:
+    """Strokes of the agent in words and data, each with its paths without errors; whose they are, and by what they are ordered."""
     choice("agent", agent, seats.agents)
     advice = advise(session.planned(), agent=seats.player(agent), noise=noise, n=n, samples=samples, seed=seed)
     out = []
@@ -78,7 +78,7 @@ def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName,
         if one.place is not None:
             twin.place(*one.place)
         out.append(one.to_dict() | _named(one) | paths(exact(twin, one.stroke)))
-    return out
+    return {"agent": advice.agent, "order": advice.order, "suggestions": out}
 
 
 def _named(one: Suggestion) -> dict[str, Any]:

@@ -1,22 +1,26 @@
-"""What is on the table, and what may be done? The game as JSON types for the page and for programs, and as plain text."""
+"""What is on the table, and what may be done? The game as JSON types for the page and for programs, and as plain text.
+
+``table_after`` says what table and scoreboard are after one act. The state of the game is that of its last act, and what may be done now. A
+stroke is sent with the tables before and after it, so that whoever shows it needs nothing else.
+"""
 
 from typing import Any
 
-import numpy as np
-
 from ..advice import POCKET_WORDS
 from ..advice.strokes import FARTHEST
-from ..game.balls import CUE, NAMES, REDS_MASK, YELLOW, BallOn, ids_of
+from ..game.balls import CUE, NAMES, YELLOW, ids_of
 from ..game.frame import Frame
 from ..game.snookered import is_snookered
 from ..geometry import POCKET_AIMS
 from ..render.scene import scene_data
+from ..replays.encode import encoded_stroke
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 from ..tasks.noise import LEVELS
 from .lines import Line, lines_of
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
-from .service import Service, last_words
-from .words import freedom, on_words, table_text
+from .service import Service
+from .session import Act, Session
+from .words import asked_words, freedom, last_words, table_text
 
 
 def scene(service: Service) -> dict[str, Any]:
@@ -33,33 +37,50 @@ def scene(service: Service) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def table_after(act: Act, labels: tuple[str, str]) -> dict[str, Any]:
+    """The table and the scoreboard after an act."""
+    state, frame = act.state, Frame.from_dict(act.state["frame"])
+    there = [ball for ball, on in enumerate(state["on_table"]) if on]
+    over = frame.phase == "over"
+    return {
+        "phase": frame.phase, "striker": frame.striker, "breaker": frame.breaker, "scores": list(frame.scores), "break": frame.break_points,
+        "ball_on": None if over else frame.ball_on.name.lower(), "free_ball": frame.free_ball, "in_hand": frame.in_hand,
+        "reds": sum(0 < ball < YELLOW for ball in there), "available": 0 if over else frame.available, "winner": frame.winner,
+        "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in there}, "words": asked_words(frame, labels),
+        "last": last_words(act, labels),
+    }  # fmt: skip
+
+
+def stroke_report(service: Service, k: int) -> dict[str, Any]:
+    """The act with this index, which is a stroke: as in a replay, with the tables before and after it."""
+    acts, labels = service.session.acts, service.seats.labels
+    played = acts[k].played
+    assert played is not None
+    return encoded_stroke(played, labels) | {"tables": [table_after(acts[k - 1], labels), table_after(acts[k], labels)]}
+
+
 def report(service: Service) -> dict[str, Any]:
     """The current state of the game."""
     session, seats = service.session, service.seats
     frame, tables = session.frame, session.tables
-    labels = (seats.label(0), seats.label(1))
     on = tables.on(0) if frame.phase == "stroke" else 0
     hidden = _snookered(session, frame, on)
     lines = _lines(session, frame, on)
-    there = np.flatnonzero(tables.on_table[0]).tolist()
-    places = {ball: tuple(tables.positions[0, ball].tolist()) for ball in there}
-    return {
-        "revision": service.revision, "phase": frame.phase, "striker": frame.striker, "players": list(seats.who), "labels": list(labels),
-        "noise": list(session.noise), "practice": session.practice, "scores": list(frame.scores), "break": frame.break_points,
-        "ball_on": None if frame.phase == "over" else frame.ball_on.name.lower(), "balls_on": [NAMES[i] for i in ids_of(on)],
-        "free_ball": frame.free_ball, "in_hand": frame.in_hand, "snookered": hidden, "miss_called": frame.miss_called,
+    state = table_after(session.acts[session.at - 1], seats.labels)
+    state |= {
+        "revision": service.revision, "players": list(seats.who), "labels": list(seats.labels), "noise": list(session.noise),
+        "practice": session.practice, "balls_on": [NAMES[i] for i in ids_of(on)], "snookered": hidden, "miss_called": frame.miss_called,
         "choices": list(frame.choices), "nominations": [NAMES[i] for i in session.nominations()],
-        "reds": sum(0 < ball < YELLOW for ball in there), "available": 0 if frame.phase == "over" else frame.available,
-        "needs_snookers": frame.phase != "over" and frame.needs_snookers(frame.striker), "winner": frame.winner,
-        "positions": {NAMES[ball]: list(place) for ball, place in places.items()}, "lines": [line.to_dict() for line in lines],
+        "needs_snookers": frame.phase != "over" and frame.needs_snookers(frame.striker), "lines": [line.to_dict() for line in lines],
         "thinking": service.thinking, "paused": service.paused and service.agent_to_play(), "trouble": service.trouble,
         "strokes": len(session.strokes), "undo": session.at > 1, "redo": session.at < len(session.acts),
-        "words": _asked(service, frame, labels), "last": last_words(session.acts[session.at - 1], labels),
-        "text": table_text(places, on, lines, _facts(service, frame, labels, hidden, places)),
+        "words": _agents_words(service) or state["words"],
     }  # fmt: skip
+    places = {NAMES.index(name): (x, y) for name, (x, y) in state["positions"].items()}
+    return state | {"text": table_text(places, on, lines, _facts(session, state, places))}
 
 
-def _snookered(session, frame: Frame, on: int) -> bool:
+def _snookered(session: Session, frame: Frame, on: int) -> bool:
     if not on:
         return False
     tables = session.tables
@@ -68,7 +89,7 @@ def _snookered(session, frame: Frame, on: int) -> bool:
     return is_snookered(tables.positions[0], present, on, jaws=tables.rules.table.jaws[:, :3])[0]
 
 
-def _lines(session, frame: Frame, on: int) -> list[Line]:
+def _lines(session: Session, frame: Frame, on: int) -> list[Line]:
     if not on:
         return []
     positions = [session.planned()]
@@ -77,44 +98,30 @@ def _lines(session, frame: Frame, on: int) -> list[Line]:
     return lines_of(positions, on, session.noise[frame.striker])
 
 
-def _asked(service: Service, frame: Frame, labels: tuple[str, str]) -> str:
-    """What the game waits for, in a sentence."""
-    who = labels[frame.striker]
-    yours = "Your stroke" if who == "You" else f"{who}'s stroke"
-    if frame.phase == "over":
-        winner, scores = frame.winner or 0, frame.scores
-        return f"Frame over: {labels[winner]} won {scores[winner]}-{scores[1 - winner]}."
-    if service.trouble:
-        return service.trouble
-    if service.agent_to_play():
-        return f"{who} waits: press Continue." if service.paused else f"{who} is thinking."
-    if frame.phase == "choice":
-        miss = " and a miss" if frame.miss_called else ""
-        return f"Foul{miss} by {labels[1 - frame.striker]}: {'choose' if who == 'You' else f'{who} chooses'}."
-    what = on_words(frame.ball_on, frame.free_ball)
-    placing = "; the cue ball is in hand" if frame.in_hand else ""
-    return f"{yours}: {what} {'are' if frame.free_ball else 'is'} on{placing}."
+def _agents_words(service: Service) -> str:
+    """What is said while it is an agent's turn, else ""."""
+    if not service.agent_to_play():
+        return ""
+    who = service.seats.label(service.session.frame.striker)
+    return service.trouble or (f"{who} waits: press Continue." if service.paused else f"{who} is thinking.")
 
 
-def _facts(service: Service, frame: Frame, labels, hidden: bool, places) -> list[str]:
+def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[float, float]]) -> list[str]:
     """The sentences before the list of balls."""
-    session = service.session
-    said = [last_words(session.acts[session.at - 1], labels), _asked(service, frame, labels)]
-    said.append(f"Score: {labels[0]} {frame.scores[0]}, {labels[1]} {frame.scores[1]}; break {frame.break_points}.")
-    if frame.phase == "over":
+    said, ((one, other), reds) = [state["last"], state["words"]], (state["labels"], state["reds"])
+    said.append(f"Score: {one} {state['scores'][0]}, {other} {state['scores'][1]}; break {state['break']}.")
+    if state["phase"] == "over":
         return said
-    reds = bin(frame.on_table & REDS_MASK).count("1")
-    said.append(f"{frame.available} points are left on the table, {reds} red{'' if reds == 1 else 's'} among the balls.")
-    if frame.needs_snookers(frame.striker):
+    said.append(f"{state['available']} points are left on the table, {reds} red{'' if reds == 1 else 's'} among the balls.")
+    if state["needs_snookers"]:
         said.append("The striker needs penalty points to win.")
-    if frame.phase == "choice":
-        said.append("Choices: " + ", ".join(frame.choices) + ".")
+    if state["phase"] == "choice":
+        said.append("Choices: " + ", ".join(state["choices"]) + ".")
         return said
-    if frame.ball_on == BallOn.ANY_COLOUR or frame.free_ball:
-        named = [NAMES[i] for i in session.nominations()]
-        said.append(f"May be nominated: {', '.join(named)}; without a nomination it is the colour first struck.")
-    if frame.in_hand:
+    if state["nominations"]:
+        said.append(f"May be nominated: {', '.join(state['nominations'])}; without a nomination it is the colour first struck.")
+    if state["in_hand"]:
         said.append("The cue ball may be placed anywhere in the D (x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475).")
-    if hidden:
+    if state["snookered"]:
         said.append("The cue ball is snookered: no ball on can be struck at both edges in a straight line.")
     return said + freedom(places)

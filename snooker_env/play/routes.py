@@ -15,13 +15,12 @@ from ..game.frame import MOST_BREAK
 from ..game.ruling import AUTO
 from ..planning.position import Position
 from ..replays import Replay
-from ..replays.encode import encoded_stroke
 from ..tasks.noise import LEVELS
 from ..tasks.states import MOST
 from . import questions
-from .report import report, scene
+from .report import report, scene, stroke_report
 from .service import Service, StaleError
-from .session import Act, Session
+from .session import Session
 from .wishes import colour_named, place_of_request, stroke_in
 
 STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")
@@ -55,12 +54,7 @@ def _state(service: Service, given: dict[str, Any]) -> dict[str, Any]:
 def _strokes(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     with service.reading() as session:
         first = integer("from", given.get("from", 0), 0, MOST)
-        return {"revision": service.revision, "strokes": [_encoded(service, session.acts[k]) for k in session.strokes[first:]]}
-
-
-def _encoded(service: Service, act: Act) -> dict[str, Any]:
-    assert act.played is not None
-    return encoded_stroke(act.played, (service.seats.label(0), service.seats.label(1)))
+        return {"revision": service.revision, "strokes": [stroke_report(service, k) for k in session.strokes[first:]]}
 
 
 def stroke_asked(session: Session, given: dict[str, Any]) -> CueStroke:
@@ -80,7 +74,7 @@ def _stroke(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     if not strikes and "choice" not in given:
         raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
     nominated = colour_named("nominate", given["nominate"]) if "nominate" in given else AUTO
-    act = stroke = None
+    stroke = struck = None
     with service.acting(_revision(given)) as session:
         twin = session.twin()  # errors occur on the copy first, so that a refused request has changed nothing
         if "choice" in given:
@@ -95,9 +89,10 @@ def _stroke(service: Service, given: dict[str, Any]) -> dict[str, Any]:
         if stroke is not None:
             if "place" in given:
                 session.place(*given["place"])
-            act = session.play(stroke, nominated=nominated)
+            session.play(stroke, nominated=nominated)
+            struck = stroke_report(service, session.at - 1)
     with service.reading():
-        return {"stroke": None if act is None else _encoded(service, act), "state": report(service)}
+        return {"stroke": struck, "state": report(service)}
 
 
 def _place(service: Service, given: dict[str, Any]) -> dict[str, Any]:
@@ -216,14 +211,14 @@ def _load(service: Service, given: dict[str, Any]) -> dict[str, Any]:
 def _advise(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     agent = choice("agent", given.get("agent", service.seats.agents[0]), service.seats.agents)
     n = integer("n", given.get("n", 5), 1, questions.MOST_SUGGESTIONS)
-    noise, samples, seed = _errors(given, 200, "professional")
     with service.asking(_revision(given)) as session:
-        return {"suggestions": questions.suggestions(session, service.seats, agent=agent, noise=noise, n=n, samples=samples, seed=seed)}
+        noise, samples, seed = _errors(given, 200, session)
+        return questions.suggestions(session, service.seats, agent=agent, noise=noise, n=n, samples=samples, seed=seed)
 
 
 def _destinations(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    noise, samples, seed = _errors(given, 500, "professional")
     with service.asking(_revision(given)) as session:
+        noise, samples, seed = _errors(given, 500, session)
         return questions.scatter(session, stroke_asked(session, given), noise=noise, samples=samples, seed=seed)
 
 
@@ -232,12 +227,11 @@ def _revision(given: dict[str, Any]) -> int | None:
     return integer("revision", given["revision"], 0, MOST) if "revision" in given else None
 
 
-def _errors(given, samples: int, noise: str) -> tuple[Any, int, int]:
-    """Noise, samples and seed of a question."""
-    return (
-        choice("noise", given.get("noise", noise), LEVELS), integer("samples", given.get("samples", samples), 1, questions.MOST_SAMPLES),
-        integer("seed", given.get("seed", 0), 0, MOST),
-    )  # fmt: skip
+def _errors(given: dict[str, Any], samples: int, session: Session) -> tuple[Any, int, int]:
+    """Noise, samples and seed of a question; the noise is that of the striker's seat unless it is given."""
+    noise = choice("noise", given.get("noise", session.noise[session.frame.striker]), LEVELS)
+    samples = integer("samples", given.get("samples", samples), 1, questions.MOST_SAMPLES)
+    return noise, samples, integer("seed", given.get("seed", 0), 0, MOST)
 
 
 def _replay(service: Service, given: dict[str, Any]) -> dict[str, Any]:
@@ -251,7 +245,7 @@ def _replay_page(service: Service, given: dict[str, Any]) -> str:
 def _replay_of(service: Service) -> Replay:
     with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
-        labels = (service.seats.label(0), service.seats.label(1))
+        labels = service.seats.labels
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
     return Replay(strokes, title=f"{labels[0]} - {labels[1]}", players=labels)

@@ -61,6 +61,11 @@ class Seats:
             return name if self.who[0] != self.who[1] else f"{name} {seat + 1}"
         return "You" if self.is_agent(1 - seat) else f"Player {seat + 1}"
 
+    @property
+    def labels(self) -> tuple[str, str]:
+        """The names of both."""
+        return self.label(0), self.label(1)
+
     def player(self, name: str) -> Any:
         """The player of ``snooker_env.advice`` with this name."""
         choice("agent", name, self.agents)

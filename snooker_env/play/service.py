@@ -9,10 +9,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from time import monotonic
 
-from ..replays.words import sentence
 from ..simulation import SimulationError
 from .seats import Seats
-from .session import Act, Session
+from .session import Session
 
 LONGEST_WAIT = 25.0
 """How long a request may wait for a change [s]."""
@@ -161,15 +160,3 @@ class Service:
         except (ValueError, SimulationError) as error:
             return str(error)
         return ""
-
-
-def last_words(act: Act, labels: tuple[str, str]) -> str:
-    """The last act, in a sentence."""
-    who = "" if act.player is None else labels[act.player]
-    if act.played is not None:
-        said = f" ({act.said} nominated)" if act.said else ""
-        return f"{who}{said}: {sentence(act.played, labels)}"
-    return {
-        "choice": f"{who}: {act.said.replace('_', ' ')}.", "concede": f"{who} concede{'' if who == 'You' else 's'} the frame.",
-        "set_up": "Position set up.", "load": "Game loaded.", "new": "New frame.",
-    }[act.what]  # fmt: skip

@@ -1,4 +1,4 @@
-"""How is the table described without a picture? In plain words: balls, ball on, lines to pockets, scores, what is to be done.
+"""How is the game described without a picture? In plain words: balls, ball on, lines to pockets, what was done, what is to be done.
 
 Left and right are as seen from the baulk end: right is the yellow side, +x; the black end is +y.
 """
@@ -7,9 +7,12 @@ from math import hypot
 
 import numpy as np
 
-from ..game.balls import CUE, NAMES, SPOTS, YELLOW, BallOn
+from ..game.balls import CUE, NAMES, SPOTS, YELLOW
+from ..game.frame import Frame
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, HALF_LENGTH, HALF_WIDTH
+from ..replays.words import on_words, sentence
 from .lines import Line
+from .session import Act
 
 _ALONG = (
     (BAULK_Y, "in baulk"), (-0.35, "between baulk and the middle"), (0.35, "about the middle of the table"),
@@ -18,10 +21,30 @@ _ALONG = (
 )  # fmt: skip
 
 
-def on_words(ball_on: BallOn, free_ball: bool = False) -> str:
-    """The ball on in words."""
-    words = ball_on.name.lower().replace("_", " ")
-    return f"{words}, and a free ball" if free_ball else words
+def asked_words(frame: Frame, labels: tuple[str, str]) -> str:
+    """What the rules ask for next, in a sentence; ``labels``: the names of both players."""
+    who = labels[frame.striker]
+    yours = "Your stroke" if who == "You" else f"{who}'s stroke"
+    if frame.winner is not None:
+        return f"Frame over: {labels[frame.winner]} won."
+    if frame.phase == "choice":
+        miss = " and a miss" if frame.miss_called else ""
+        return f"Foul{miss} by {labels[1 - frame.striker]}: {'choose' if who == 'You' else f'{who} chooses'}."
+    on = f"{on_words(frame.ball_on)}, and a free ball are" if frame.free_ball else f"{on_words(frame.ball_on)} is"
+    placing = "; the cue ball is in hand" if frame.in_hand else ""
+    return f"{yours}: {on} on{placing}."
+
+
+def last_words(act: Act, labels: tuple[str, str]) -> str:
+    """An act in a sentence."""
+    who = "" if act.player is None else labels[act.player]
+    if act.played is not None:
+        said = f" ({act.said} nominated)" if act.said else ""
+        return f"{who}{said}: {sentence(act.played, labels)}"
+    return {
+        "choice": f"{who}: {act.said.replace('_', ' ')}.", "concede": f"{who} concede{'' if who == 'You' else 's'} the frame.",
+        "set_up": "Position set up.", "load": "Game loaded.", "new": "New frame.",
+    }[act.what]  # fmt: skip
 
 
 def where(ball: int, x: float, y: float) -> str:

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from .._install import missing
+
 FONTS = Path(__file__).parent / "fonts"
 BOLD, MEDIUM = "Inter-Bold.otf", "Inter-Medium.otf"
 
@@ -17,7 +19,7 @@ def pygame_() -> Any:
     try:
         import pygame
     except ImportError as error:
-        raise ImportError('pictures need pygame-ce; install it, in a clone of snooker_env, with: pip install -e ".[render]"') from error
+        raise missing("pictures need pygame-ce", "render") from error
     return pygame
 
 

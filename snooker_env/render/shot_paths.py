@@ -9,13 +9,12 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from .._check import refuse
 from .._types import Floats
 from ..physics.cloth import AX, AY, BEND, FALLING, ROLL, SEGMENT_BALL, SEGMENT_STATE, SLIDE, T0, VX, VY
 from ..physics.columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
 from ..physics.engine import EventKind
 from ..physics.parameters import Physics
-from ..simulation import Shot
+from ..simulation import Shot, check_path
 
 STRAY = 1e-4
 """The largest distance of a path from the lines that are drawn [m]."""
@@ -52,12 +51,6 @@ class Meeting(NamedTuple):
     """Speed of the ball just before [m/s]."""
     after: float
     """Speed of the ball just after [m/s]."""
-
-
-def check_path(shot: Shot) -> None:
-    """Raise ValueError unless the shot has its path."""
-    if not len(shot.segments):
-        raise refuse("shot.segments", "none", "must be there: simulate() keeps them, environments with keep_history = True")
 
 
 def pieces(shot: Shot, ball: int) -> list[Piece]:

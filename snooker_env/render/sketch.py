@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from .._install import missing
 from .._types import Floats, Vector
 from ..game.balls import N_BALLS
 from ..physics.table import Table
@@ -34,7 +35,7 @@ def pyplot() -> Any:
     try:
         from matplotlib import pyplot as plt
     except ImportError as error:
-        raise ImportError('diagrams need matplotlib; install it, in a clone of snooker_env, with: pip install -e ".[plot]"') from error
+        raise missing("diagrams need matplotlib", "plot") from error
     return plt
 
 

@@ -34,20 +34,15 @@ _HINT = 0.026  # part of the window's height for the line with its status
 _INVISIBLE = ("dummy", "offscreen")  # drivers of SDL
 
 
-def require_display() -> None:
-    """Raise an error if nobody could see a window.
-
-    The environment variable ``SDL_VIDEODRIVER=dummy`` allows a window without a screen, as in tests.
-
-    Raises
-    ------
-    RuntimeError
-        If there is no display; the message says what to do.
-    """
-    if os.environ.get("SDL_VIDEODRIVER"):
-        return
+def display_missing() -> bool:
+    """Whether nobody could see a window. ``SDL_VIDEODRIVER=dummy`` allows a window without a screen, as in tests."""
     linux = not (sys.platform.startswith("win") or sys.platform == "darwin")
-    if linux and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+    return linux and not any(os.environ.get(name) for name in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY"))
+
+
+def require_display() -> None:
+    """Raise RuntimeError if nobody could see a window; the message says what to do."""
+    if display_missing():
         raise _no_display("neither DISPLAY nor WAYLAND_DISPLAY is set")
 
 

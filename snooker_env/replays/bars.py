@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from ..game.balls import N_REDS, BallOn, mask_of_present
-from ..game.frame import points_available
+from ..game.balls import N_REDS, BallOn, mask_of_present, points_available
 from ..game.frame_columns import BALL_ON
 from ..render.scene import ScoreBar
 from ..tasks.played import Played
@@ -25,14 +24,16 @@ def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreB
         before = {
             "players": names, "scores": scores if names else (), "striker": played.player if names else None,
             "break_points": played.break_before, "potted": tuple(potted or ()), "reds_left": int(here[1 : N_REDS + 1].sum()),
-            "points_on": _left(here, played.ball_on), "ball_on": "free ball" if played.free_ball else on_words(played.ball_on),
+            "points_on": _left(here, played.ball_on, played.free_ball),
+            "ball_on": "free ball" if played.free_ball else on_words(played.ball_on),
         }  # fmt: skip
         if played.points and potted is not None:
             potted = potted + pots_of(played.shot)
         run = played.break_before + played.points
         after = before | {
             "scores": played.scores if names else (), "break_points": run, "potted": tuple(potted or ()),
-            "reds_left": int(played.on_table[1 : N_REDS + 1].sum()), "points_on": _left(played.on_table, played.next_on),
+            "reds_left": int(played.on_table[1 : N_REDS + 1].sum()),
+            "points_on": _left(played.on_table, played.next_on, played.next_free_ball),
             "ball_on": "free ball" if played.next_free_ball else on_words(played.next_on), "words": sentence(played, names),
         }  # fmt: skip
         made.append((ScoreBar(**before), ScoreBar(**after)))
@@ -48,7 +49,7 @@ def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar 
     return ScoreBar(
         players=tuple(players), scores=standing["scores"] if players else (), striker=standing["next_player"] if players else None,
         break_points=standing["break_points"], potted=last.potted if last is not None and goes_on else (),
-        reds_left=int(on_table[1 : N_REDS + 1].sum()), points_on=_left(on_table, ball_on),
+        reds_left=int(on_table[1 : N_REDS + 1].sum()), points_on=_left(on_table, ball_on, standing["next_free_ball"]),
         ball_on="free ball" if standing["next_free_ball"] else on_words(ball_on),
         words=last.words if last is not None else "",
     )  # fmt: skip
@@ -61,5 +62,5 @@ def _start(played):
     return here
 
 
-def _left(on_table, ball_on):
-    return points_available(mask_of_present(on_table) & ~1, ball_on) if ball_on >= 0 else 0
+def _left(on_table, ball_on, free_ball):
+    return points_available(mask_of_present(on_table) & ~1, ball_on, free_ball) if ball_on >= 0 else 0

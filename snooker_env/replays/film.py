@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .._check import number, refuse
 from .._files import write_whole
+from .._install import missing
 from ..physics.table import Table
 from ..render.scene import Film, Scene, ScoreBar, scene
 from ..simulation import Shot
@@ -129,7 +130,7 @@ def _pipe(pictures: Iterator[NDArray[np.uint8]], kind: str, size: tuple[int, int
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError as error:
-        raise ImportError('films need ffmpeg; install it, in a clone of snooker_env, with: pip install -e ".[render]"') from error
+        raise missing("films need ffmpeg", "render") from error
     given = ["-f", "rawvideo", "-pix_fmt", kind, "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
     command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *given, *wanted, str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:

@@ -1,7 +1,8 @@
-"""Did a snookered striker who failed make an attempt? The rule ``miss="attempt"``, on shots just played, before the referee rules.
+"""What does the miss rule need to know of a stroke that failed? Its clear paths and, with ``miss="attempt"``, whether it was an attempt.
 
-Only the strokes in question are played once more, with the path of the cue ball: those without a clear path to a ball on that struck no
-ball on first. The second time costs as much as the first; it is no shot of an agent and is not counted. All other strokes cost nothing.
+Both are found on shots just played, before the referee rules. To judge attempts, only the strokes in question are played once more, with
+the path of the cue ball: those without a clear path to a ball on that struck no ball on first. The second time costs as much as the first;
+it is no shot of an agent and is not counted. All other strokes cost nothing.
 """
 
 from typing import TYPE_CHECKING
@@ -11,11 +12,13 @@ import numpy as np
 from .._jit import entry
 from .._types import Bools, Floats, Ints
 from ..game.attempt import ATTEMPT_GAP, closest_approach
-from ..game.balls import CUE, bits
-from ..game.frame_columns import strikeable
+from ..game.balls import CUE, N_BALLS, bits
+from ..game.frame_columns import ANYWHERE, BALL_ON, FREE_BALL, IN_HAND, MISSED, strikeable
+from ..game.paths import best_paths
+from ..game.ruling import ruling
 from ..geometry import BALL_RADIUS
 from ..physics.engine import EventKind, Status
-from .stroke import ATTEMPT, CLEAR_PATH, FIRST, FULL_PATH, ShotBuffers, see, with_path
+from .stroke import ATTEMPT, CLEAR_PATH, DOWN, FIRST, FULL_PATH, MOVED, TOUCHING, ShotBuffers, see, with_path
 
 if TYPE_CHECKING:
     from .options import Rules
@@ -23,15 +26,39 @@ if TYPE_CHECKING:
 _BALL_BALL, _OK = int(EventKind.BALL_BALL), int(Status.OK)
 
 
+@entry(what="the paths of the miss rule", seconds=2)
+def remember(which, positions, on_table, game, nominated, saved, potted, status, event_time, event_what, n_events, shots, noses, jaws,
+              seen):  # fmt: skip
+    """Record what the miss rule needs of the tables ``which``, after the shots and before the referee moves a ball.
+
+    The position, and which paths were clear before a stroke that failed to strike a ball on first; of others ``seen`` says that one was.
+    S3 R14(c) speaks of every ball "that is or could be on": after a red of all colours, whichever the striker has nominated.
+    """
+    for j in range(which.shape[0]):
+        if status[j] != _OK:
+            continue
+        k = which[j]
+        row, mask = game[k], bits(on_table[k])
+        see(j, event_time, event_what, n_events, potted, positions[k], on_table[k], shots, seen)
+        struck = seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN]
+        seen[j, CLEAR_PATH], seen[j, FULL_PATH] = True, False
+        if ruling(mask, row[BALL_ON], row[FREE_BALL], 0, *struck, 0, nominated[k], 0).fouls & MISSED:
+            in_hand, on = row[IN_HAND] + row[ANYWHERE], strikeable(row, mask & ~1)
+            clear, full = best_paths(positions[k], on_table[k], on, in_hand, noses, jaws, BALL_RADIUS)
+            seen[j, CLEAR_PATH], seen[j, FULL_PATH] = clear, full
+        for i in range(N_BALLS):
+            saved.positions[k, i, 0], saved.positions[k, i, 1] = positions[k, i, 0], positions[k, i, 1]
+            saved.on_table[k, i] = on_table[k, i]
+
+
 @entry(what="the strokes of snookered strikers", seconds=1)
-def question(which, positions, on_table, game, potted, status, event_time, event_what, n_events, shots, seen, asked):
-    """Find the shots whose attempt must be judged: ``asked[j]``. All others count as attempts."""
+def question(which, on_table, game, status, seen, asked):
+    """Find the shots whose attempt must be judged: ``asked[j]``. All others count as attempts. ``remember`` has seen them."""
     for j in range(which.shape[0]):
         k = which[j]
         asked[j] = False
         seen[j, ATTEMPT] = True
         if status[j] == _OK and not (seen[j, CLEAR_PATH] or seen[j, FULL_PATH]):
-            see(j, event_time, event_what, n_events, potted, positions[k], on_table[k], shots, seen)
             asked[j] = seen[j, FIRST] & strikeable(game[k], bits(on_table[k]) & ~1) == 0
 
 
@@ -54,9 +81,7 @@ def judge_attempts(
     Returns the gap [m] of each shot in question by its row.
     """
     b, asked = buffers, np.empty(len(which), np.bool_)
-    question(
-        which, positions, on_table, game, b.potted, b.status, b.event_time, b.event_what, b.n_events, b.shots, b.seen, asked
-    )  # fmt: skip
+    question(which, on_table, game, b.status, b.seen, asked)
     gaps = {}
     for j in np.flatnonzero(asked).tolist():
         k = which[j]

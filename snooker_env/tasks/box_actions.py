@@ -9,18 +9,20 @@ from gymnasium import spaces
 from .._check import choice, refuse, refuse_what, truth
 from .._jit import entry, kernel
 from .._types import Action, Flags, Floats, Vectors
-from ..game.balls import N_BALLS
 from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ..physics.cloth import COLUMNS
 from ..physics.cue import squirt
+from ..physics.impact.polynomial import WORK
 from ..physics.parameters import Physics
 from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_TARGET
+from .lines import LINE_ROWS, aim_along, find_lines, line_of
 
 AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
 """Smallest and largest cue speed [m/s], for -1 and +1 of an action: from a ball just rolled to the hardest power shot."""
 TARGET_SPAN = radians(3.0)
-"""With ``aim="target"``: angle off the potting line for +-1 of an action [rad]. The largest throw and a club player's errors are smaller.
+"""With ``aim="target"``: angle off the target line for +-1 of an action [rad]. The largest throw and a club player's errors are smaller.
 """
 MAX_ELEVATION = radians(30.0)
 
@@ -47,56 +49,40 @@ def place_anywhere_of(a, options):
     return HALF_WIDTH * a[at], HALF_LENGTH * a[at + 1]
 
 
-@kernel
-def line_of(positions, on_table, on, found):
-    """Direction of the best potting line, see ``line``. An inner kernel.
+@kernel(uses=(aim_along,))
+def _target(positions, on_table, on, speed, side, top, phys, end_mass_ratio, found, motion, state, work):
+    """Direction [rad] from which ``aim="target"`` is measured for a stroke: the straight line of the widest pot, else the first line."""
+    if find_pots(positions, on_table, on, BALL_RADIUS, found[:1]):
+        return atan2(found[0, GHOST_Y] - positions[0, 1], found[0, GHOST_X] - positions[0, 0])
+    find_lines(positions, on_table, on, found)
+    return aim_along(found[0], speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work)
 
-    Parameters
-    ----------
-    positions : float64 (22, 2)
-        Centres of the balls [m], the cue ball first.
-    on_table : bool (22,)
-        Which balls are on the table.
-    on : int
-        Mask of the balls that may be struck first, bit i for ball i.
-    found : float64 (1, POT_COLUMNS)
-        Work space.
 
-    Returns
-    -------
-    float
-        Direction [rad], anticlockwise from +x: to the ghost ball of the widest direct pot, else to the nearest ball on.
+@kernel(uses=(_target,))
+def shot_of(a, positions, on_table, on, options, phys, found, motion, state, work):
+    """(speed, side, top, aim, elevation) of an action (k,). The aim is the cue's direction [rad]; ``options`` from ``Actions.pack``.
+
+    Work space: found (LINE_ROWS, POT_COLUMNS), motion (2, COLUMNS), state (2,), work.
     """
-    x, y = positions[0, 0], positions[0, 1]
-    if find_pots(positions, on_table, on, BALL_RADIUS, found):
-        return atan2(found[0, GHOST_Y] - y, found[0, GHOST_X] - x)
-    near, tx, ty = np.inf, x, y
-    for i in range(1, N_BALLS):
-        if (on >> i) & 1:
-            far = hypot(positions[i, 0] - x, positions[i, 1] - y)
-            if far < near:
-                near, tx, ty = far, positions[i, 0], positions[i, 1]
-    return atan2(ty - y, tx - x)
-
-
-@kernel
-def shot_of(a, positions, on_table, on, options, found):
-    """(speed, side, top, aim, elevation) of an action (k,). The aim is the cue's direction [rad]; ``options`` from ``Actions.pack``."""
     speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
     side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], options[A_MAX_OFFSET])
     elevation = 0.5 * (a[4] + 1.0) * MAX_ELEVATION if options[A_ELEVATION] else 0.0
-    direction = line_of(positions, on_table, on, found) + TARGET_SPAN * a[3] if options[A_TARGET] else pi * a[3]
+    direction = pi * a[3]
+    if options[A_TARGET]:
+        line = _target(positions, on_table, on, speed, side, top, phys, options[A_END_MASS], found, motion, state, work)
+        direction = line + TARGET_SPAN * a[3]
     return speed, side, top, direction - squirt(side, options[A_END_MASS]), elevation
 
 
 @entry
 def _line(positions, on_table, on):
-    return line_of(positions, on_table, on, np.empty((1, POT_COLUMNS)))
+    return line_of(positions, on_table, on, np.empty((LINE_ROWS, POT_COLUMNS)))
 
 
-@entry
-def _shot(a, positions, on_table, on, options):
-    return shot_of(a, positions, on_table, on, options, np.empty((1, POT_COLUMNS)))
+@entry(uses=(shot_of,))
+def _shot(a, positions, on_table, on, options, phys):
+    found, motion, state, work = np.empty((LINE_ROWS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    return shot_of(a, positions, on_table, on, options, phys, found, motion, state, work)
 
 
 class Actions:
@@ -109,7 +95,7 @@ class Actions:
                       top: + above, - below the middle
     3    aim          "absolute": the angle pi x from +x, anticlockwise, in which the ball
                       leaves without noise (squirt is compensated, as a player does).
-                      "target": the potting line + 3 deg x (see ``line``)
+                      "target": the target line + 3 deg x (see ``line``)
     4    elevation    only with ``elevation=True``: 0 to 30 deg, linear
     next place in     only with ``placement=True``: across the D, then from the baulk line (-1)
     two  the D        to the edge of the D (+1). Ignored unless the cue ball is in hand
@@ -200,13 +186,14 @@ class Actions:
 
     def shot(self, a: Any, positions: Vectors, on_table: Flags, on: int) -> tuple[float, float, float, float, float]:
         """(speed, side, top, aim, elevation) of an action list; the aim is the cue's direction [rad]."""
-        return _shot(np.array(a, np.float64), np.array(positions, np.float64), np.array(on_table, np.bool_), int(on), self.pack())
+        table = np.array(positions, np.float64), np.array(on_table, np.bool_), int(on)
+        return _shot(np.array(a, np.float64), *table, self.pack(), self.physics.pack())
 
 
 def line(positions: Vectors, on_table: Flags, on: int) -> float:
-    """Direction [rad] of the best potting line.
+    """Direction [rad] of the target line, which ``aim="target"`` is measured from.
 
     It runs from the cue ball to the ghost ball of the direct pot with the widest tolerance (``game.pots``) among the balls on. If there is
-    no direct pot, it runs to the centre of the nearest ball on.
+    no direct pot, it is the first of the other lines (``lines``), over cushions that of a rolling ball.
     """
     return _line(np.array(positions, np.float64), np.array(on_table, np.bool_), int(on))

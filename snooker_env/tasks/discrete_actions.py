@@ -1,7 +1,8 @@
 """Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top; the aim is solved for them.
 
 The pots are the widest direct ones on the table (``game.pots``). If no aim can be solved for one, it is played along its straight line. If
-the table has no direct pot, the first one stands for a full hit on the nearest ball on. ``action_masks`` says which pots there are.
+the table has no direct pot, the other lines of the cue ball stand in their places (``lines``): what it sees of the balls on, or escapes.
+``action_masks`` says how many there are.
 """
 
 from typing import Any
@@ -14,11 +15,10 @@ from .._jit import entry, kernel
 from .._types import Action, Floats
 from ..game.balls import bits
 from ..game.frame_columns import strikeable
-from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_POCKET, count_pots, find_pots
+from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
-from .box_actions import line_of
 from .declarations import (
     A_CLAIM,
     A_CONCEDE,
@@ -33,10 +33,9 @@ from .declarations import (
     nominated_ball,
     playable,
 )
+from .lines import LINE_ROWS, POTS, aim_along, count_lines, find_lines
 from .pot_aim import solved_aim
 
-POTS = 4
-"""Number of pots to choose from, widest tolerance first."""
 SPEEDS = (0.9, 1.3, 1.8, 2.3, 2.9, 3.6, 4.4, 5.3, 6.3)
 """The cue speeds to choose from [m/s]."""
 SIDES = (-0.3, 0.0, 0.3)
@@ -77,19 +76,20 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
     return pot * STROKES + (speed * len(SIDES) + side) * len(TOPS) + top
 
 
-@kernel(seconds=1, uses=(solved_aim,))
+@kernel(seconds=1, uses=(solved_aim, aim_along))
 def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_steps, found, motion, state, work):
     """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``.
 
-    Work space: found (POTS, POT_COLUMNS), motion (2, COLUMNS), state (2,), work.
+    Work space: found (LINE_ROWS, POT_COLUMNS), motion (2, COLUMNS), state (2,), work.
     """
     index = index % SIZE  # what else the choice says is read by ``declarations``; one that may not be said now is played as a stroke
     pot, stroke = index // STROKES, index % STROKES
     speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
     side, top = SIDES[stroke // len(TOPS) % len(SIDES)], TOPS[stroke % len(TOPS)]
-    many = find_pots(positions, on_table, on, BALL_RADIUS, found)
+    many = find_pots(positions, on_table, on, BALL_RADIUS, found[:POTS])
     if many == 0:
-        aim = line_of(positions, on_table, on, found)
+        line = found[min(pot, find_lines(positions, on_table, on, found) - 1)]
+        aim = aim_along(line, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work)
     else:
         pot = min(pot, many - 1)
         ball, pocket, gx, gy = int(found[pot, POT_BALL]), int(found[pot, POT_POCKET]), found[pot, GHOST_X], found[pot, GHOST_Y]
@@ -103,15 +103,16 @@ def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_ste
 @entry
 def masks(which, positions, on_table, game, options, out):
     """Available choices on the tables ``which``: one row of ``out`` each, bool (choices,). ``game`` (n, columns): of visits or frames."""
+    found = np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k, parts = which[j], 1 + COLOURS if options[A_NOMINATE] >= 0 else 1
         row, mask = game[k], bits(on_table[k])
         for n in range(parts):
             on = strikeable(row, mask) if parts == 1 else playable(row, mask, nominated_ball(n, row))
             there = parts == 1 or may_nominate(n, row)
-            many = count_pots(positions[k], on_table[k], on, BALL_RADIUS, POTS) if there and on_table[k, 0] else 0
+            many = count_lines(positions[k], on_table[k], on, found) if there and on_table[k, 0] else 1
             for c in range(SIZE):
-                out[j, n * SIZE + c] = there and c < STROKES * max(1, many)
+                out[j, n * SIZE + c] = there and c < STROKES * many
         at = parts * SIZE
         for what, column in ((CONCEDES, A_CONCEDE), (CLAIMS, A_CLAIM), (OTHER_BEGINS, A_LOT)):
             if options[column]:

@@ -10,7 +10,7 @@ score, and after a foul the agent plays on from where the balls lie, without a f
 Nothing is ever dealt again. A frame that ends in the opponent's first visit, in a reset, is shown by that reset, and the next step plays
 nothing: it reports the end and pays its reward (``Frames.due``).
 
-A cue ball in hand is placed at once on the free place of the D nearest to its usual place for the break-off, so that it can be seen. The
+A cue ball in hand is placed at once on the free place of the D nearest to its usual one (``balls.SPOTS``), so that it can be seen. The
 player may place it elsewhere before the stroke. The physics is planar: no ball leaves the table and the cue ball cannot jump over a ball,
 so those fouls never occur.
 """
@@ -46,7 +46,7 @@ from ..game.frame_columns import (
 from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
 from . import frame_kernels
-from .attempts import judge_attempts
+from .attempts import judge_attempts, remember
 from .frame_kernels import AGENT
 from .observations import FRAME_SIZE, REPLACED_SIZE
 from .opponents import asked
@@ -153,8 +153,8 @@ class Frames(Tables):
         """What the strikers of the tables ``which`` say before their strokes; returns which of them play one."""
         plays = np.empty(len(which), np.bool_)
         frame_kernels.decide(
-            which, actions, self.packed[0], self.rules.rule_set.code, self.positions, self.on_table, self.game, self.saved, self.nominated,
-            plays,
+            which, actions, self.packed[0], self.rules.rule_set.code, self._kind, self.positions, self.on_table, self.game, self.saved,
+            self.nominated, plays,
         )  # fmt: skip
         return plays
 
@@ -165,9 +165,6 @@ class Frames(Tables):
         """
         if not len(which):
             return
-        if self.rules.misses:
-            table, layout = self.rules.table, (self.positions, self.on_table, self.game, self.saved)
-            frame_kernels.remember(which, *layout, table.noses, table.jaws, buffers.seen)
         unfinished = self.run(which, buffers)
         self._conclude(which, buffers, out, own, alone)
         for j in unfinished:
@@ -175,12 +172,17 @@ class Frames(Tables):
         crew.saw(which, buffers, own)
 
     def _conclude(self, which, b, out, own, alone):
+        if self.rules.misses:
+            remember(
+                which, self.positions, self.on_table, self.game, self.nominated, self.saved, b.potted, b.status, b.event_time, b.event_what,
+                b.n_events, b.shots, self.rules.table.noses, self.rules.table.jaws, b.seen,
+            )  # fmt: skip
         if self._miss == ATTEMPTS:
             judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
         frame_kernels.conclude(
             which, self.positions, self.on_table, self.game, self.streams, self.nominated, b.r, b.potted, b.status, b.duration,
             b.event_time, b.event_what, b.n_events, b.shots, b.seen, self._jaws, self.packed[0], self.rules.rule_set.code,
-            self.rules.time_to_play, self._miss, own, alone, self._played if own else self._replies, out.reals, out.counts,
+            self._kind, self.rules.time_to_play, self._miss, own, alone, self._played if own else self._replies, out.reals, out.counts,
         )  # fmt: skip
 
     def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:
@@ -374,9 +376,10 @@ class Frames(Tables):
         Player 0 is at the table, both scores are 0, and the points of the visit are his break so far. The random stream goes on.
         """
         ball_on, in_hand, points = game[[BALL_ON, IN_HAND, POINTS]].tolist()
+        balls = mask_of_present(on_table) & ~CUE_BIT
         frame = Frame(
-            break_points=points, on_table=mask_of_present(on_table) & ~CUE_BIT, ball_on=BallOn(ball_on), in_hand=bool(in_hand),
-            miss=self.rules.miss, rules=self.rules.game,
+            break_points=points, on_table=balls, ball_on=BallOn(ball_on), in_hand=bool(in_hand), miss=self.rules.miss,
+            rules=self.rules.game, rack=balls,
         )  # fmt: skip
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)

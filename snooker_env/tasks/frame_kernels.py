@@ -5,7 +5,7 @@
 
 from .._jit import entry, kernel
 from ..game.apply_ruling import settle
-from ..game.balls import BLACK, CUE, N_BALLS, SPOTS, bits
+from ..game.balls import BLACK, CUE, N_BALLS, SPOTS, available, bits
 from ..game.frame_columns import (
     ANYWHERE,
     BALL_ON,
@@ -40,7 +40,6 @@ from ..game.frame_columns import (
     WARNED,
     WINNER,
     after_stroke,
-    available,
     begin_frame,
     choose,
     claim,
@@ -50,12 +49,12 @@ from ..game.frame_columns import (
     lead_of,
     may_place_anywhere,
     may_replace,
+    needs_snookers,
     strikeable,
 )  # fmt: skip
-from ..game.paths import clear_path, full_ball_path
 from ..game.philox import pair
 from ..game.rule_sets import SHOOT_OUT, SIX_RED
-from ..game.ruling import AUTO, FLAG
+from ..game.ruling import AUTO, FLAG, OUTCOME
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import Status
 from .declarations import (
@@ -119,13 +118,24 @@ def _choose(k, wish, rules, row, positions, on_table, saved):
     return what == PLAY or what == PLACE_ANYWHERE
 
 
+@kernel
+def _give_up(row, kind):
+    """Charge the loser of a frame that he gave up, by conceding it or by a third miss, with the points left on the table; the score stands.
+
+    S4 R5(b), for matches in which points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once.
+    """
+    if kind != FRAMES_PAID:
+        left = available(row[ON_TABLE], -1, 0)
+        row[PAID] += -left if row[WINNER] == AGENT else left
+
+
 @entry(what="the decisions of frames", seconds=2)
-def decide(which, actions, options, rules, positions, on_table, game, saved, nominated, plays):
+def decide(which, actions, options, rules, kind, positions, on_table, game, saved, nominated, plays):
     """What the strikers of the tables ``which`` say before a stroke: declarations, decisions after a foul, nominations.
 
-    ``options``: packed, of the action space; ``rules``: the code of the rule set. A decision below -1/3: the offender plays again; above
-    1/3: from the position before, if a miss was called, or, after the last one that may be, the striker from anywhere on the table.
-    ``plays[j]``: whether a stroke follows.
+    ``options``: packed, of the action space; ``rules``, ``kind``: codes of the rule set and the reward. A decision below -1/3: the offender
+    plays again; above 1/3: from the position before, if a miss was called, or, after the last one that may be, the striker from anywhere on
+    the table. ``plays[j]``: whether a stroke follows.
     """
     for j in range(which.shape[0]):
         k = which[j]
@@ -134,6 +144,7 @@ def decide(which, actions, options, rules, positions, on_table, game, saved, nom
         plays[j] = said == SAYS_NOTHING
         if said == CONCEDES:
             concede(row)
+            _give_up(row, kind)
         elif said == CLAIMS:
             claim(row)
         elif row[PHASE] == LOT:
@@ -143,22 +154,6 @@ def decide(which, actions, options, rules, positions, on_table, game, saved, nom
             plays[j] = _choose(k, wish, rules, row, positions, on_table, saved)
         if plays[j] and options[A_NOMINATE] >= 0:
             nominated[k] = nomination_of(a, options, row)
-
-
-@entry(what="the paths of the miss rule", seconds=2)
-def remember(which, positions, on_table, game, saved, noses, jaws, seen):
-    """Record what the miss rule needs of the tables ``which`` before their strokes: the position, and which paths are clear.
-
-    S3 R14(c) speaks of every ball "that is or could be on": after a red of all colours, whichever the striker has nominated.
-    """
-    for j in range(which.shape[0]):
-        k = which[j]
-        on = strikeable(game[k], bits(on_table[k]) & ~1)
-        seen[j, CLEAR_PATH] = clear_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
-        seen[j, FULL_PATH] = full_ball_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
-        for i in range(N_BALLS):
-            saved.positions[k, i, 0], saved.positions[k, i, 1] = positions[k, i, 0], positions[k, i, 1]
-            saved.on_table[k, i] = on_table[k, i]
 
 
 @kernel
@@ -189,11 +184,12 @@ def hold_late(which, game, rules, time_to_play, v, w, shots):
 
 @entry(what="the referee of frames", seconds=6)
 def conclude(which, positions, on_table, game, streams, nominated, r, potted, status, duration, event_time, event_what, n_events, shots,
-              seen, jaws, options, rules, time_to_play, miss, own, alone, played, reals, counts):  # fmt: skip
+              seen, jaws, options, rules, kind, time_to_play, miss, own, alone, played, reals, counts):  # fmt: skip
     """Judge the shots that came to rest and update tables and frames. ``own``: infos report the strokes; ``played`` counts them.
 
     ``nominated`` (n,): the colour that each striker has nominated, 0 for none, or AUTO: the one first struck. It is AUTO afterwards.
-    ``rules``, ``miss``: codes of the rule set and the miss rule; ``time_to_play`` [ms]: of each stroke, in a game with a clock.
+    ``rules``, ``kind``, ``miss``: codes of the rule set, the reward and the miss rule; ``time_to_play`` [ms]: of each stroke, in a game
+    with a clock.
     """
     for j in range(which.shape[0]):
         if status[j] != _OK:
@@ -222,6 +218,8 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
         clear, full, attempt, stored = seen[j, CLEAR_PATH], seen[j, FULL_PATH], seen[j, ATTEMPT], miss != NO_MISSES
         after_stroke(row, result, rules, miss, clear, full, attempt, stored, time_to_play, lasted)
         row[STROKES] += 1
+        if row[OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
+            _give_up(row, kind)
         if row[PHASE] == LOT:
             _leave_the_black(p, on)
             u, _ = pair(streams[k])
@@ -257,9 +255,9 @@ def observe_frame_into(out, k, positions, on_table, row, saved, limits, player):
     on = strikeable(row, bits(on_table) & ~1)
     observe_into(out, positions, on_table, row[BALL_ON], on, row[IN_HAND], row[POINTS])
     mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
-    to_play = not row[OVER] and row[STRIKER] == player
+    to_play, left = not row[OVER] and row[STRIKER] == player, available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
     more = (
-        _share(mine, 147.0), _share(other, 147.0), _share(mine - other, 147.0), available(row[ON_TABLE], row[BALL_ON]) / 155.0,
+        _share(mine, 147.0), _share(other, 147.0), _share(mine - other, 147.0), left / 155.0,
         1.0 if to_play else 0.0, 1.0 if row[FREE_BALL] else 0.0, 1.0 if row[PHASE] == CHOICE else 0.0, 1.0 if row[MISS_CALLED] else 0.0,
         1.0 if row[RESPOTTED_BLACK] else 0.0, 1.0 if row[BREAKER] == player else 0.0, row[FAILURES] / 2.0, 1.0 if row[WARNED] else 0.0,
         1.0 if row[PHASE] == LOT else 0.0, _share(row[FRAMES_0 + player], 1.0), _share(row[FRAMES_1 - player], 1.0),
@@ -272,8 +270,8 @@ def observe_frame_into(out, k, positions, on_table, row, saved, limits, player):
         return
     for i in range(N_BALLS):
         at, there = FRAME_SIZE + 3 * i, row[MISS_CALLED] and saved.on_table[k, i]
-        out[at] = min(1.0, max(-1.0, saved.positions[k, i, 0] / HALF_WIDTH)) if there else 0.0  # clipped in the mouths of pockets
-        out[at + 1] = min(1.0, max(-1.0, saved.positions[k, i, 1] / HALF_LENGTH)) if there else 0.0
+        out[at] = saved.positions[k, i, 0] / HALF_WIDTH if there else 0.0
+        out[at + 1] = saved.positions[k, i, 1] / HALF_LENGTH if there else 0.0
         out[at + 2] = 1.0 if there else 0.0
 
 
@@ -287,12 +285,12 @@ def observe(which, player, positions, on_table, game, saved, limits, out):
 
 @kernel
 def _write_frame_info(k, row, player, replies, reals, counts):
-    """Write the entries of the info that concern the frame, as ``player`` sees it."""
-    mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
-    reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = row[POINTS], mine, other
+    """Write the entries of the info that concern the frame, as ``player`` sees it: a break, a choice and a free ball are the striker's."""
+    mine, other, at_table = row[SCORE_0 + player], row[SCORE_1 - player], row[STRIKER] == player
+    reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = row[POINTS] if at_table else 0, mine, other
     counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies, row[WINNER]
-    counts[k, I_CHOICE], counts[k, I_FREE_BALL] = row[PHASE] == CHOICE, row[FREE_BALL]
-    counts[k, I_NEEDS_SNOOKERS] = other - mine > available(row[ON_TABLE], row[BALL_ON])
+    counts[k, I_CHOICE], counts[k, I_FREE_BALL] = at_table and row[PHASE] == CHOICE, at_table and row[FREE_BALL]
+    counts[k, I_NEEDS_SNOOKERS] = needs_snookers(row, player)
     reals[k, I_CLOCK] = row[CLOCK] / 1000.0
     counts[k, I_ANYWHERE], counts[k, I_WARNED] = row[ANYWHERE], row[WARNED]
     counts[k, I_MISSES], counts[k, I_FAILURES] = row[MISSES], row[FAILURES]

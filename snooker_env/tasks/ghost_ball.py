@@ -8,7 +8,7 @@ import numpy as np
 
 from .._jit import entry, kernel
 from .._types import Ints
-from ..game.balls import N_BALLS, YELLOW, bits
+from ..game.balls import N_BALLS, YELLOW, bits, touching_balls
 from ..game.frame_columns import (
     ANYWHERE,
     CHOICE,
@@ -30,8 +30,10 @@ from ..game.rule_sets import SHOOT_OUT
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from .declarations import A_END_MASS, A_NOMINATE, nominated_ball
-from .plain_stroke import BREAK_X, ROLL, SLIDE, break_off, plain, racked, soft
-from .stroke import ShotBuffers, place, place_anywhere, strike, touching_balls
+from .escapes import ROLL
+from .lines import LINE_ROWS, racked
+from .plain_stroke import BREAK_X, SLIDE, break_off, plain, soft
+from .stroke import ShotBuffers, place, place_anywhere, strike
 
 if TYPE_CHECKING:
     from .frame import Frames
@@ -61,8 +63,8 @@ def _put_on_bed(positions, on_table, mask, found):
                 place_anywhere(positions, on_table, positions[ball, 0] + far * dx, positions[ball, 1] + far * dy)
                 worth = 0.0
                 if tries == 1:
-                    _, _, _, worth = soft(positions, on_table, 1 << ball, _DRIVE)
-                elif find_pots(positions, on_table, 1 << ball, BALL_RADIUS, found):
+                    _, _, _, worth = soft(positions, on_table, 1 << ball, 0, _DRIVE, found)
+                elif find_pots(positions, on_table, 1 << ball, BALL_RADIUS, found[:1]):
                     worth = found[0, TOLERANCE]
                 if worth > widest:
                     widest, best_x, best_y = worth, positions[0, 0], positions[0, 1]
@@ -87,13 +89,13 @@ def put(positions, on_table, mask, anywhere, found, stream):
     widest, best = 0.0, -1
     for c in range(len(_PLACES)):
         place(positions, on_table, *_PLACES[c])
-        if find_pots(positions, on_table, mask, BALL_RADIUS, found) and found[0, TOLERANCE] > widest:
+        if find_pots(positions, on_table, mask, BALL_RADIUS, found[:1]) and found[0, TOLERANCE] > widest:
             widest, best = found[0, TOLERANCE], c
     if best < 0:
         best = 0
         for c in range(len(_PLACES)):
             place(positions, on_table, *_PLACES[c])
-            _, _, _, window = soft(positions, on_table, mask, 0.0)
+            _, _, _, window = soft(positions, on_table, mask, 0, 0.0, found)
             if window > widest:
                 widest, best = window, c
     place(positions, on_table, *_PLACES[best])
@@ -111,12 +113,12 @@ def stroke_at(positions, on_table, on, in_hand, failed, drive, found, stream):
         return break_off(positions, end_red)
     touching = touching_balls(positions, on_table)
     x, y = positions[0, 0], positions[0, 1]
-    if not failed and find_pots(positions, on_table, on & ~touching, BALL_RADIUS, found):
+    if not failed and find_pots(positions, on_table, on & ~touching, BALL_RADIUS, found[:1]):
         ball, pocket, gx, gy = int(found[0, POT_BALL]), int(found[0, POT_POCKET]), found[0, GHOST_X], found[0, GHOST_Y]
         run = hypot(POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1])
         needed = SLIDE * sqrt(ROLL * (run + 0.6)) / max(found[0, COS_CUT], 0.2)  # of the cue ball at the impact
         return min(6.0, SLIDE * sqrt(ROLL * hypot(gx - x, gy - y) + needed * needed)), 0.0, 0.0, atan2(gy - y, gx - x)
-    return plain(positions, on_table, on, touching, failed, drive, stream)
+    return plain(positions, on_table, on, touching, failed, drive, found, stream)
 
 
 @kernel
@@ -134,7 +136,7 @@ def named(positions, on_table, row, aim):
 @entry(what="the geometric opponent", seconds=3)
 def _ghost_ball(which, positions, on_table, game, rules, nominated, streams, options, noise, r, v, w, here, shots):
     """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike. ``rules``: the code of the rule set."""
-    found, drive = np.empty((1, POT_COLUMNS)), _DRIVE if rules == SHOOT_OUT else 0.0
+    found, drive = np.empty((LINE_ROWS, POT_COLUMNS)), _DRIVE if rules == SHOOT_OUT else 0.0
     for j in range(which.shape[0]):
         k = which[j]
         p, on, row, stream = positions[k], on_table[k], game[k], streams[k]

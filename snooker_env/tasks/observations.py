@@ -1,4 +1,4 @@
-"""What does the agent observe? The balls and the state of the game, as float32 arrays in [-1, 1]."""
+"""What does the agent observe? The balls and the state of the game, as float32 arrays."""
 
 from typing import Any
 
@@ -40,6 +40,10 @@ anywhere. With a free ball, "ball_on" is 1 for every colour too.
 REPLACED_COLUMNS = ("x", "y", "on_table")
 """Columns of the layout that "replace" restores, one row a ball as in the table of balls; 0 unless a miss has just been called."""
 
+REACH = 1.1
+"""Bound of the spaces that hold places. The noses are at 1, and a ball that rests in the mouth of a pocket may lie past them: on snooker's
+own tables at 1.013, on any table that an environment takes within this bound (``table_fit``)."""
+
 _COLUMNS = len(BALL_COLUMNS)
 BALLS_SIZE = N_BALLS * _COLUMNS
 """Numbers in the table of balls, the first part of a flat observation."""
@@ -70,7 +74,8 @@ def space(kind: ObservationKind, *, frame: bool = False, replaced: bool = False,
     Returns
     -------
     gymnasium.spaces.Box or gymnasium.spaces.Dict
-        The space of float32 numbers in [-1, 1], and of the mask.
+        The space of float32 numbers, and of the mask. Places in the mouths of pockets are a little beyond 1, so that the bounds are 1.1
+        wherever there are balls; all other numbers are in [-1, 1].
 
     Raises
     ------
@@ -86,12 +91,12 @@ def space(kind: ObservationKind, *, frame: bool = False, replaced: bool = False,
     choice("observation", kind, OBSERVATIONS)
     entries = len(STATE_ENTRIES) + (len(FRAME_ENTRIES) if frame else 0)
     more = REPLACED_SIZE if replaced else 0
-    balls = spaces.Box(-1.0, 1.0, (N_BALLS, len(BALL_COLUMNS)), np.float32)
+    balls = spaces.Box(-REACH, REACH, (N_BALLS, len(BALL_COLUMNS)), np.float32)
     state = spaces.Box(-1.0, 1.0, (entries,), np.float32)
     if kind == "balls":
         parts: dict[str, spaces.Space[Any]] = {"balls": balls, "state": state}
-        return spaces.Dict(parts | {"replaced": spaces.Box(-1.0, 1.0, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)} if more else parts)
-    flat = spaces.Box(-1.0, 1.0, (BALLS_SIZE + entries + more,), np.float32)
+        return spaces.Dict(parts | {"replaced": spaces.Box(-REACH, REACH, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)} if more else parts)
+    flat = spaces.Box(-REACH, REACH, (BALLS_SIZE + entries + more,), np.float32)
     if kind == "masked":
         return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})
     return flat
@@ -102,8 +107,8 @@ def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
     """Write the flat observation (SIZE,) float32. ``ball_on``: a BallOn, ``on``: the mask of the balls on, ``points``: the break so far."""
     for i in range(N_BALLS):
         at, here = i * _COLUMNS, on_table[i]
-        row[at] = min(1.0, max(-1.0, positions[i, 0] / HALF_WIDTH)) if here else 0.0
-        row[at + 1] = min(1.0, max(-1.0, positions[i, 1] / HALF_LENGTH)) if here else 0.0
+        row[at] = positions[i, 0] / HALF_WIDTH if here else 0.0
+        row[at + 1] = positions[i, 1] / HALF_LENGTH if here else 0.0
         row[at + 2] = 1.0 if here else 0.0
         row[at + 3] = VALUES[i] / 7.0
         row[at + 4] = (on >> i) & 1

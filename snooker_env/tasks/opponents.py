@@ -21,7 +21,7 @@ from .discrete_actions import Choices
 from .ghost_ball import GhostBallOpponent
 from .opponent_pool import OpponentPool, PoolOpponent
 from .player_opponent import PlayerOpponent, is_player
-from .saved_models import SavedModel, by_train, entries, outline
+from .saved_models import SavedModel, by_train, entries, one_thread, outline
 from .stroke import ShotBuffers
 from .uniform_opponent import UniformOpponent
 
@@ -130,10 +130,14 @@ class SavedPolicy:
             observation = without_replaced(observation)
         if isinstance(self.actions, Choices):
             masked = {"action_masks": masks[:, : self._network.action_space.n]} if self._masked and masks is not None else {}
-            return self._network.predict(observation, deterministic=True, **masked)[0]
-        actions = np.clip(self._network.predict(observation, deterministic=True)[0], -1.0, 1.0)
+            return self._greedy(observation, **masked)
+        actions = np.clip(self._greedy(observation), -1.0, 1.0)
         missing = self.actions.size - actions.shape[1]
         return np.append(actions, np.zeros((len(actions), missing), actions.dtype), axis=1) if missing else actions
+
+    def _greedy(self, observation, **masked):
+        with one_thread():
+            return self._network.predict(observation, deterministic=True, **masked)[0]
 
     def _sizes(self):
         """The sizes of the actions of models that fit."""

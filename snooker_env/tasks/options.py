@@ -108,7 +108,7 @@ class Options:
         "box" (default): numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a top, in [0, 540) unless options
         of frames add more.
     aim : {"absolute", "target"}, optional
-        Reference direction of the aim in a box action: +x (default), or the best potting line.
+        Reference direction of the aim in a box action: +x (default), or the line of the best pot or, without one, of a fair stroke.
     observation : {"flat", "balls", "masked"}, optional
         "flat" (default): one array. "balls": a dict of two arrays. "masked", with ``action="discrete"``: a dict of the flat array and the
         available choices.

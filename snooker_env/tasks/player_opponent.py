@@ -34,6 +34,7 @@ from ..physics.parameters import Physics
 from .box_actions import Actions
 from .discrete_actions import Choices
 from .ghost_ball import put
+from .lines import LINE_ROWS
 from .stroke import ShotBuffers
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ _KINDS = (ValueError, TypeError, ImportError)
 @entry(what="the places of the opponent's cue ball", seconds=2)
 def put_in_hand(which, positions, on_table, game, streams, within_d):
     """Place the cue balls in hand on the tables ``which``; without ``within_d``, only those that may stand anywhere."""
-    found = np.empty((1, POT_COLUMNS))
+    found = np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
         if game[k, IN_HAND] and (within_d or game[k, ANYWHERE]):

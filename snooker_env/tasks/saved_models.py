@@ -7,6 +7,8 @@ values, which suffices to refuse a model that does not fit. ``SavedModel.network
 
 import json
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,8 +16,9 @@ from typing import Any
 from gymnasium import spaces
 
 from .._check import refuse
+from .._install import missing
 
-__all__ = ["PLAIN", "SavedModel", "by_train", "entries", "outline", "part"]
+__all__ = ["PLAIN", "SavedModel", "by_train", "entries", "one_thread", "outline", "part"]
 
 MOST = 2**26
 """Largest number of bytes of JSON that are read (SB3 stores the last observations there). A small zip can unpack to more than a machine's
@@ -34,6 +37,40 @@ _ALGORITHMS = (
 """Library, class, and the names that only its models save, in addition to those of the classes above. A recurrent model has no class of
 rollout buffers.
 """
+_PLAYED = ("policy_class", "policy_kwargs", "observation_space", "action_space")
+"""The pickles that playing needs. The others, of schedules, callbacks and buffers, stay text: they may name packages that are missing."""
+_UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_entropy": 0.0}
+"""What takes the place of a pickle that is left out; else None. Nothing is learned by these."""
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Let PyTorch compute on the calling thread alone, as a context: where a model that plays decides.
+
+    PyTorch shares out even small products among a thread for each core; networks of a few layers are slower so, and each core that another
+    process holds makes them wait. Afterwards the number of threads is what it was.
+
+    Returns
+    -------
+    context manager
+        For ``with``.
+
+    Examples
+    --------
+    >>> import torch
+    >>> from snooker_env.tasks.saved_models import one_thread
+    >>> with one_thread():
+    ...     torch.get_num_threads()
+    1
+    """
+    import torch
+
+    usual = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(usual)
 
 
 def part(path: str | Path, name: str, most: int = MOST) -> bytes:
@@ -303,11 +340,12 @@ class SavedModel:
             else:
                 import stable_baselines3 as module
         except ImportError as error:
-            line = 'pip install -e ".[train]"'
-            raise ImportError(f"{self.field} = {str(self.path)!r} needs {library}; in a clone of the repository: {line}") from error
+            raise missing(f"{self.field} = {str(self.path)!r} needs {library}", "train") from error
         only_played = {"seed": None, "n_envs": 1, "buffer_size": 1}  # keep the caller's random state; no learning
+        pickled = [key for key, value in self.data.items() if isinstance(value, dict) and ":serialized:" in value]
+        left_out = {key: _UNPICKLED.get(key) for key in pickled if key not in _PLAYED}
         try:
-            return getattr(module, name).load(self.path, device="cpu", **only_played).policy
+            return getattr(module, name).load(self.path, device="cpu", custom_objects=left_out, **only_played).policy
         except Exception as error:  # the file's own code may raise anything
             why = str(error).partition("\n")[0]
             raise self.refused(f"must be a model that {name} can load ({type(error).__name__}: {why})") from error

@@ -8,8 +8,8 @@ import numpy as np
 
 from .._check import array, flags, integer, refuse, refuse_what, truth
 from .._types import Bools, Floats
-from ..game.balls import CUE, CUE_BIT, N_BALLS, REDS_MASK, BallOn, balls_on, mask_of_present, next_on
-from ..game.frame import MOST_BREAK, Frame, points_available
+from ..game.balls import CUE, CUE_BIT, N_BALLS, REDS_MASK, BallOn, balls_on, mask_of_present, next_on, points_available
+from ..game.frame import MOST_BREAK, Frame
 from ..game.in_hand import within_d
 from ..physics.table import Table
 

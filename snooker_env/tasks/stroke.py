@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .._jit import entry, kernel
 from .._shots import count
 from .._types import Bools, Floats, Ints
-from ..game.balls import CUE, N_BALLS, REFEREE_TOUCH, TOUCH, bits
+from ..game.balls import CUE, N_BALLS, TOUCH, bits, touching_balls
 from ..game.frame_columns import ANYWHERE, IN_HAND
 from ..game.in_hand import nearest_anywhere, nearest_place
 from ..game.pots import POT_COLUMNS
@@ -26,6 +26,7 @@ from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, playable
+from .lines import LINE_ROWS
 from .noise import executed
 
 if TYPE_CHECKING:
@@ -38,9 +39,9 @@ AT_ONCE = 1e-9
 (VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
 STRIKE_COLUMNS = 11
 
-# Columns of the referee's facts of a stroke: masks of balls, then the clear paths before it (only where misses are called) and whether it
-# was an attempt (only with miss="attempt"); and of his decision: the player, the ball on (a ``BallOn``), whether he had a free ball, his
-# break with it, points, penalty, fouls.
+# Columns of the referee's facts of a stroke: masks of balls, then the clear paths before a stroke that failed (where misses are called)
+# and whether it was an attempt (only with miss="attempt"); and of his decision: the player, the ball on (a ``BallOn``), whether he had a
+# free ball, his break with it, points, penalty, fouls.
 (FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, ATTEMPT, PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS) = range(14)
 SEEN_COLUMNS = 14
 
@@ -48,19 +49,8 @@ _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), i
 _WHY = {
     Status.TOO_MANY_EVENTS: f"did not come to rest within {MAX_EVENTS} events: a ball may be held against another; try other physics",
     Status.IMPACT_UNSOLVED: "holds an impact that did not end: try another fidelity, or less extreme friction",
+    Status.ASTRAY: "holds a ball that left the table through a cushion",
 }
-
-
-@kernel
-def touching_balls(positions, on_table):
-    """The mask of the object balls that touch the cue ball, as the referee sees it."""
-    reach = 2.0 * BALL_RADIUS + REFEREE_TOUCH
-    mask = 0
-    for i in range(1, N_BALLS):
-        dx, dy = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
-        if on_table[i] and dx * dx + dy * dy < reach * reach:
-            mask |= 1 << i
-    return mask
 
 
 @kernel
@@ -153,13 +143,13 @@ def _same_table(positions, on_table, other, other_on):
     return differ == 0
 
 
-@entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen,))
+@entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen, shot_of))
 def address(which, actions, positions, on_table, game, nominated, streams, options, noise, phys, fidelity, n_steps, r, v, w, here, shots):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike: shot j is that of table which[j].
 
     ``nominated``: of frames (n,), the colour that each striker has nominated, 0 or AUTO; of visits without rows.
     """
-    found = np.empty((discrete_actions.POTS if options[A_DISCRETE] else 1, POT_COLUMNS))
+    found = np.empty((LINE_ROWS, POT_COLUMNS))
     motion, phase, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
     solved, mask_before = np.empty(6), 0  # the last choice, and the stroke that it means
     for j in range(which.shape[0]):
@@ -188,7 +178,7 @@ def address(which, actions, positions, on_table, game, nominated, streams, optio
                 solved[1], solved[2], solved[3], solved[4], solved[5] = chosen
             intended = (solved[1], solved[2], solved[3], solved[4], solved[5])
         else:
-            intended = shot_of(a, p, on, mask, options, found)
+            intended = shot_of(a, p, on, mask, options, phys, found, motion, phase, work)
         strike(intended, p, on, streams[k], options, noise, j, r, v, w, here, shots)
 
 
@@ -286,9 +276,9 @@ def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> No
     table, (fidelity, n_steps) = rules.table, rules.fidelity
     buffers.enlarged = {}
     engine.run_batch(
-        buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted, phys, table.noses, table.jaws, table.falls, fidelity, n_steps,
-        MAX_EVENTS, buffers.event_time, buffers.event_what, buffers.segments, buffers.status, buffers.n_events, buffers.n_segments,
-        buffers.duration, 0, m,
+        buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted, phys, table.noses, table.jaws, table.falls,
+        table._reach(rules.physics.R), fidelity, n_steps, MAX_EVENTS, buffers.event_time, buffers.event_what, buffers.segments,
+        buffers.status, buffers.n_events, buffers.n_segments, buffers.duration, 0, m,
     )  # fmt: skip
 
 

@@ -8,7 +8,9 @@ from .._check import refuse
 from ..game.layouts import Plan, plan_of
 from ..game.opened import bank
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ..physics.bounds import deepest
 from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike
+from .observations import REACH
 
 ROUNDING = 1e-9
 """Tolerance of noses, jaws and falls [m]."""
@@ -29,6 +31,10 @@ def table_of(table: TableLike) -> Table:
         raise refuse("table", cloth.name, f'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0: {made}')
     _check_noses(cloth)
     _check_pockets(cloth)
+    past, most = deepest(cloth.jaws, cloth.falls, cloth.bounds, BALL_RADIUS), (REACH - 1.0) * HALF_WIDTH
+    if past > most:
+        allowed = f"must let no ball rest more than {most:.3g} m past the noses, where observations end (one can {past:.3g} m past them)"
+        raise refuse("table", cloth.name, allowed)
     return cloth
 
 

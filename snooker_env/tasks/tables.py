@@ -249,6 +249,11 @@ class Tables(ABC):
         """Which episodes have ended, and a step has said so: bool (n,)."""
         return self.ended()
 
+    @property
+    def unplayable(self) -> str:
+        """Why the first table has no stroke left to play, in words."""
+        return "is over" if self.begun[0] else "has not begun"
+
     def view(self: _T, k: int) -> _T:
         """Table k as a ``Tables`` with one table that shares its state."""
         one = object.__new__(type(self))

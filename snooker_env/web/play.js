@@ -2,7 +2,10 @@
  * How does the page play? It shows the server's game, animates each stroke, and sends the player's strokes and decisions.
  *
  * The server holds the game. Every answer contains its state, and one request always waits for the next change. Strokes arrive in the format of
- * replays and are animated by `table.js`; between strokes the page shows the state.
+ * replays, each with the `tables` before and after it, and are animated by `table.js`.
+ *
+ * What is shown of the game is one `table`: the one before a stroke while it moves, the one after it until the next moves, the state's when
+ * all strokes have been shown. Balls, score bar and words are drawn from it alone; what may be done comes from the state.
  */
 
 import { decode, TableView } from "./table.js";
@@ -19,12 +22,11 @@ class Page {
   constructor(facts) {
     Object.assign(this, facts);
     this.names = this.scene.balls.map(ball => ball.name);
-    this.state = null;
+    this.state = this.table = null;
     this.balls = { x: new Float64Array(22), y: new Float64Array(22), on: new Uint8Array(22) };
     this.played = 0;
     this.known = new Map();
     this.moving = null;
-    this.last = null;
     this.held = false;
     this.drawn = [];
     this.kind = "play";
@@ -33,7 +35,6 @@ class Page {
     this.placing = new Latest("place", ({ state }, event) => { Object.assign(this, { chosen: state.revision, dragged: event }); this.take(state); }, error => this.trouble(error));
     this.aim = new Aim(this, event => { this.advisor.changed(event); this.redraw(); }, (x, y, event) => this.placing.ask({ place: [x, y] }, event));
     this.advisor = new Advisor(this);
-    this.advisor.offer(facts);
     this.setup = new SetUp(this);
     new ResizeObserver(() => { this.view.resize(); this.redraw(); }).observe(by("stage"));
     this.wire();
@@ -53,6 +54,8 @@ class Page {
     by("concede").onclick = () => this.sure("Concede the frame?", "Concede", () => this.try(() => ask("concede", {})));
     by("new").onclick = () => this.sure("Leave this frame and begin a new one? This cannot be undone.", "New frame", () => this.begin());
     by("again").onclick = () => this.again();
+    by("next").onclick = () => this.begin(1 - this.state.breaker);
+    by("over-close").onclick = () => { this.seen = this.table; this.show(); };
     by("save").onclick = () => this.try(async () => { keep("snooker-game.json", JSON.stringify(await ask("save", {})), "application/json"); });
     by("replay").onclick = () => this.try(async () => { keep("snooker-replay.html", await ask("replay.html"), "text/html"); });
     by("load").onclick = () => this.sure("Leave this frame and load a file?", "Load", () => by("file").click());
@@ -102,11 +105,12 @@ class Page {
   /** Use a state, if it is newer than the current one. */
   take(state) {
     if (this.state && state.revision <= this.state.revision) return;
-    const before = this.state;
+    const first = this.state === null;
     this.state = state;
-    if (before === null || state.strokes < this.played) this.still();
+    if (first) this.put(state);
+    if (first || state.strokes < this.played) this.still();
     by("last").className = "";
-    this.show(before);
+    this.seated();
     this.catchUp();
   }
 
@@ -116,7 +120,6 @@ class Page {
     this.busy = true;
     try { await this.showAll(); } catch (error) { this.played = this.state.strokes; this.trouble(error); }
     this.busy = false;
-    this.show();
     this.settle();
   }
 
@@ -157,9 +160,9 @@ class Page {
     if (!this.state?.strokes || await confirmed(question, yes)) then();
   }
 
-  begin() {
+  begin(breaker = 0) {
     this.held = false;
-    this.try(() => ask("new", { layout: by("layout").value, seed: Math.floor(Math.random() * 2 ** 48) }));
+    this.try(() => ask("new", { layout: by("layout").value, seed: Math.floor(Math.random() * 2 ** 48), breaker }));
   }
 
   help() {
@@ -167,24 +170,30 @@ class Page {
     else by("help").showModal();
   }
 
-  /** Show the balls of the state, and set a first aim. */
-  settle() {
-    if (this.moving || this.busy) return;
-    const { state } = this;
+  /** Show this table: the state, or one of a stroke. */
+  put(table) {
+    this.table = table;
     this.balls.on.fill(0);
-    for (const [name, [x, y]] of Object.entries(state.positions)) {
+    for (const [name, [x, y]] of Object.entries(table.positions)) {
       const i = this.names.indexOf(name);
       this.balls.x[i] = x; this.balls.y[i] = y; this.balls.on[i] = 1;
     }
+    this.show();
+    this.redraw();
+  }
+
+  /** Show the state, and set a first aim. */
+  settle() {
+    if (this.moving || this.busy) return;
+    const { state } = this;
+    this.put(state);
     if (this.settled !== state.revision) {
       const moved = JSON.stringify([state.positions, state.ball_on, state.striker, state.strokes]);
       if (moved !== this.lay) this.firstAim(state);
       else if (this.chosen === state.revision) this.advisor.changed(this.dragged);
       this.lay = moved;
       this.settled = state.revision;
-      this.show();
     }
-    this.redraw();
   }
 
   /** Set a first aim on a new table; not while the player places the cue ball: then advice for its own place stays. */
@@ -206,22 +215,18 @@ class Page {
 
   /** Animate a stroke; resolves when the balls rest or the motion is skipped. */
   move(data) {
-    this.last = data;
-    this.board = { ...this.board, player: data.player, on: data.ball_on };
     const stroke = decode({ format: "snooker-replay", version: 1, R: this.R, spin_decel: this.spin_decel, strokes: [data] }).strokes[0];
     return new Promise(done => {
       this.moving = { stroke, start: null, done };
-      this.show();
-      this.redraw();
+      this.put(data.tables[0]);
     });
   }
 
   skip() {
     if (!this.moving) return;
-    const { done } = this.moving, { score, words, player, pots } = this.last, reds = this.board.reds - pots.filter(ball => ball < 16).length;
+    const { done, stroke } = this.moving;
     this.moving = null;
-    this.board = { ...this.board, scores: score, break: this.last.break, reds, last: `${this.state.labels[player]}: ${words}` };
-    this.show();
+    this.put(stroke.tables[1]);
     done();
   }
 
@@ -237,7 +242,7 @@ class Page {
     this.busy = true;
     try {
       const { strokes } = await ask("strokes", undefined, `?from=${this.state.strokes - 1}`);
-      if (strokes.length) await this.move(strokes[0]);
+      await this.move(strokes[0]);
     } catch (error) { this.trouble(error); }
     this.busy = false;
     this.catchUp();
@@ -284,9 +289,9 @@ class Page {
     return saved.format === undefined ? ask("position", { position: saved }) : ask("load", { saved });
   }
 
-  /** Send the players; a new agent gets the advisor's errors, a person none. */
+  /** Send the players; a new agent gets a professional's errors, a person none. */
   seats(changed = -1) {
-    if (changed >= 0) by(`noise-${changed}`).value = by(`who-${changed}`).value === "person" ? "none" : by("errors").value;
+    if (changed >= 0) by(`noise-${changed}`).value = by(`who-${changed}`).value === "person" ? "none" : "professional";
     const [players, noise] = ["who", "noise"].map(name => [0, 1].map(k => by(`${name}-${k}`).value));
     this.held = false;
     this.try(() => ask("players", { players, noise, practice: by("practice").checked }));
@@ -325,14 +330,25 @@ class Page {
 
   // ---------------------------------------------------------------------------------------------------------------- what is shown
 
+  /** Who sits at the table, as the server says it. */
+  seated() {
+    const { state } = this;
+    for (const k of [0, 1]) {
+      by(`who-${k}`).value = state.players[k];
+      by(`noise-${k}`).value = state.noise[k];
+      by(`side-${k}`).querySelector(".name").textContent = state.labels[k];
+    }
+    by("practice").checked = state.practice;
+    this.show();
+  }
+
   /** Words, score and controls. */
-  show(before) {
-    const { state } = this, busy = this.behind, mine = this.aiming, setup = this.setup.open;
+  show() {
+    const { state, table } = this, busy = this.behind, mine = this.aiming, setup = this.setup.open;
     for (const [id, hide] of [["setup", !setup], ["stroke", setup], ["ask", setup], ["game", setup], ["last", setup]]) by(id).hidden = hide;
-    if (!busy) this.board = { scores: state.scores, break: state.break, player: state.striker, last: state.last, reds: state.reds, left: state.available, on: state.ball_on?.replace("_", " ") };
-    const { board } = this, who = state.labels[board.player];
-    by("asked").textContent = setup ? "Set up a position" : !busy ? state.words : this.moving ? `${who} ${who === "You" ? "play" : "plays"}: ${board.on}` : by("asked").textContent;
-    if (by("last").className !== "trouble") by("last").textContent = board.last;
+    const who = state.labels[table.striker], on = table.ball_on?.replace("_", " ");
+    by("asked").textContent = setup ? "Set up a position" : this.moving ? `${who} ${who === "You" ? "play" : "plays"}: ${on}` : table.words;
+    if (by("last").className !== "trouble") by("last").textContent = table.last;
     const choosing = state.phase === "choice" && !busy && !setup && state.players[state.striker] === "person";
     by("choices").hidden = !choosing;
     if (choosing && by("choices").dataset.for !== String(state.revision)) {
@@ -350,34 +366,43 @@ class Page {
     by("skip").hidden = !this.moving;
     by("play").hidden = Boolean(this.moving);
     if (!mine) by("odds").textContent = "";
+    by("errors").textContent = state.noise[state.striker];
     by("advise").disabled = !mine;
     by("undo").disabled = !state.undo;
     by("redo").disabled = !state.redo;
     by("again").disabled = !state.strokes || busy;
     by("concede").disabled = !mine && !choosing;
-    by("nominate-row").hidden = !state.nominations.length;
+    by("nominate-row").hidden = !mine || !state.nominations.length;
     if (state.nominations.length) fill(by("nominate"), ["", ...state.nominations], by("nominate").value, value => value || "colour first struck");
-    for (const k of [0, 1]) {
-      if (before !== undefined) { by(`who-${k}`).value = state.players[k]; by(`noise-${k}`).value = state.noise[k]; by("practice").checked = state.practice; }
-      const side = by(`side-${k}`);
-      side.querySelector(".name").textContent = state.labels[k];
-      side.querySelector("b").textContent = board.scores[k];
-      side.classList.toggle("turn", board.player === k && (busy || state.phase !== "over"));
-    }
-    this.score(busy);
+    this.score(on);
+    this.over(!setup && !this.moving);
   }
 
-  score(busy) {
-    const { state, board } = this, dot = name => { const one = make("i"); one.style.background = `rgb(${this.scene.balls[this.names.indexOf(name)].rgb})`; return one; };
-    const put = (id, ...parts) => by(id).replaceChildren(...parts), { on } = board;
-    put("n-break", "break ", make("b", { textContent: board.break }));
+  score(on) {
+    const { table } = this, dot = name => { const one = make("i"); one.style.background = `rgb(${this.scene.balls[this.names.indexOf(name)].rgb})`; return one; };
+    const put = (id, ...parts) => by(id).replaceChildren(...parts);
+    for (const k of [0, 1]) {
+      by(`side-${k}`).querySelector("b").textContent = table.scores[k];
+      by(`side-${k}`).classList.toggle("turn", table.striker === k && table.phase !== "over");
+    }
+    put("n-break", "break ", make("b", { textContent: table.break }));
     if (!on) put("n-on", "frame over");
     else {
       const dots = on === "red" ? ["red 1"] : this.names.includes(on) ? [on] : this.names.slice(16);
-      put("n-on", "on ", ...dots.map(dot), make("b", { textContent: on + (!busy && state.free_ball ? " + free ball" : "") }));
+      put("n-on", "on ", ...dots.map(dot), make("b", { textContent: on + (table.free_ball ? " + free ball" : "") }));
     }
-    put("n-reds", "reds ", make("b", { textContent: board.reds }));
-    put("n-left", "left ", make("b", { textContent: board.left }));
+    put("n-reds", "reds ", make("b", { textContent: table.reds }));
+    put("n-left", "left ", make("b", { textContent: table.available }));
+  }
+
+  /** The end of the frame, with the score from the side of the only person, else of the first seat. */
+  over(rest) {
+    const { table: { phase, winner, scores, last }, state: { labels } } = this, me = labels[1] === "You" ? 1 : 0;
+    by("over").hidden = !rest || phase !== "over" || this.seen === this.table;
+    if (phase !== "over") return;
+    by("over-who").textContent = `${labels[winner]} won the frame`;
+    by("over-score").textContent = `${labels[me]} ${scores[me]} : ${scores[1 - me]} ${labels[1 - me]}`;
+    by("over-last").textContent = last;
   }
 
   /** An error message beside a place on the table. */

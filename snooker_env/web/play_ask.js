@@ -31,6 +31,7 @@ export class Advisor {
   /** app: as for `Aim`, and `aim`, `redraw()`. */
   constructor(app) {
     this.app = app;
+    fill(by("agent"), app.agents);
     this.list = [];
     this.hover = null;
     this.found = null;
@@ -38,14 +39,7 @@ export class Advisor {
     this.wait = new Latest("destinations", (found, input, more) => this.take(found, input, more), error => this.wrong(error));
     by("pockets").replaceChildren(...app.pockets.map(({ name }) => make("span", { textContent: name })));
     by("map").onchange = event => this.changed(event);
-    by("errors").onchange = event => this.changed(event);
     by("advise").onclick = () => this.advise();
-  }
-
-  /** Fill in the choices that the server offers. */
-  offer(facts) {
-    fill(by("agent"), facts.agents);
-    fill(by("errors"), facts.noise, by("errors").value || "professional");
   }
 
   /** The table has changed: earlier advice no longer applies. */
@@ -54,7 +48,8 @@ export class Advisor {
     this.hover = this.found = null;
     this.wait.drop();
     by("advice").replaceChildren();
-    by("advice-order").hidden = by("advice-sides").hidden = true;
+    by("advice-order").textContent = "";
+    by("advice-sides").hidden = true;
     by("odds").textContent = "";
   }
 
@@ -83,8 +78,7 @@ export class Advisor {
   }
 
   question(wish, event, own) {
-    const { state } = this.app, body = { speed: wish.speed, side: wish.side, top: wish.top, aim: wish.aim, elevation: wish.elevation, noise: by("errors").value };
-    body.revision = state.revision;
+    const { state } = this.app, body = { speed: wish.speed, side: wish.side, top: wish.top, aim: wish.aim, elevation: wish.elevation, revision: state.revision };
     if (state.in_hand && wish.place) body.place = wish.place;
     this.wait.ask(body, { at: event?.timeStamp ?? performance.now(), revision: state.revision, own });
   }
@@ -122,8 +116,8 @@ export class Advisor {
     button.disabled = true;
     button.textContent = "Thinking …";
     try {
-      const { suggestions } = await ask("advise", { agent: by("agent").value, noise: by("errors").value, n: 5, revision });
-      if (suggestions && revision === app.state.revision) this.show(suggestions);
+      const found = await ask("advise", { agent: by("agent").value, n: 5, revision });
+      if (found.suggestions && revision === app.state.revision) this.show(found);
     } catch (error) {
       by("advice").replaceChildren(make("li", { className: "trouble", textContent: error.message }));
     }
@@ -131,11 +125,12 @@ export class Advisor {
     button.textContent = "What would you play?";
   }
 
-  show(suggestions) {
+  show({ order, suggestions }) {
     this.list = suggestions;
     const items = suggestions.map((one, k) => {
-      const [low, high] = one.points_interval.map(value => value.toFixed(1));
-      const button = make("button", { type: "button" }, one.words, make("small", { textContent: `points ${low} to ${high} (95 % interval)` }));
+      const [low, high] = one.kind === "pot" ? one.points_interval.map(value => value.toFixed(1)) : one.chance_interval.map(value => Math.round(100 * value));
+      const range = one.kind === "pot" ? `points ${low} to ${high}` : `fair ${low} to ${high} %`;
+      const button = make("button", { type: "button" }, one.words, make("small", { textContent: `${range} (95 % interval)` }));
       button.setAttribute("aria-pressed", "false");
       button.onpointerenter = event => event.pointerType === "mouse" && this.preview(k, event);
       button.onfocus = event => this.preview(k, event);
@@ -145,7 +140,8 @@ export class Advisor {
       return make("li", {}, button);
     });
     by("advice").replaceChildren(...items);
-    by("advice-order").hidden = by("advice-sides").hidden = !items.length;
+    by("advice-order").textContent = order;
+    by("advice-sides").hidden = !items.length;
     by("advice-order").scrollIntoView({ block: "start" });
     this.app.redraw();
   }

@@ -27,14 +27,10 @@ export class SetUp {
   }
 
   begin() {
-    const { app } = this, { state, scene } = app;
+    const { app } = this, { state, balls: { x, y, on } } = app;
     app.still();
-    this.names = scene.balls.map(ball => ball.name);
-    this.balls = { x: new Float64Array(22), y: new Float64Array(22), on: new Uint8Array(22) };
-    for (const [name, [x, y]] of Object.entries(state.positions)) {
-      const i = this.names.indexOf(name);
-      this.balls.x[i] = x; this.balls.y[i] = y; this.balls.on[i] = 1;
-    }
+    app.put(state);
+    this.balls = { x: x.slice(), y: y.slice(), on: on.slice() };
     this.open = true;
     fill(by("set-on"), ON, state.ball_on ?? ON[0]);
     fill(by("set-striker"), ["0", "1"], String(state.striker), value => state.labels[Number(value)]);
@@ -57,7 +53,7 @@ export class SetUp {
     this.reds = [];
     for (let i = 0; i < on.length; i++) {
       if (!on[i]) continue;
-      if (i > 0 && i < 16) { position.reds.push([x[i], y[i]]); this.reds.push(i); } else position[this.names[i]] = [x[i], y[i]];
+      if (i > 0 && i < 16) { position.reds.push([x[i], y[i]]); this.reds.push(i); } else position[this.app.names[i]] = [x[i], y[i]];
     }
     if (by("set-on").value !== ON[0]) position.on = by("set-on").value;
     position.in_hand = by("set-hand").checked;
@@ -82,7 +78,7 @@ export class SetUp {
   /** Show an error beside the ball that it is about. */
   complain(error) {
     if (!this.open) return;
-    const red = /^reds\[(\d+)\]/.exec(error?.field ?? ""), named = this.names.indexOf((error?.field ?? "").replace(/\[.*/, ""));
+    const red = /^reds\[(\d+)\]/.exec(error?.field ?? ""), named = this.app.names.indexOf((error?.field ?? "").replace(/\[.*/, ""));
     this.wrong = red ? this.reds[Number(red[1])] ?? -1 : named;
     const words = error ? this.plain(error) : "", beside = error && this.wrong >= 0 && this.balls.on[this.wrong];
     by("set-wrong").textContent = beside ? "" : words;

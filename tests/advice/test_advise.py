@@ -79,13 +79,14 @@ def test_points_of_the_visit_so_far_do_not_count():
     assert sn.advise(far, n=1, **QUICK)[0] == sn.advise(OPEN, n=1, **QUICK)[0]
 
 
-def test_the_order_is_the_agents_own():
-    advice = sn.advise(OPEN, n=5, **QUICK)
-    assert len(advice) == 5 and [one.score for one in advice] == sorted((one.score for one in advice), reverse=True)
+def test_the_choice_is_the_agents_own():
+    """The strokes are the first of its ranking, with its own scores; their order is that of the points that they show."""
     wide = sn.advise(OPEN, agent="ghost_ball", n=4, **QUICK)
     found = sn.planning.pots(OPEN).tolerance[0]
-    assert [one.score for one in wide] == pytest.approx(1e3 * found[: len(wide)])
+    assert sorted((one.score for one in wide), reverse=True) == pytest.approx(1e3 * found[: len(wide)])
     assert all(one.speed == 2.3 and one.side == one.top == 0.0 for one in wide)
+    assert [one.points for one in wide] == sorted((one.points for one in wide), reverse=True)
+    assert sn.advise(OPEN, agent="ghost_ball", n=1, **QUICK)[0] == max(wide, key=lambda one: one.score)
 
 
 def test_strokes_that_read_the_same_are_given_once():
@@ -114,8 +115,9 @@ def test_every_built_in_agent_has_a_stroke_at_every_position(name, agent):
     assert (stroke.place is not None) == position.in_hand
     points, fouls, _ = played(position, stroke, 1, noise="none")
     (first, *_) = sn.advise(position, agent=agent, n=1, seed=3, **QUICK)
-    assert first.stroke == stroke
-    assert (first.kind == "pot") == bool(points[0] > 0) and (first.kind in ("foul", "in-off")) == bool(fouls[0])
+    assert first.kind not in ("foul", "in-off") and first.foul < 0.5
+    if not fouls[0]:
+        assert first.stroke == stroke and (first.kind == "pot") == bool(points[0] > 0)
     if agent == "lookahead":
         assert not fouls[0] and first.foul < 0.3
 
@@ -130,17 +132,17 @@ def test_in_hand_a_stroke_has_a_place_in_the_d_that_counts():
 
 
 def test_where_nothing_can_be_potted_a_ball_on_is_hit():
-    for position, kind in ((SNOOKERED, "escape"), (ALL["hidden"], "safety")):
+    for position, kind in ((SNOOKERED, "escape"), (ALL["hidden"], "contact")):
         one = sn.advise(position, n=1, **QUICK)[0]
         assert one.kind == kind and one.pocket == -1 and one.ball == one.first and 1 <= one.ball <= 15
-        assert bool(clear_paths(position).any_part[0]) == (kind == "safety")
+        assert bool(clear_paths(position).any_part[0]) == (kind == "contact")
         points, fouls, _ = played(position, one.stroke, 400, noise="professional")
         assert abs((~fouls).mean() - one.chance) < 4 * np.sqrt(0.25 / 60) and points.mean() == pytest.approx(one.points, abs=0.3)
-        assert one.words.startswith("escape off the " if kind == "escape" else "safety off the red, ") and " fair " in one.words
+        assert one.words.startswith("escape off the " if kind == "escape" else "contact with the red, ") and " fair " in one.words
 
 
-def test_a_long_pot_gives_way_to_safety_and_a_short_one_does_not():
-    assert sn.advise(RESPOTTED, n=1, **QUICK)[0].kind == "safety"
+def test_a_long_pot_gives_way_to_a_mere_contact_and_a_short_one_does_not():
+    assert sn.advise(RESPOTTED, n=1, **QUICK)[0].kind == "contact"
     assert sn.advise(RESPOTTED, n=1, noise="none", **QUICK)[0].kind == "pot"
     assert sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), n=1, **QUICK)[0].kind == "pot"
 
@@ -150,7 +152,11 @@ def test_advice_is_json_and_a_sequence():
     kept = json.loads(json.dumps(advice.to_dict()))
     assert kept == advice.to_dict() and len(kept["suggestions"]) == 2 and kept["noise"]["aim_deg"] == 0.1
     assert sn.Position(**kept["position"]) == OPEN
-    assert advice[0] is next(iter(advice)) and advice[:1] == (advice[0],) and str(advice).startswith(f"1. {advice[0].words}\n2. ")
+    assert (
+        advice[0] is next(iter(advice))
+        and advice[:1] == (advice[0],)
+        and str(advice).startswith(f"{advice.order}\n1. {advice[0].words}\n2. ")
+    )
     assert advice[0].words == str(advice[0])
 
 

@@ -16,7 +16,7 @@ def test_the_command_prints_advice(tmp_path, capsys):
     printed = capsys.readouterr().out.splitlines()
     advice = sn.advise(OPEN, agent="ghost_ball", n=2, samples=30, visits=2)
     assert [line for line in printed if not line.startswith("   ")] == str(advice).splitlines()
-    assert "(95 %); cue ball stops at (" in printed[1] and len(printed) == 2 * len(advice)
+    assert "(95 %); cue ball stops at (" in printed[2] and len(printed) == 1 + 2 * len(advice)
     assert main([*few, "--json"]) == 0 and json.loads(capsys.readouterr().out) == advice.to_dict()
 
 

@@ -73,9 +73,12 @@ def test_a_player_who_cannot_place_the_cue_ball_plays_from_the_best_place():
     assert stroke == stroke_of(Soft(), there, seed=5)
 
 
-def test_the_order_of_a_ranking_is_kept_and_its_scores():
+def test_a_ranking_chooses_and_its_scores_are_kept():
+    """Its first stroke pots less surely, and so comes second where both are shown."""
+    (first,) = sn.advise(ENDGAME, agent=Ranking(), n=1, samples=200, visits=0)
     advice = sn.advise(ENDGAME, agent=Ranking(), n=2, samples=200, visits=0)
-    assert [one.score for one in advice] == [2.0, 1.0] and advice[0].chance < advice[1].chance and advice.agent == "Ranking"
+    assert [one.score for one in advice] == [1.0, 2.0] and advice[0].points > advice[1].points and advice.agent == "Ranking"
+    assert first == advice[1]
     assert [one.score for one in sn.advise(ENDGAME, agent=Soft(), n=3, **QUICK)] == [None]
 
 
@@ -109,7 +112,7 @@ def test_a_pretrained_agent_gives_its_probabilities():
     pytest.importorskip("sb3_contrib")
     advice = sn.advise(OPEN, agent="ppo_mask", n=4, **QUICK)
     scores = [one.score for one in advice]
-    assert scores == sorted(scores, reverse=True) and scores[-1] > 0.0 and sum(scores) <= 1.0
+    assert len(set(scores)) == len(scores) > 1 and min(scores) > 0.0 and sum(scores) <= 1.0
 
 
 def test_without_the_repository_the_built_in_players_are_there(monkeypatch):

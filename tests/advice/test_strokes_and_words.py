@@ -103,16 +103,19 @@ def test_what_a_stroke_does_in_words():
     say = words.what_words
     assert say("pot", 19, 2, 19) == "blue, right middle" and say("pot", 5, 5, 5) == "red, left middle"
     assert say("pot", 5, 0, 8) == "red by a plant, green pocket" and say("pot", 21, 4, 1) == "black off the red, top left"
-    assert say("safety", 3, -1, 3, "full") == "safety off the red, full" and say("in-off", 3, -1, 3) == "in-off from the red"
+    assert say("contact", 3, -1, 3, "full") == "contact with the red, full" and say("in-off", 3, -1, 3) == "in-off from the red"
     assert (
         say("escape", 20, -1, 20, "top cushion") == "escape off the top cushion to the pink"
         and say("escape", 1, -1, 1) == "escape to the red"
     )
     assert say("foul", -1, -1, -1) == "foul, nothing struck" and say("foul", 16, -1, 16) == "foul, yellow first"
     assert words.figures_words("pot", 0.874, 23.4) == "chance 87 %, 23 points expected"
-    assert words.figures_words("safety", 0.5, 1.04) == "fair 50 %, 1 point expected" and words.figures_words("pot", 1.0, 0.26).endswith(
-        "0.3 points expected"
+    for kind in ("contact", "escape"):
+        assert words.figures_words(kind, 0.5, 1.04) == "fair 50 %; no pot intended, its worth as a safety is not judged"
+    assert (
+        words.figures_words("foul", 0.03, 0.0) == "fair 3 %" and words.figures_words("pot", 1.0, 1.04) == "chance 100 %, 1 point expected"
     )
+    assert words.figures_words("pot", 1.0, 0.26).endswith("0.3 points expected")
     assert (
         words.place_words(0.05, -1.1475) == "from 5 cm right of and 10 cm behind the brown spot"
         and words.place_words(0, -1.0475) == "from the brown spot"

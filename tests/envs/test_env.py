@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
 
+from snooker_env import match_env
 from snooker_env.benchmark import FREE
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.tasks import observations
@@ -45,6 +46,30 @@ def test_gymnasium_checks_it(name, render_mode, observation, aim, screen, strict
     if not every_mode:  # it opens the window too, where the opponent breaks
         assert (len(screen) > 0) == (render_mode == "human")
     env.close()
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_gymnasium_checks_it_on_a_server_without_a_display(name, monkeypatch, strict):
+    """It makes and resets an environment of each mode, "human" too."""
+    pytest.importorskip("pygame")
+    for variable in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
+    check_env(gymnasium.make(name, **free(name, {"layout": "random:2"})).unwrapped)
+
+
+def test_a_window_without_a_display_is_refused_at_the_first_stroke(monkeypatch):
+    """Before anything is played; the environment can be used on where there is a display."""
+    pytest.importorskip("pygame")
+    for variable in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(variable, raising=False)
+    monkeypatch.setattr("sys.platform", "linux")
+    for env, size in ((SnookerEnv(render_mode="human"), 4), (match_env(render_mode="human"), 7)):
+        env.reset(seed=1)
+        before = env.get_state()
+        with pytest.raises(RuntimeError, match=r'^a window \(render_mode="human"\) needs a display, and there is none'):
+            env.step(np.zeros(size, np.float32))
+        assert data_equivalence(env.get_state(), before)
 
 
 ALLOWED = {"flat": set(), "masked": set(), "balls": {"Your observation balls has an unconventional shape"}}

@@ -210,7 +210,7 @@ def test_each_player_sees_his_own_side():
 
 def test_a_saved_match_plays_on_bit_for_bit():
     env = sn.match_env(aim="target", noise="club", miss="clear_path")
-    list(random_play(env, 2, 10))
+    list(random_play(env, 1, 10))
     assert not any(env.terminations.values())
     other, text = sn.match_env(aim="target", noise="club", miss="clear_path"), json.dumps(env.get_state())
     other.reset(options={"state": json.loads(text)})
@@ -283,4 +283,4 @@ def test_pettingzoo_is_loaded_only_when_asked_for_and_its_lack_is_explained():
         "except ImportError as error: print(error)\n"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=120)
-    assert done.stdout.strip() == 'match_env needs PettingZoo; install it, in a clone of snooker_env, with: pip install -e ".[multi]"'
+    assert done.stdout.strip() == f'match_env needs PettingZoo; install it, in the clone {ROOT}, with: pip install -e ".[multi]"'

@@ -15,7 +15,7 @@ from agents.features.views import training_tables
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.sb3 import SnookerVecEnv
 from snooker_env.tasks.tables import COUNTS, REALS
-from tests.processes import python
+from tests.processes import ROOT, python
 from tests.refusals import refused
 
 KEYS = (*REALS, *COUNTS, "foul")
@@ -142,7 +142,7 @@ def test_a_seed_draws_new_errors_from_a_state():
 
 def test_without_stable_baselines_one_line_says_how_to_get_it():
     code = "import sys\nsys.modules['stable_baselines3'] = None\ntry: import snooker_env.sb3\nexcept ImportError as error: print(error)\n"
-    wanted = 'snooker_env.sb3 needs Stable-Baselines3; install it, in a clone of snooker_env, with: pip install -e ".[train]"'
+    wanted = f'snooker_env.sb3 needs Stable-Baselines3; install it, in the clone {ROOT}, with: pip install -e ".[train]"'
     assert python(code)[0].strip() == wanted
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from snooker_env.game.balls import CUE, N_BALLS, NAMES, SPOTS, colour, mask_of
+from snooker_env.game.balls import CLEARANCE, CUE, N_BALLS, NAMES, SPOTS, colour, mask_of
 from snooker_env.game.snookered import is_snookered
 from snooker_env.game.spotting import spot_colours
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH
@@ -31,12 +31,12 @@ def blockers(occupied, no_room):
     return balls
 
 
-def touched(balls, x, ys):
-    """For each y: would a ball at (x, y) touch one of ``balls``?"""
+def touched(balls, x, ys, gap=0.0):
+    """For each y: would a ball at (x, y) be nearer than ``gap`` [m] to one of ``balls``?"""
     if not len(balls):
         return np.zeros(len(ys), dtype=bool)
     bx, by = np.array(balls).T
-    return np.any(np.hypot(bx - x, ys[:, None] - by) <= 2 * BALL_RADIUS, axis=1)
+    return np.any(np.hypot(bx - x, ys[:, None] - by) <= 2 * BALL_RADIUS + gap, axis=1)
 
 
 def run_spotting(case):
@@ -61,7 +61,10 @@ def run_spotting(case):
 
 
 def misplaced(place, others, wanted):
-    """What is wrong with a place, found by trying places 10 um apart on the line; None if nothing is."""
+    """What is wrong with a place, found by trying places 10 um apart on the line; None if nothing is.
+
+    The nearest place is the nearest that leaves ``CLEARANCE`` to every ball: less could be seen as touching.
+    """
     if touched(others, place[0], place[1:])[0]:
         return "touches a ball"
     if wanted in NAMES:
@@ -76,9 +79,9 @@ def misplaced(place, others, wanted):
     if place[1] + BALL_RADIUS >= HALF_LENGTH:
         return "touches the cushion"
     step = 1e-5
-    if not all(touched(others, x, np.arange(y, place[1] - sign * step, sign * step))):
+    if not all(touched(others, x, np.arange(y, place[1] - sign * step, sign * step), CLEARANCE)):
         return "there is a nearer place"
-    if sign < 0 and not all(touched(others, x, np.arange(y, HALF_LENGTH - BALL_RADIUS, step))):
+    if sign < 0 and not all(touched(others, x, np.arange(y, HALF_LENGTH - BALL_RADIUS - CLEARANCE, step), CLEARANCE)):
         return "there is room above"
     return None
 

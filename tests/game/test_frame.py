@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -186,6 +187,47 @@ def test_points_available():
     assert points_available(1 << PINK | 1 << BLACK, BallOn.PINK) == 13
 
 
+@pytest.mark.parametrize(
+    ("on_table", "ball_on", "worth"),
+    [
+        (FULL_TABLE, BallOn.RED, 8),  # the free ball as a red, and a black
+        (COLOURS_MASK | 2, BallOn.RED, 8),
+        (COLOURS_MASK, BallOn.YELLOW, 2),  # any colour as the yellow, which comes back: the yellow is still on
+        (1 << PINK | 1 << BLACK, BallOn.PINK, 6),
+        (1 << BLACK, BallOn.BLACK, 0),  # there is no other ball to nominate
+    ],
+)
+def test_a_free_ball_adds_to_the_points_available(on_table, ball_on, worth):
+    """As many as the referee gives for the best of all breaks, whichever ball they begin with."""
+    plain, free = (Frame(on_table=on_table, ball_on=ball_on, free_ball=given) for given in (False, True))
+    assert free.available == plain.available + worth == points_available(on_table, ball_on, free_ball=True)
+    first = ids_of(balls_on(ball_on, on_table))[0], *ids_of(on_table & COLOURS_MASK)
+    assert free.available == max(points_of_the_best_break_from(free, ball) for ball in first)
+
+
+def points_of_the_best_break_from(frame, ball):
+    """A break that begins with this ball: what it scores, and what is left for its player."""
+    after, verdict = frame.play(pot(ball))
+    assert not verdict.fouls and after.striker == frame.striker
+    return verdict.points + (0 if after.phase == "over" else after.available)
+
+
+def test_what_only_the_striker_may_play_is_not_there_for_the_other_player():
+    """A colour after a red is the striker's, and so is a free ball: the other player trails by more than he could ever score."""
+    colour = Frame(on_table=COLOURS_MASK | 2, ball_on=BallOn.ANY_COLOUR, striker=1, scores=(0, 36), in_hand=False)
+    assert colour.available == 42 and colour.needs_snookers(0) and not replace(colour, scores=(0, 35)).needs_snookers(0)
+    assert not replace(colour, scores=(42, 0)).needs_snookers(1) and replace(colour, scores=(43, 0)).needs_snookers(1)
+    free = Frame(on_table=COLOURS_MASK | 2, ball_on=BallOn.RED, striker=1, scores=(0, 36), in_hand=False, free_ball=True)
+    assert free.needs_snookers(0) and not replace(free, scores=(43, 0)).needs_snookers(1)
+
+
+@pytest.mark.parametrize(("behind", "called"), [(35, True), (36, False), (42, False)])
+def test_no_miss_when_the_player_who_waits_needs_penalty_points(behind, called):
+    """S3 R14: of the 42 points on the table seven are the striker's alone."""
+    frame = Frame(on_table=COLOURS_MASK | 2, ball_on=BallOn.ANY_COLOUR, scores=(behind, 0), in_hand=False, miss="clear_path")
+    assert frame.play(hit(1), **PATHS)[0].miss_called == called
+
+
 @pytest.mark.parametrize(("scores", "needs"), [((0, 13), False), ((0, 14), True), ((20, 0), False)])
 def test_needs_snookers(scores, needs):
     frame = last(BallOn.PINK, scores)
@@ -244,6 +286,9 @@ def test_only_the_striker_concedes():
 def test_a_stalemate_starts_again():
     frame = played(Frame.start(breaker=1, miss="clear_path"), pot(1), pot(BLACK), hit(2)).restart()
     assert frame == Frame.start(breaker=1, miss="clear_path")
+    few = Frame.start(on_table=COLOURS_MASK | 0b10110, miss="clear_path")
+    assert through_json(played(few, pot(2), pot(BLACK), hit(1))).restart() == few
+    assert Frame.start(rules="six_red").restart().on_table == Frame.start(rules="six_red").on_table
     with pytest.raises(ValueError, match="over"):
         frame.concede(frame.striker).restart()
 

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from snooker_env.game import in_hand
-from snooker_env.game.balls import BROWN, GREEN, REFEREE_TOUCH, SPOTS, YELLOW
-from snooker_env.game.in_hand import CLEARANCE, place_cue
+from snooker_env.game.balls import BROWN, CLEARANCE, GREEN, REFEREE_TOUCH, SPOTS, YELLOW
+from snooker_env.game.in_hand import place_cue
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from snooker_env.physics.table import Table
 from tests.kernels import from_python

@@ -5,12 +5,28 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game.balls import BLACK, BLUE, BROWN, COLOURS_MASK, GREEN, NAMES, PINK, SPOTS, YELLOW, mask_of
-from snooker_env.game.spotting import CLEARANCE, spot_colours
+from snooker_env.game.balls import (
+    BLACK,
+    BLUE,
+    BROWN,
+    CLEARANCE,
+    COLOURS_MASK,
+    GREEN,
+    NAMES,
+    PINK,
+    REFEREE_TOUCH,
+    SPOTS,
+    YELLOW,
+    mask_of,
+)  # fmt: skip
+from snooker_env.game.spotting import spot_colours
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
+from snooker_env.tasks.stroke import touching_balls
 from tests.game.geometry_cases import misplaced
+from tests.kernels import from_python
 
 SIX = range(YELLOW, BLACK + 1)
+touching = from_python(touching_balls)
 
 
 def table(*places):
@@ -73,6 +89,23 @@ def test_the_last_room_above_must_clear_the_cushion():
         y = spotted(BLACK, *SPOTS[16:], *reds, (0.0, last))[1]
         assert (y > SPOTS[BLACK, 1]) == above
         assert y + BALL_RADIUS < HALF_LENGTH
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.data(), st.sampled_from(SIX), st.booleans())
+def test_no_spotted_colour_touches_in_the_eyes_of_the_referee(data, ball, crowded):
+    """The cue ball lies at the edge of where the colour goes: on its spot, on another or, with all spots occupied, beside a ball."""
+    gap, turn = data.draw(st.sampled_from([0.0, 2e-6, 1e-5, 4.9e-5, 5.1e-5, 9e-5, 2e-4])), data.draw(st.floats(0, 2 * np.pi))
+    reds = [SPOTS[k] for k in SIX if k != ball] if crowded else []
+    positions, on_table = table(*reds)
+    positions[0], on_table[0] = SPOTS[ball] + (2 * BALL_RADIUS + gap) * np.array([np.cos(turn), np.sin(turn)]), True
+    for _ in range(2):  # the second time the first place is taken, too
+        positions, on_table = spot_colours(positions, on_table, 1 << ball)
+        assert not touching(positions, on_table)
+        apart = np.hypot(*(positions[on_table] - positions[ball]).T)
+        assert np.sort(apart)[1] - 2 * BALL_RADIUS >= REFEREE_TOUCH
+        red = int(np.argmin(on_table[1:16])) + 1
+        positions[red], on_table[red] = positions[ball], True
 
 
 def test_several_go_highest_first():

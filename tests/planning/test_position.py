@@ -14,6 +14,13 @@ from snooker_env.planning import Position, Positions
 FULL = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (-0.3, 0.7)], "pink": (0.2, 0.1), "black": (0.0, 1.4605)}
 
 
+def test_a_field_that_there_is_not_is_named_with_those_that_there_are():
+    with pytest.raises(TypeError, match=r"unexpected keyword argument 'red'; the reds are one list, reds=\[\(x, y\), \.\.\.\]"):
+        Position(cue=(0.0, 0.2), red=(0.1, 0.3))
+    with pytest.raises(TypeError, match="'white'; the fields are cue, reds, yellow, green, brown, blue, pink, black, on, "):
+        Position(white=(0.0, 0.2))
+
+
 def test_words_and_arrays_say_the_same():
     position = Position(**FULL, on="any colour", points=9)
     assert position.on == "any_colour" and position.reds == ((0.3, 0.5), (-0.3, 0.7)) and position.yellow is None

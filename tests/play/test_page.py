@@ -9,6 +9,8 @@ from tests.web.chromium import chromium  # noqa: F401
 
 AWAY = 2.0
 """An aim [rad] along which EASY has no ball."""
+VISIT = {**EASY, "reds": [[0.6, 1.4], [-0.6, 1.35], [0.7, 0.9]], "blue": [0.0, 0.0]}
+"""Here ghost_ball makes a visit of two reds with the black."""
 
 
 class Shown:
@@ -193,6 +195,8 @@ def test_a_cue_ball_in_hand_is_dragged_within_the_d(shown):
 
 def test_advice_is_shown_drawn_and_taken(shown):
     shown.set_up(EASY)
+    shown.line("api/players", {"noise": ["professional", "none"]})
+    shown.until("page.state.noise[0] === 'professional' && page.settled === page.state.revision")
     shown.page.click("#advise")
     shown.until("document.querySelectorAll('#advice button').length")
     assert "points expected" in shown.page.inner_text("#advice li:first-child")
@@ -205,7 +209,8 @@ def test_advice_is_shown_drawn_and_taken(shown):
     assert shown("page.aim.wish.aim") == best["aim"]
     shown.page.keyboard.press("Enter")
     shown.played(1)
-    assert [name for name, _ in best["pots"]] == [f"red {ball}" for ball in shown("page.last.pots")]
+    potted = shown.line("api/strokes")[1]["strokes"][-1]["pots"]
+    assert [name for name, _ in best["pots"]] == [f"red {ball}" for ball in potted]
     assert shown("document.querySelectorAll('#advice button').length") == 0  # it was about another table
 
 
@@ -237,6 +242,122 @@ def test_an_agent_plays_and_its_strokes_are_shown(shown):
     shown.page.click("#undo")
     shown.until("page.state.strokes === 0 && page.settled === page.state.revision")
     assert shown.words == "Your stroke: red is on." and shown("page.balls.x[0]") == EASY["cue"][0]
+
+
+WATCHED = """(window.drawn = [], page.view.draw = (draw => frame => {
+    const text = id => document.getElementById(id).innerText.replace(/\\s+/g, " ");
+    window.drawn.push({ k: page.played, moving: Boolean(page.moving), on: [...frame.on].flatMap((on, ball) => (on ? [ball] : [])),
+        now: text("now"), asked: text("asked"), last: text("last"),
+        score: [0, 1].map(k => Number(document.querySelector(`#side-${k} b`).innerText)) });
+    return draw.call(page.view, frame);
+})(page.view.draw.bind(page.view)), 0)"""
+"""Whatever is drawn from now on, with the words beside it at that time."""
+
+
+def left_after(balls, on):
+    """Points left on a table with these balls, and this on."""
+    return sum(8 if ball < 16 else ball - 14 for ball in balls if ball) + 7 * (on == "any colour")
+
+
+@pytest.mark.parametrize("skipped", [True, False], ids=["skipped", "seen to its end"])
+def test_an_agents_visit_is_shown_stroke_by_stroke(shown, skipped):
+    """Between two strokes the table is the one left by the first, and on, left, reds, break and score are those of this table."""
+    shown.set_up(VISIT)
+    shown.line("api/players", {"players": ["person", "ghost_ball"], "noise": ["none", "none"]})
+    shown.line("api/position", {"position": VISIT, "striker": 1})
+    shown.until("page.state.striker === 1 && page.settled === page.state.revision")
+    shown(WATCHED)
+    shown.page.click("#go")
+    shown.until("page.state.strokes >= 3 && page.state.striker === 0")
+    while skipped and shown("page.behind"):
+        if shown("page.moving && page.moving.start"):
+            shown.page.keyboard.press(" ")
+        time.sleep(0.02)
+    shown.until("!page.behind && page.settled === page.state.revision")
+    strokes, drawn = shown.line("api/strokes")[1]["strokes"], shown("window.drawn")
+    balls, break_, scores = {0, 1, 2, 3, 19, 20, 21}, 0, [0, 0]
+    for k, stroke in enumerate(strokes):
+        before = [one for one in drawn if one["k"] == k + 1 and one["moving"]]
+        assert before, f"stroke {k} was not shown"
+        for one in before:
+            said = f"break {break_} on {stroke['ball_on']} reds {len(balls & {1, 2, 3})} left {left_after(balls, stroke['ball_on'])}"
+            assert one["now"] == said and one["score"] == scores and one["asked"] == f"ghost ball plays: {stroke['ball_on']}"
+        balls -= {ball for ball in stroke["pots"] if 1 <= ball <= 15}
+        break_, scores = stroke["break"], stroke["score"]
+        if k + 1 == len(strokes):
+            break
+        on, after = strokes[k + 1]["ball_on"], [one for one in drawn if one["k"] == k + 1 and not one["moving"]]
+        assert after, f"the table after stroke {k} was not shown"
+        for one in after:
+            assert set(one["on"]) == balls, f"after stroke {k}"
+            assert one["now"] == f"break {break_} on {on} reds {len(balls & {1, 2, 3})} left {left_after(balls, on)}"
+            assert one["score"] == scores and stroke["words"] in one["last"] and one["asked"] == f"ghost ball's stroke: {on} is on."
+    shown.page.keyboard.press("v")  # the last stroke again: from the table before it
+    shown.until("page.moving && page.moving.start")
+    assert f"left {left_after(balls, strokes[-1]['ball_on'])}" in shown.page.inner_text("#now").replace("\n", " ")
+    shown("page.skip()")
+    shown.until("!page.behind")
+
+
+@pytest.mark.parametrize("person", [0, 1])
+def test_the_end_of_a_frame_is_seen(shown, person):
+    """Who has won, the score from the viewer's side, and the next frame, which the other player breaks off."""
+    players, scores = (["person", "ghost_ball"], [1, 0]) if person == 0 else (["ghost_ball", "person"], [0, 1])
+    shown.set_up(EASY, striker=person, scores=scores)
+    state = shown.line("api/players", {"players": players})[1]
+    shown.until("page.settled === argument", state["revision"])
+    assert not shown.page.is_visible("#over")
+    shown.page.click("#game details summary")
+    shown.page.click("#concede")
+    shown.until("page.state.phase === 'over' && page.settled === page.state.revision")
+    assert shown.page.inner_text("#over-who") == "ghost ball won the frame"
+    assert (
+        shown.page.inner_text("#over-score") == "You 1 : 0 ghost ball" and shown.page.inner_text("#over-last") == "You concede the frame."
+    )
+    assert shown.words == "Frame over: ghost ball won."
+    table, over = shown.page.locator("#stage").bounding_box(), shown.page.locator("#over").bounding_box()
+    assert over["y"] >= table["y"] and over["x"] >= table["x"] and over["x"] + over["width"] <= table["x"] + table["width"]
+    shown.page.click("#over-close")
+    assert not shown.page.is_visible("#over")
+    shown.page.click("#undo")
+    shown.until("page.aiming")
+    shown.page.click("#redo")
+    shown.until("page.state.phase === 'over' && page.settled === page.state.revision")
+    assert shown.page.is_visible("#over")
+    shown.page.click("#next")
+    shown.until("page.state.phase !== 'over'")
+    assert not shown.page.is_visible("#over") and shown("page.state.breaker") == 1 - person
+
+
+def test_the_end_of_a_frame_is_seen_when_its_last_ball_is_down(shown):
+    shown.set_up({"cue": [0.6, 1.5], "black": [0.76, 1.66]}, scores=[5, 13])
+    shown("page.aim.set({aim: Math.PI / 4, speed: 1})")
+    shown.page.keyboard.press("Enter")
+    shown.until("page.moving")
+    assert not shown.page.is_visible("#over")
+    shown.played(1)
+    assert (
+        shown.page.inner_text("#over-who") == "Player 2 won the frame"
+        and shown.page.inner_text("#over-score") == "Player 1 12 : 13 Player 2"
+    )
+
+
+@pytest.mark.parametrize("noise", ["none", "club"])
+def test_the_odds_are_those_of_the_errors_of_the_persons_seat(shown, noise):
+    shown.set_up(EASY)
+    state = shown.line("api/players", {"noise": [noise, "professional"]})[1]
+    shown.until("page.settled === argument", state["revision"])
+    shown("page.aim.set({aim: argument, speed: 2})", STRAIGHT + 0.01)
+    found = shown.line("api/destinations", {"speed": 2.0, "aim": STRAIGHT + 0.01, "noise": noise})[1]
+    assert found["samples"] == (1 if noise == "none" else 500)
+    shown.until("page.advisor.found && !page.advisor.wait.busy")
+    assert shown("[page.advisor.found.samples, page.advisor.found.potted]") == [found["samples"], found["potted"]]
+    assert f"red: potted {100 * found['potted']:.0f} %" in shown.page.inner_text("#odds")
+    assert noise in shown.page.inner_text("#errors")
+    shown.page.click("#advise")
+    shown.until("page.advisor.list.length")
+    own = shown.line("api/advise", {"agent": shown.page.input_value("#agent"), "noise": noise})[1]["suggestions"]
+    assert shown("page.advisor.list.map(one => one.words)") == [one["words"] for one in own]
 
 
 def test_a_program_plays_and_the_page_shows_it(shown):
@@ -331,7 +452,7 @@ def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
     assert not shown.page.is_visible("#pockets")
     shown.page.click("#advise")
     shown.until("document.querySelectorAll('#advice button').length")
-    assert "order of preference" in shown.page.inner_text("#advice-order")
+    assert shown.page.inner_text("#advice-order") == "Pots by points expected:"
     assert "right is the lower side" in shown.page.inner_text("#advice-sides")
     assert "95 % interval" in shown.page.inner_text("#advice li:first-child")
     names = shown("[...document.querySelectorAll('#pockets span')].map(one => [one.textContent, one.offsetLeft, one.offsetTop])")

@@ -93,6 +93,43 @@ def test_a_stroke_is_played_and_described_as_in_a_replay(game):
     assert game.get("strokes")["strokes"] == [answer["stroke"]] and game.get("strokes", **{"from": 1})["strokes"] == []
 
 
+def test_a_stroke_brings_the_tables_before_and_after_it(game):
+    """After an agent's visit every table on the way is known, as the state would have said it then."""
+    before = game("position", position=EASY)
+    game("players", players=["person", "ghost_ball"], noise=["none", "none"])
+    own = game("stroke", speed=2.0, aim=STRAIGHT)
+    first, then = own["stroke"]["tables"]
+    assert first == {name: before[name] for name in first} | {"words": "Your stroke: red is on."}
+    assert then == {name: own["state"][name] for name in then} and (then["available"], then["ball_on"], then["reds"]) == (
+        28,
+        "any_colour",
+        1,
+    )
+    game("stroke", speed=0.5, aim=2.0)
+    waited(game, lambda s: not s["thinking"] and s["striker"] == 0)
+    state, strokes = game.get("state"), game.get("strokes")["strokes"]
+    assert len(strokes) >= 3
+    for k, stroke in enumerate(strokes):
+        here, after = stroke["tables"]
+        assert here["phase"] == "stroke" and here["striker"] == stroke["player"]
+        assert stroke["ball_on"] == ("free ball" if here["free_ball"] else here["ball_on"].replace("_", " "))
+        assert after["scores"] == stroke["score"] and stroke["words"] in after["last"]
+        assert not {f"red {ball}" for ball in stroke["pots"]} & set(after["positions"])
+        if k + 1 < len(strokes) and after["phase"] == "stroke":
+            assert strokes[k + 1]["tables"][0] == after
+    assert strokes[-1]["tables"][1] == {name: state[name] for name in after}
+
+
+def test_questions_are_answered_for_the_errors_of_the_seat(game):
+    game("position", position=EASY)
+    for noise, samples in (("club", 500), ("none", 1)):
+        game("players", noise=[noise, "professional"])
+        found = game("destinations", speed=2.0, aim=STRAIGHT + 0.01)
+        assert found["samples"] == samples and found == game("destinations", speed=2.0, aim=STRAIGHT + 0.01, noise=noise)
+        asked = game("advise", agent="ghost_ball", n=2)
+        assert asked == game("advise", agent="ghost_ball", n=2, noise=noise) and asked["order"] == "Pots by points expected:"
+
+
 def test_an_aim_may_be_given_by_a_pot_and_is_solved(game):
     game("position", position=EASY | {"cue": [0.1, 1.1]})
     assert game("stroke", speed=2.3, top=0.2, aim_at={"pot": ["red 1", "right top"]})["stroke"]["pots"] == [1]

@@ -154,7 +154,7 @@ def test_a_break_off_is_drawn_in_full_for_the_balls_that_matter():
 @pytest.mark.parametrize("table", ["pool9", "uk8", "carom", None, "wall", "rectangular"])
 def test_every_table_draws_as_itself(table):
     made = {
-        "wall": lambda: sn.Table("wall", np.array([(0, 1, 0.5, -1.0, 1.0)]), np.empty((0, 6)), np.empty((0, 3))),
+        "wall": lambda: sn.Table("wall", np.array([(0, 1, 0.5, -9.0, 9.0)]), np.empty((0, 6)), np.empty((0, 3))),
         "rectangular": lambda: sn.Table.rectangular(2.0, 1.0, name="small"),
     }
     table = made[table]() if table in made else sn.Table.of(table)

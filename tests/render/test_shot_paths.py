@@ -116,3 +116,4 @@ def test_a_shot_without_its_path_is_refused():
     env.reset(seed=1)
     env.step([0.0, 0.0, 0.0, 0.5])
     refused(lambda: shot_paths.paths(env.last_shot), "shot.segments", "none", "keep_history = True")
+    refused(lambda: env.last_shot.at(0.0), "shot.segments", "none", "keep_history = True")  # it crashed the interpreter

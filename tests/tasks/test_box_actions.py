@@ -173,9 +173,11 @@ def test_target_aim_of_nothing_pots_a_straight_ball():
     assert tried > 50 and astray > 0.8 * tried
 
 
-def test_target_aim_without_a_pot_is_at_the_nearest_ball_on():
+def test_target_aim_without_a_pot_is_at_the_middle_of_what_is_seen():
     env = SnookerEnv(aim="target")
-    table_state(env, {CUE: (0.0, 1.0), 1: (0.0, 1.7), 2: (0.1, 1.74)}, BallOn.RED)  # towards the top cushion: no pot there
+    table_state(env, {CUE: (0.0, 1.0), 1: (0.0, 1.7), BLACK: (0.05, 1.3)}, BallOn.RED)  # the black hides half of the red: no pot there
     assert len(pots(env.positions, env.on_table, env.on)) == 0
-    assert shot_of(env, [0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3] == pytest.approx(math.pi / 2, abs=1e-12)
-    assert shot_of(env, [0, 0, 0, -0.5], env.positions, env.on_table, env.on)[3] == pytest.approx(math.pi / 2 - TARGET_SPAN / 2)
+    left, edge = math.pi / 2 + math.asin(2 * R / 0.7), math.atan2(0.3, 0.05) + math.asin(2 * R / math.hypot(0.05, 0.3))
+    middle = 0.5 * (left + edge)
+    assert shot_of(env, [0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3] == pytest.approx(middle, abs=1e-12)
+    assert shot_of(env, [0, 0, 0, -0.5], env.positions, env.on_table, env.on)[3] == pytest.approx(middle - TARGET_SPAN / 2)

@@ -96,19 +96,12 @@ def test_masks_offer_the_pots_there_are():
         on = mask_of([1])  # the one red
         n = len(pots.pots(visits.positions[k], visits.on_table[k], on, most=POTS))
         counts.add(n)
-        assert masks[k].sum() == STROKES * max(1, n) and masks[k, : STROKES * max(1, n)].all()
+        if n:
+            assert masks[k].sum() == STROKES * n and masks[k, : STROKES * n].all()
+        else:  # other lines stand for them, see test_lines.py
+            lines = masks[k].reshape(POTS, STROKES)
+            assert lines[0].all() and (lines == lines[:, :1]).all()
     assert 0 in counts and len(counts) > 2
-
-
-def test_without_a_pot_the_nearest_ball_on_is_struck_full():
-    env = SnookerEnv(action="discrete", layout="snookered")
-    env.reset(seed=0)
-    positions, on_table = np.zeros((22, 2)), np.zeros(22, bool)
-    positions[0], positions[1], on_table[:2] = (0.0, 1.0), (0.0, 1.75), True  # at the middle of the end cushion: no pot
-    env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, :3] = positions, on_table, (1, 0, 0)
-    assert env.action_masks().sum() == STROKES
-    info = env.step(choice_of(0, 4, 1, 2))[4]
-    assert info["first_ball"] == 1 and env.last_shot.events["time"][0] > 0
 
 
 def test_it_passes_gymnasiums_checker():

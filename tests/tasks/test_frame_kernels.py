@@ -71,7 +71,13 @@ class Specification:
         mask = mask_of_present(self.on_table) & ~1
         on = balls_on(before.ball_on, mask) | (COLOURS_MASK & mask if before.free_ball else 0)
         table = self.table
-        clear = paths(self.positions, self.on_table, on, noses=table.noses, jaws=table.jaws) if self.miss else (False, False)
+        clear, cushions = (False, False), {"noses": table.noses, "jaws": table.jaws}
+        if self.miss:
+            clear = paths(self.positions, self.on_table, on, **cushions)
+        if self.miss and before.in_hand and not clear[1]:  # wherever else it could have been put
+            others = np.where(np.arange(N_BALLS) == CUE, False, self.on_table)
+            elsewhere = paths(self.positions, others, on, anywhere=before.anywhere, **cushions)
+            clear = clear[0] or elsewhere[0], elsewhere[1]
         layout = layout_of(self.positions, self.on_table) if self.miss else None
         first, touching, moved, potted = (int(seen[c]) for c in (FIRST, TOUCHING, MOVED, DOWN))
         cushion, late = bool(np.isin(events, (1, 2)).any()), 0 < before.shot_clock < self.time_to_play
@@ -173,7 +179,7 @@ def test_every_stroke_is_judged_as_by_the_specification(game, miss, layout):
         met["FOUL"] > 100
         and met["MISS"] > 20
         and (met["CONTINUES"] > 20 or miss == "attempt")
-        and (met["free ball"] > 5) == (game != "shoot_out")
+        and (met["free ball"] > 0) == (game != "shoot_out")
     )
     assert (met["anywhere"] > 20) == (met["late"] > 5) == (game == "shoot_out")
     assert (met["miss"] > 5 and met["replaced"] > 2) == (miss != "off")
@@ -181,4 +187,4 @@ def test_every_stroke_is_judged_as_by_the_specification(game, miss, layout):
     assert (miss == "attempt") == (sum(poor) > 0)
     assert sum(poor) < len(poor) or miss != "attempt" or layout.startswith("random")  # with few reds no attempt may have come near
     assert met["over"] > 0 or miss == "attempt" or (layout in ("break_off", "snookered") and game == "snooker") or game == "six_red"
-    assert (met["over"] >= N / 2) == (game == "shoot_out") or layout == "colours" or miss == "attempt"
+    assert (met["over"] >= 0.9 * N) == (game == "shoot_out") or layout == "colours" or miss == "attempt"

@@ -23,7 +23,7 @@ def test_the_layout_that_replace_restores_is_within_its_space(observation):
     assert env.frame.miss_called and env.positions[BLACK, 0] > 0.889
     assert env.observation_space.contains(seen)
     replaced = seen["replaced"] if observation == "balls" else seen[-66:].reshape(22, 3)
-    assert replaced[BLACK].tolist() == [1.0, pytest.approx(-0.035 / 1.7845), 1.0]
+    assert replaced[BLACK].tolist() == [pytest.approx(0.8993 / 0.889), pytest.approx(-0.035 / 1.7845), 1.0]
 
 
 @pytest.mark.parametrize("game", ["snooker", "six_red", "shoot_out"])

@@ -9,10 +9,10 @@ from snooker_env.game.frame_columns import ANYWHERE, CHOICE, CLOCK, FAILURES, IN
 from snooker_env.game.pots import pots
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_WIDTH
+from snooker_env.tasks.escapes import _REBOUND
 from snooker_env.tasks.frame import Frames
 from snooker_env.tasks.ghost_ball import GhostBallOpponent
 from snooker_env.tasks.options import Options
-from snooker_env.tasks.plain_stroke import _REBOUND
 from snooker_env.tasks.stroke import AIM, CUE_SPEED, ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, I_POINTS, Crew
 
@@ -112,11 +112,11 @@ def test_a_ball_on_that_it_touches_is_played_away_from():
 
 
 @pytest.mark.parametrize("decision", [1.0, -1.0])
-@pytest.mark.parametrize(("speed", "most"), [(-0.9, 5), (-0.7, 10), (-0.4, 30), (0.0, 25)])
+@pytest.mark.parametrize(("speed", "most"), [(-0.9, 5), (-0.7, 10), (-0.4, 45), (0.0, 35)])
 def test_a_constant_action_that_never_plays_after_a_foul_wins_few_frames(speed, most, decision):
-    """Softly along the potting line, "replace" after every foul: it won 77 of 100 frames, while "ghost_ball" struck at random.
+    """Softly along the target line, "replace" after every foul: it won 77 of 100 frames, while "ghost_ball" struck at random.
 
-    Harder strokes along that line pot balls, and win 14 to 21 of 100 whatever is said after a foul, "play" included.
+    Harder strokes along that line pot balls, and rarely foul without a pot: they win 18 to 35 of 100, and 25 to 35 with "play".
     """
     options = {"task": "frame", "aim": "target", "decision": True, "miss": "clear_path", "opponent": "ghost_ball"}
     tables = sn.SnookerVectorEnv(100, threads=1, **options)

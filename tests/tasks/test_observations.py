@@ -5,10 +5,10 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.game.balls import N_BALLS, BallOn
-from snooker_env.tasks import observations
+from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, BallOn
+from snooker_env.tasks import observations, table_fit
 from tests.refusals import refused
-from tests.tables import INFO, LAYOUTS, drawn, frame_env, viewed
+from tests.tables import INFO, LAYOUTS, drawn, frame_env, table_state, viewed
 
 
 @pytest.mark.parametrize("observation", observations.OBSERVATIONS)
@@ -124,3 +124,27 @@ def test_infos_have_the_same_keys_and_types_at_all_times():
             for k, v in info.items():
                 seen.setdefault(k, set()).add(v)
     assert all(len(values) > 1 for values in seen.values()), seen  # none of them is a constant
+
+
+@pytest.mark.parametrize(
+    ("place", "seen"), [((0.889 + 0.008, 0.033), (0.897 / 0.889, 0.033 / 1.7845)), ((-0.897, -0.033), (-0.897 / 0.889, -0.033 / 1.7845))]
+)
+def test_a_ball_at_rest_in_the_mouth_of_a_pocket_is_seen_where_it_lies(place, seen):
+    """Past the noses."""
+    for kind in ("flat", "balls"):
+        env = SnookerEnv(observation=kind)
+        table_state(env, {CUE: (0.0, 0.0), 1: place, BLACK: SPOTS[BLACK]}, BallOn.RED)
+        observation, _ = env.reset(options={"state": env.get_state()})
+        assert env.observation_space.contains(observation)
+        row = observation["balls"][1] if kind == "balls" else observation[5:10]
+        assert np.allclose(row[:2], seen, atol=1e-7, rtol=0) and abs(row[0]) > 1
+
+
+def test_a_table_with_deeper_mouths_than_observations_reach_is_refused(monkeypatch):
+    """On snooker's own table a ball can rest 11 mm past the noses."""
+    for reach, fits in ((1.014, True), (1.012, False)):
+        monkeypatch.setattr(table_fit, "REACH", reach)
+        if fits:
+            SnookerEnv(table="match")
+        else:
+            refused(lambda: SnookerEnv(table="match"), "table", "match", "past the noses, where observations end (one can 0.0117 m")

@@ -17,6 +17,7 @@ from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_POINTS, Crew
 from tests.bombs import bombed, edited, rezipped
 from tests.tables import PLACES, frame_env, frame_state
+from tests.torch_threads import deciding_on_one_thread
 
 
 def test_any_callable_may_play_and_sees_the_table_from_its_own_side():
@@ -170,7 +171,8 @@ def test_a_saved_model_that_sees_masks_may_play(tmp_path, own, nominate):
     numbers = made.observation_space["observations"].shape[0]
     seen = {"observations": rows["observations"][:, :numbers], "action_mask": rows["action_mask"][:, :size]}
     want = made.predict(seen, deterministic=True, action_masks=seen["action_mask"])[0]
-    assert np.array_equal(policy.many(rows, [None] * 5, rows["action_mask"].astype(bool)), want)
+    with deciding_on_one_thread(policy._network):
+        assert np.array_equal(policy.many(rows, [None] * 5, rows["action_mask"].astype(bool)), want)
     for _ in range(4):
         if env.step(int(env.action_masks().argmax()))[2]:
             env.reset()

@@ -1,0 +1,253 @@
+"""Over which cushions does the cue ball reach a ball on that it does not see? A quick search, and the aim of one stroke; kernels.
+
+Search. A cue ball that leaves a cushion slides along a curve before it rolls again, so a plain mirror image misses by up to 20 degrees.
+What becomes of a ball that rolls into a cushion depends on its angle alone, up to a scale: its velocity in proportion to that before, the
+length of its curve to the square of it. ``_REBOUND`` holds this, from shots in the simulator, for a ball struck ``ROLLING`` above its
+middle, where it rolls at once. The table holds for the physics "paper" at any speed and for "match" up to 2 m/s.
+
+Aim. Another speed, height or side of the strike turns the escape. So for a stroke the cue ball alone is played with the models of the
+engine, cloth and cushions, until it meets a ball, in directions about the one found, and is sent along the middle of those that succeed.
+"""
+
+from math import atan2, cos, hypot, pi, sin, sqrt
+
+import numpy as np
+
+from .._jit import kernel
+from ..game.balls import N_BALLS
+from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ..physics import cloth, cue, events
+from ..physics.columns import AXIS_X, AXIS_Y
+from ..physics.detection import boundary_event, pair_time
+from ..physics.impact.contact import FAST, collide_cushion, cushion_restitution
+from ..physics.parameters import P_R
+from .windows import met, turned
+
+ROLL = 0.25
+"""Twice a rolling ball's deceleration [m/s^2]."""
+ROLLING = 0.4
+"""Tip offset over R with which a ball rolls from the start."""
+LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH = range(4)
+"""Columns of a line of the cue ball: its direction and by how much it may err [rad]; the cue speed of an escape [m/s], 0 for what is seen;
+its worth among escapes."""
+
+_ANGLES = 9
+"""The rows of ``_REBOUND`` are 10 degrees apart."""
+_REBOUND = (
+    (0.583, 0.000, 0.1190, 0.0000), (0.574, 0.104, 0.1162, 0.0164), (0.552, 0.206, 0.1074, 0.0312), (0.519, 0.313, 0.0934, 0.0440),
+    (0.466, 0.444, 0.0756, 0.0563), (0.388, 0.583, 0.0555, 0.0645), (0.296, 0.714, 0.0350, 0.0643), (0.199, 0.831, 0.0171, 0.0535),
+    (0.099, 0.928, 0.0046, 0.0317), (0.000, 1.000, 0.0000, 0.0000),
+)  # fmt: skip
+"""A ball rolls into a cushion at speed v, at an angle of 0, 10, .. 90 degrees to its normal. When it rolls again: its velocity along the
+normal and along the cushion, over v, and how far it has come along each, over v^2 [s^2/m]."""
+_MOUTH = 0.12
+"""No cushion is used within this distance of a pocket's nominal place, along the cushion [m]."""
+_DIRECTIONS = 720
+_SPEEDS = (1.7, 2.8, 4.2)
+"""Cue speeds of an escape [m/s]: the next one is tried where the one before leaves no window of ``_WIDE``."""
+_WIDE = 4.0
+"""Number of directions of a window that is wide enough, after a deduction for cushions."""
+_LEGS = 4
+"""Most straight parts of an escape: one more than cushions."""
+_SAME = 0.1
+"""Escapes whose directions differ by less are one [rad]."""
+
+_BED = np.array([(axis, side, half, -9.0, 9.0) for axis, half in ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH)) for side in (-1.0, 1.0)])
+_NO_JAWS, _NO_FALLS = np.empty((0, 6)), np.empty((0, 3))
+for _constant in (_BED, _NO_JAWS, _NO_FALLS):
+    _constant.setflags(write=False)
+_CLEAR = (BALL_RADIUS - HALF_WIDTH, HALF_WIDTH - BALL_RADIUS, BALL_RADIUS - HALF_LENGTH, HALF_LENGTH - BALL_RADIUS)
+_STEP, _STEPS = 0.0087, (30, 75)
+"""Directions about an escape that are tried for a stroke: their distance [rad]; their number on either side, and if none succeeds."""
+_HALVINGS = 3
+"""How often that distance is halved to find where a window ends."""
+
+
+@kernel
+def _in_mouth(x, y, end):
+    """Whether the cue ball at (x, y) meets an end cushion (``end``) or a long one too near to a pocket."""
+    return abs(x) > HALF_WIDTH - _MOUTH if end else abs(y) > HALF_LENGTH - _MOUTH or abs(y) < _MOUTH
+
+
+@kernel
+def _rebound(cosine):
+    """The row of ``_REBOUND`` for the cosine of an angle to the cushion's normal, by linear interpolation."""
+    at = atan2(sqrt(max(0.0, 1.0 - cosine * cosine)), cosine) * 18.0 / pi
+    k = min(int(at), _ANGLES - 1)
+    s = at - k
+    low, high = _REBOUND[k], _REBOUND[k + 1]
+    return (
+        low[0] + s * (high[0] - low[0]), low[1] + s * (high[1] - low[1]),
+        low[2] + s * (high[2] - low[2]), low[3] + s * (high[3] - low[3]),
+    )  # fmt: skip
+
+
+@kernel
+def _reaches(positions, on_table, on, ux, uy, speed):
+    """Whether the cue ball, rolling along u, meets a ball on first: the worth of the direction, less for each cushion; 0 if it does not."""
+    x, y, v2 = positions[0, 0], positions[0, 1], speed * speed
+    width, length = HALF_WIDTH - BALL_RADIUS, HALF_LENGTH - BALL_RADIUS
+    worth = 1.0
+    for _ in range(_LEGS):
+        across = (width - x) / ux if ux > 0.0 else (-width - x) / ux if ux < 0.0 else 1e9
+        along = (length - y) / uy if uy > 0.0 else (-length - y) / uy if uy < 0.0 else 1e9
+        run = max(0.0, min(across, along))
+        stop = v2 / ROLL
+        ball = met(positions, on_table, x, y, ux, uy, min(run, 0.9 * stop))
+        if ball:
+            return worth if (on >> ball) & 1 else 0.0
+        if run >= stop:
+            return 0.0
+        x, y = x + run * ux, y + run * uy
+        v2 -= ROLL * run
+        end = along < across
+        if _in_mouth(x, y, end):
+            return 0.0
+        normal, tangent, away, past = _rebound(abs(uy) if end else abs(ux))
+        nx, ny = (0.0, -1.0 if uy > 0.0 else 1.0) if end else (-1.0 if ux > 0.0 else 1.0, 0.0)
+        tx, ty = (1.0 if ux > 0.0 else -1.0, 0.0) if end else (0.0, 1.0 if uy > 0.0 else -1.0)
+        dx, dy = v2 * (away * nx + past * tx), v2 * (away * ny + past * ty)
+        chord = hypot(dx, dy)
+        if abs(x + dx) > width or abs(y + dy) > length:
+            return 0.0
+        if chord > 1e-9:
+            ball = met(positions, on_table, x, y, dx / chord, dy / chord, chord)
+            if ball:
+                return 0.6 * worth if (on >> ball) & 1 else 0.0
+        x, y = x + dx, y + dy
+        ux, uy = normal * nx + tangent * tx, normal * ny + tangent * ty
+        left = hypot(ux, uy)
+        ux, uy = ux / left, uy / left
+        v2 *= left * left
+        worth *= 0.6
+    return 0.0
+
+
+@kernel
+def _keep(lines, first, count, aim, half, speed, worth):
+    """Insert an escape into the rows ``first`` to ``count`` of ``lines``, the best one first; returns the new ``count``."""
+    for k in range(first, count):
+        if abs(turned(lines[k, LINE_AIM] - aim)) < _SAME:
+            if lines[k, LINE_WORTH] >= worth:
+                return count
+            for after in range(k, count - 1):
+                for c in range(4):
+                    lines[after, c] = lines[after + 1, c]
+            count -= 1
+            break
+    at = count
+    while at > first and lines[at - 1, LINE_WORTH] < worth:
+        at -= 1
+    if at == lines.shape[0]:
+        return count
+    count = min(count + 1, lines.shape[0])
+    for k in range(count - 1, at, -1):
+        for c in range(4):
+            lines[k, c] = lines[k - 1, c]
+    lines[at, LINE_AIM], lines[at, LINE_ROOM], lines[at, LINE_SPEED], lines[at, LINE_WORTH] = turned(aim), half, speed, worth
+    return count
+
+
+@kernel
+def find_escapes(positions, on_table, on, lines, first):
+    """Write the escapes with the widest windows of directions into the rows of ``lines`` from ``first`` on; returns the rows in use."""
+    turn, count = 2.0 * pi / _DIRECTIONS, first
+    for s in range(len(_SPEEDS)):
+        begin = 0
+        while begin < _DIRECTIONS and _reaches(positions, on_table, on, cos(begin * turn), sin(begin * turn), _SPEEDS[s]) > 0.0:
+            begin += 1  # a window must not be cut in two where the directions begin
+        worth, run = 0.0, 0
+        for k in range(begin, begin + _DIRECTIONS + 1):
+            here = _reaches(positions, on_table, on, cos(k * turn), sin(k * turn), _SPEEDS[s])
+            if here > 0.0:
+                worth, run = worth + here, run + 1
+            elif run:
+                count = _keep(lines, first, count, (k - 0.5 * (run + 1)) * turn, 0.5 * run * turn, _SPEEDS[s], worth)
+                worth, run = 0.0, 0
+        if count > first and lines[first, LINE_WORTH] >= _WIDE:
+            break
+    return count
+
+
+@kernel(seconds=1, uses=(collide_cushion,))
+def _played(aim, speed, side, top, positions, on_table, phys, end_mass_ratio, motion, state, work):
+    """The ball that the cue ball meets first, sent in the direction ``aim``, by the models of the engine; 0: none, or a pocket first.
+
+    motion (2, cloth.COLUMNS), state (2,), work: work space. Cushion impacts are of the fidelity "fast".
+    """
+    R = phys[P_R]
+    (vx, vy, _), (wx, wy, wz) = cue.struck(speed, aim - cue.squirt(side, end_mass_ratio), side, top, 0.0, R, end_mass_ratio)
+    cloth.begin(motion, state, 0, 0.0, positions[0, 0], positions[0, 1], vx, vy, wx, wy, wz, phys)
+    legs, now = 1, 0.0
+    while state[0] > cloth.REST:
+        wall, kind, nose = boundary_event(motion, state, 0, _BED, _NO_JAWS, _NO_FALLS, _CLEAR, R)
+        ball, until = 0, min(wall, motion[0, cloth.T_END])
+        for i in range(1, N_BALLS):
+            x, y, d = positions[i, 0], positions[i, 1], 2.0 * R
+            if (
+                not on_table[i] or x + d < motion[0, cloth.LO_X] or x - d > motion[0, cloth.HI_X]
+                or y + d < motion[0, cloth.LO_Y] or y - d > motion[0, cloth.HI_Y]
+            ):  # fmt: skip
+                continue
+            cloth.begin(motion, state, 1, 0.0, x, y, 0.0, 0.0, 0.0, 0.0, 0.0, phys)
+            t = pair_time(motion, state, 0, 1, now, d)
+            if t <= until:
+                ball, until = i, t
+        if ball:
+            return ball
+        now = until
+        if kind == events.CUSHION and wall <= motion[0, cloth.T_END]:
+            (x, y), v, w = cloth.evaluate(motion, state, 0, wall, phys)
+            end = _BED[nose, 0] == AXIS_Y
+            if legs == _LEGS or _in_mouth(x, y, end):
+                return 0
+            nx, ny = (0.0, _BED[nose, 1]) if end else (_BED[nose, 1], 0.0)
+            e = cushion_restitution(v[0] * nx + v[1] * ny, phys)
+            v3, w, solved = collide_cushion((v[0], v[1], 0.0), w, nx, ny, phys, e, FAST, 0, work)
+            if not solved:
+                return 0
+            cloth.begin(motion, state, 0, wall, x, y, v3[0], v3[1], w[0], w[1], w[2], phys)
+            legs += 1
+        else:
+            cloth.next_phase(motion, state, 0, phys)
+    return 0
+
+
+@kernel(uses=(_played,))
+def _succeeds(aim, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+    """Whether the stroke meets a ball on first."""
+    ball = _played(aim, speed, side, top, positions, on_table, phys, end_mass_ratio, motion, state, work)
+    return ball > 0 and (on >> ball) & 1 != 0
+
+
+@kernel(uses=(_succeeds,))
+def escape_aim(about, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+    """Direction [rad] in which the stroke meets a ball on: the middle of the widest window about the direction ``about``.
+
+    Of equally wide windows it is the nearest one. It is sought farther away if there is none nearby, as with much side; if no direction
+    succeeds at all, it is ``about``.
+    """
+    best, low, high = 0.0, about, about
+    for steps in _STEPS:
+        run = 0
+        for k in range(-steps, steps + 2):
+            aim = about + k * _STEP
+            if k <= steps and _succeeds(aim, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+                run += 1
+            elif run:
+                worth = run - 0.01 * abs(k - 0.5 * (run + 1))
+                if worth > best:
+                    best, low, high = worth, aim - run * _STEP, aim - _STEP
+                run = 0
+        if best > 0.0:
+            break
+    if best == 0.0:
+        return about
+    step = _STEP
+    for _ in range(_HALVINGS):
+        step *= 0.5
+        if _succeeds(low - step, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+            low -= step
+        if _succeeds(high + step, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+            high += step
+    return 0.5 * (low + high)

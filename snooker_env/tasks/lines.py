@@ -1,0 +1,163 @@
+"""Along which lines may the cue ball be sent? To the direct pots; where there is none, to what it sees of the balls on, or over cushions.
+
+``action="discrete"`` chooses among up to ``POTS`` lines, and ``aim="target"`` is measured from the first. Without a direct pot they are,
+the best first:
+
+* at the start of a frame, thin at the end red of either side, as far as they are seen: the break-off;
+* the middle of the widest window of directions in which a ball on is met first, its two edges, thin, and the middles of other windows;
+* where hardly anything is seen, before these, escapes over cushions: the aim is then found for the stroke that is played.
+"""
+
+from math import atan2, cos, hypot, pi, sin
+
+from .._jit import kernel
+from ..game.balls import N_BALLS, N_REDS, SPOTS, touching_balls
+from ..game.pots import GHOST_X, GHOST_Y, count_pots, find_pots
+from ..geometry import BALL_RADIUS
+from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, escape_aim, find_escapes
+from .windows import HIGH, LOW, MOST_EDGES, half_width, met, open_windows, room, towards, turned
+
+POTS = 4
+"""Number of pots, or of other lines where there is no direct pot, to choose from."""
+LINE_ROWS = POTS + MOST_EDGES
+"""Rows of the work space of lines: up to ``POTS`` lines, then room for windows."""
+THIN = 0.62
+"""Of a thin contact: how far the path of the cue ball passes the centre of the ball, over 2 R."""
+EASY = 0.01
+"""Half a window that a player cannot miss [rad]."""
+NARROW = 0.25 * EASY
+"""Half a window below which an escape is better [rad]."""
+_SLIT = 1e-6
+"""Half a window that is none [rad]."""
+_APART = 2e-3
+"""Two lines differ by at least this [rad]."""
+
+
+@kernel
+def racked(positions, on_table):
+    """The end red of the last row if all balls stand as at the start of a frame, with 15 reds or 6; else 0."""
+    end = 0
+    for i in range(1, N_BALLS):
+        if on_table[i] and (abs(positions[i, 0] - SPOTS[i, 0]) > 1e-3 or abs(positions[i, 1] - SPOTS[i, 1]) > 1e-3):
+            return 0
+        if on_table[i] and i <= N_REDS:
+            end = i
+    return end if on_table[1] and on_table[end // 2] and (end == N_REDS or end == 6) else 0
+
+
+@kernel
+def thin_at_end(positions, end_red, sign):
+    """Direction of the cue ball that strikes the end red on the right (``sign`` 1) or left (-1) thinly on its outer side [rad]."""
+    dx, dy = sign * SPOTS[end_red, 0] - positions[0, 0], SPOTS[end_red, 1] - positions[0, 1]
+    return atan2(dy, dx) - sign * THIN * 2.0 * BALL_RADIUS / hypot(dx, dy)
+
+
+@kernel
+def nearest(positions, on_table, on):
+    """Direction to the nearest ball on, whatever lies before it [rad]; 0 if there is none."""
+    near, aim = 1e9, 0.0
+    for ball in range(1, N_BALLS):
+        far = hypot(positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1])
+        if on_table[ball] and (on >> ball) & 1 and far < near:
+            near, aim = far, towards(positions, ball)
+    return aim
+
+
+@kernel
+def _add(lines, count, aim, space):
+    """Append what is seen at ``aim``, unless it is there already or leaves no room for error; returns the number of lines."""
+    if count == POTS or space < _SLIT:
+        return count
+    for k in range(count):
+        if abs(turned(aim - lines[k, LINE_AIM])) < _APART:
+            return count
+    lines[count, LINE_AIM], lines[count, LINE_ROOM], lines[count, LINE_SPEED], lines[count, LINE_WORTH] = turned(aim), space, 0.0, 0.0
+    return count + 1
+
+
+@kernel
+def _seen(positions, on_table, lines, windows, many, count):
+    """Append the middle of the widest of ``many`` windows, a thin contact at either edge of it, and the middles of the other windows."""
+    x, y = positions[0, 0], positions[0, 1]
+    for k in range(many):
+        half = 0.5 * (windows[k, HIGH] - windows[k, LOW])
+        middle = windows[k, LOW] + half
+        count = _add(lines, count, middle, half)
+        if k > 0:
+            continue
+        for sign in (-1.0, 1.0):
+            edge = middle + sign * (half - _SLIT)
+            ball = met(positions, on_table, x, y, cos(edge), sin(edge), 1e9)
+            thin = (1.0 - THIN) * (half_width(positions, ball) if ball else 0.5 * pi)
+            if thin < 0.6 * half:
+                count = _add(lines, count, middle + sign * (half - thin), thin)
+    return count
+
+
+@kernel(uses=(find_escapes,))
+def find_lines(positions, on_table, on, found):
+    """Write up to ``POTS`` lines of a table without a direct pot, best first, into the first rows of ``found``; returns their number.
+
+    found (LINE_ROWS, POT_COLUMNS): columns ``LINE_AIM`` to ``LINE_WORTH``. There is one at least: if need be, at the nearest ball on.
+    """
+    lines, windows = found[:POTS], found[POTS:]
+    touching, end_red, count = touching_balls(positions, on_table), racked(positions, on_table), 0
+    many = open_windows(positions, on_table, on, touching, windows)
+    if end_red:
+        own = -1.0 if positions[0, 0] < 0.0 else 1.0
+        for sign in (own, -own):
+            aim = thin_at_end(positions, end_red, sign)
+            space = room(windows, many, aim)
+            count = _add(lines, count, aim, space if space > NARROW else 0.0)
+    if many == 0 or windows[0, HIGH] - windows[0, LOW] < 2.0 * NARROW:
+        count = find_escapes(positions, on_table, on & ~touching, lines, count)
+    count = _seen(positions, on_table, lines, windows, many, count)
+    if count == 0:  # nothing is known to succeed
+        lines[0, LINE_AIM], lines[0, LINE_ROOM] = nearest(positions, on_table, on), 0.0
+        lines[0, LINE_SPEED], lines[0, LINE_WORTH] = 1.0, 0.0
+    return max(1, count)
+
+
+@kernel
+def count_lines(positions, on_table, on, found):
+    """The number of lines to choose from, at least 1: direct pots or, if there is none, others. ``found``: work space (LINE_ROWS, ..)."""
+    many = count_pots(positions, on_table, on, BALL_RADIUS, POTS)
+    return many if many else find_lines(positions, on_table, on, found)
+
+
+@kernel
+def line_of(positions, on_table, on, found):
+    """Direction of the best line of the cue ball. An inner kernel.
+
+    Parameters
+    ----------
+    positions : float64 (22, 2)
+        Centres of the balls [m], the cue ball first.
+    on_table : bool (22,)
+        Which balls are on the table.
+    on : int
+        Mask of the balls that may be struck first, bit i for ball i.
+    found : float64 (LINE_ROWS, POT_COLUMNS)
+        Work space.
+
+    Returns
+    -------
+    float
+        Direction [rad], anticlockwise from +x: to the ghost ball of the widest direct pot; where there is none, the best of the lines of
+        ``action="discrete"``. Over cushions it is that of a rolling ball, which another stroke must correct.
+    """
+    if find_pots(positions, on_table, on, BALL_RADIUS, found[:1]):
+        return atan2(found[0, GHOST_Y] - positions[0, 1], found[0, GHOST_X] - positions[0, 0])
+    find_lines(positions, on_table, on, found)
+    return found[0, LINE_AIM]
+
+
+@kernel(uses=(escape_aim,))
+def aim_along(line, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+    """Direction [rad] in which a stroke leaves along a line of ``find_lines``, a row: where it is over cushions, found for the stroke.
+
+    motion (2, cloth.COLUMNS), state (2,), work: work space.
+    """
+    if line[LINE_SPEED] == 0.0:
+        return line[LINE_AIM]
+    return escape_aim(line[LINE_AIM], speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work)
