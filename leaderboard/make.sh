@@ -4,34 +4,38 @@
 #     leaderboard/make.sh                  # all that is missing
 #     leaderboard/make.sh ghost_ball       # only these agents
 #
-# Complete files are left as they are, incomplete ones are resumed; remove a file to play it again.
+# Complete files are left as they are, incomplete ones are resumed; remove a file to play it again. All files are checked: their strokes are
+# played again. Agents whose files are missing stand on the page as missing.
 set -u
 cd "$(dirname "$0")/.."
+shopt -s nullglob
 bench="python -m snooker_env.benchmark"
 wanted="$*"
+labels=()
 
-judge() {  # label, agent, all simulated shots of its training
+judge() {  # its name, all simulated shots of its training
+    labels+=("$1")
     if [ -n "$wanted" ] && ! [[ " $wanted " == *" $1 "* ]]; then return; fi
-    $bench run all --agent "$2" --label "$1" --training-shots "$3" --out leaderboard --resume
+    $bench run all --agent "$1" --training-shots "$2" --out leaderboard --resume
 }
 
-judge random random 0
-judge ghost_ball ghost_ball 0
-judge geometric geometric 0
-judge ppo_target ppo_target 1015808
-judge ppo_absolute ppo_absolute 507904
-judge ppo_mask ppo_mask 1015808
+judge random 0
+judge ghost_ball 0
+judge geometric 0
+judge ppo_target 1015808
+judge ppo_absolute 507904
+judge ppo_mask 1015808
 # A step simulates 120 shots for the view, and 1 that is played: 49,152 x 121. Each of 10,240 imitated positions 48 more: x 169.
-judge ppo_foresight ppo_foresight 7677952
-judge ppo_foresight_gamma0 ppo_foresight_gamma0 7677952
-# The same view, rated by a rule of thumb (agents/players/built_in.py); "lookahead" is the built-in player of snooker_env.advice.
-judge lookahead_foresight agents.players.built_in:ForesightRule 0
-judge lookahead lookahead 0
+judge ppo_foresight 7677952
+judge ppo_foresight_gamma0 7677952
+# The same view, rated by a rule of thumb; "lookahead" is the built-in player of snooker_env.advice.
+judge lookahead_foresight 0
+judge lookahead 0
 # The search over continuous strokes, and with what train.py learns: 153,600 positions x 64 simulated shots, 147,456 x 48 judged choices, PPO.
-judge best_pot best_pot 0
-judge lookahead_120 lookahead_120 0
-judge planner planner 18415616
-judge ppo_value ppo_value 18415616
-judge ppo_mask_finetuned ppo_mask_finetuned 26443776
+judge best_pot 0
+judge lookahead_120 0
+judge planner 18415616
+judge ppo_value 18415616
+judge ppo_mask_finetuned 26443776
 
-$bench check leaderboard/*.json && $bench table leaderboard/*.json --markdown docs/leaderboard.md
+$bench table leaderboard/*.json --markdown docs/leaderboard.md --awaited "${labels[@]}"

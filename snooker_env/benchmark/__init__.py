@@ -2,14 +2,14 @@
 
 from ..envs.at_frames import AtFrames
 from .agents import Agent
-from .checking import faults, replayed
+from .checking import afresh, faults, replayed
 from .counts import FIGURES, counts, figure
 from .figures import figures_of
 from .leaderboard import page
 from .models import FittingModel, ForeignModelPlayer
 from .playing import COLUMNS, PlayedEpisodes, play_episodes
 from .program import AgentError, ProgramPlayer
-from .provenance import commit, machine, processor, software
+from .provenance import arithmetic, commit, machine, processor, software
 from .results import budget_of, read_result, write_result
 from .rollouts import CENTURY, MAXIMUM, Strokes, play_visits, summary
 from .run import judge
@@ -19,8 +19,8 @@ from .tasks import FREE, HELD_OUT_SEED, TASKS, Task, most_points, tables_of, tas
 
 __all__ = [
     "CENTURY", "COLUMNS", "FIGURES", "FREE", "HELD_OUT_SEED", "MAXIMUM", "RESAMPLES", "TASKS", "Agent", "AgentError", "AtFrames",
-    "FittingModel", "ForeignModelPlayer", "PlayedEpisodes", "ProgramPlayer", "Resamples", "Strokes", "Task", "budget_of", "commit",
-    "counts", "faults", "faults_of_fields", "figure", "figures_of", "interval", "iqm", "judge", "machine", "most_points", "page",
-    "play_episodes", "play_visits", "processor", "read_result", "replayed", "software", "summary", "tables_of", "task_of", "unseen",
-    "write_result",
+    "FittingModel", "ForeignModelPlayer", "PlayedEpisodes", "ProgramPlayer", "Resamples", "Strokes", "Task", "afresh", "arithmetic",
+    "budget_of", "commit", "counts", "faults", "faults_of_fields", "figure", "figures_of", "interval", "iqm", "judge", "machine",
+    "most_points", "page", "play_episodes", "play_visits", "processor", "read_result", "replayed", "software", "summary",
+    "tables_of", "task_of", "unseen", "write_result",
 ]  # fmt: skip

@@ -5,18 +5,22 @@ import os
 import shlex
 import sys
 from collections.abc import Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+
+import numpy as np
 
 from .._check import integer, refuse
 from .._warmup import warmup
+from ..progress import Progress
 from .agents import Agent
-from .checking import faults, replayed
+from .checking import afresh, faults, replayed
 from .leaderboard import lines, page, profile, shown, text_table
 from .models import ForeignModelPlayer, options_of_words
 from .program import AgentError
 from .results import missing, read_result
 from .run import judge
-from .tasks import FREE, TASKS, task_of
+from .tasks import FREE, HELD_OUT_SEED, TASKS, task_of
 
 NAME = "python -m snooker_env.benchmark"
 
@@ -43,11 +47,13 @@ def parser() -> argparse.ArgumentParser:
     run.add_argument("--force", action="store_true", help="replace result files that are there")
     check = commands.add_parser("check", help="verify result files; exit code 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")
-    check.add_argument("--replay", type=int, metavar="N", help="play N episodes of the first file again and compare; needs --agent")
+    check.add_argument("--replay", type=int, metavar="N", help="have --agent play N episodes again: the same strokes?")
+    check.add_argument("--fresh", type=int, metavar="N", help="have --agent play N episodes on fresh seeds: the same mean?")
     _agent(check, required=False)
     table = commands.add_parser("table", help="print the leaderboard of result files")
-    table.add_argument("files", nargs="+", metavar="FILE")
+    table.add_argument("files", nargs="*", metavar="FILE")
     table.add_argument("--markdown", metavar="FILE", help="write it as a page")
+    table.add_argument("--awaited", nargs="+", default=[], metavar="LABEL", help="agents that the page names where their result is missing")
     shares = commands.add_parser("profile", help="print performance profiles of result files")
     shares.add_argument("files", nargs="+", metavar="FILE")
     return p
@@ -131,20 +137,28 @@ def _run(args, given):
     worst = 0
     for task, file in zip(tasks, files, strict=True):
         command = f"{NAME} {shlex.join(given)}"
-        found = judge(
-            task, agent, episodes=args.episodes, out=file, resume=args.resume, command=command, threads=args.threads, tick=_ticker(task)
-        )
+        with _speaking(task) as tick:
+            found = judge(
+                task, agent, episodes=args.episodes, out=file, resume=args.resume, command=command, threads=args.threads, tick=tick
+            )
         worst = max(worst, _said(found, task, file))
         if worst == 130:
             break
     return worst
 
 
-def _ticker(task):
-    """Says on a terminal how far it is."""
-    if not sys.stderr.isatty():
-        return None
-    return lambda n, total: print(f"\r{task.id}: {n} of {total} episodes", end="\n" if n == total else "", file=sys.stderr)
+@contextmanager
+def _speaking(task):
+    """A ``tick`` of ``judge`` that says how far it is."""
+    with ExitStack() as ending:
+        begun: list[Progress] = []
+
+        def tick(played, total):
+            if not begun:
+                begun.append(ending.enter_context(Progress(task.id, total, "episodes", done=played)))
+            begun[0].at(played)
+
+        yield tick
 
 
 def _said(found, task, file):
@@ -165,20 +179,22 @@ def _said(found, task, file):
 
 
 def _check(args, given):
-    if (args.replay is None) != (args.agent is None):
-        raise refuse("replay", args.replay, "must be given together with --agent")
+    asked = args.replay is not None or args.fresh is not None
+    if asked != (args.agent is not None):
+        raise refuse("agent", args.agent, "must be given with --replay or --fresh, and only then")
+    if asked and len(args.files) > 1:
+        raise refuse("files", args.files, "must be one file with --agent")
     wrong = False
-    for k, file in enumerate(args.files):
+    for file in args.files:
         try:
             found = read_result(file)
-            said = faults(found)
+            said = faults(found, args.threads)
         except ValueError as error:
             said = [str(error)]
         except OSError as error:
             said = [f"cannot be read: {error.strerror}"]
-        if not said and k == 0 and args.replay is not None:
-            agent = _agent_of(args, label=found["agent"]["label"])
-            said = replayed(found, agent, integer("replay", args.replay, 1, 2**20), args.threads)
+        if not said and asked:
+            said = _by_agent(args, found)
         for line in said:
             print(f"{file}: {line}")
         if not said:
@@ -186,6 +202,18 @@ def _check(args, given):
             print(f"{file}: {kind}, {found['agent']['label']} on {found['task']}, {len(found['rows']):,} episodes")
         wrong |= bool(said)
     return int(wrong)
+
+
+def _by_agent(args, found):
+    """What the agent itself says against its file."""
+    agent, said = _agent_of(args, label=found["agent"]["label"]), []
+    if args.replay is not None:
+        said = replayed(found, agent, integer("replay", args.replay, 1, 2**20), args.threads)
+    if args.fresh is not None and not said:
+        seed = int(np.random.default_rng().integers(2 * HELD_OUT_SEED, 2**31))
+        mean, error, said = afresh(found, agent, integer("fresh", args.fresh, 2, 2**20), seed, args.threads)
+        print(f"fresh seeds from {seed} on: {mean:.4g}, the file has {found['figures']['score']['value']:.4g}, +- {error:.2g} apart")
+    return said
 
 
 def _sound(files):
@@ -205,7 +233,7 @@ def _table(args, given):
     if args.markdown:
         from .._files import write_whole
 
-        write_whole(args.markdown, lambda path: path.write_text(page(results), encoding="utf-8"))
+        write_whole(args.markdown, lambda path: path.write_text(page(results, args.awaited), encoding="utf-8"))
         print(args.markdown)
         return 0
     print("\n".join(lines(results)))

@@ -2,7 +2,7 @@
 
 import importlib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -120,6 +120,8 @@ class Agent:
         label = label or _label(next(iter(sources)), kind)
         if not LABEL.fullmatch(label):
             raise refuse("label", label, "must be 1 to 20 letters, digits or . + - _: give --label")
+        if is_reserved(label, sources):
+            raise refuse("label", label, "must not be the name of another player: give --label")
         return cls(
             label=label, kind=kind, sources=sources, options=options or {}, trust=trust, timeout=timeout, training_shots=training_shots,
             shots_declared=shots_declared,
@@ -170,17 +172,60 @@ class Agent:
         return player_of(source, trust=self.trust)
 
 
-def _kind(source):
+def is_reserved(label: str, sources: Sequence[str]) -> bool:
+    """Whether that is the name of a built-in player, or of one of the repository, and these are not that player.
+
+    Parameters
+    ----------
+    label : str
+    sources : sequence of str
+
+    Returns
+    -------
+    bool
+    """
+    name = re.sub("[.+-]", "_", label.lower()).strip("_")  # what a reader would take for it
+    return (is_known(label) or is_known(name)) and list(sources) != [label]
+
+
+def plans(name: str) -> bool:
+    """Whether the built-in player, or that of the repository, with this name simulates shots when it decides.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    bool
+    """
+    return name not in ("random", "random_absolute", "ghost_ball") and (not name.startswith("ppo_") or "foresight" in name)
+
+
+def kind_by_name(source: str) -> str | None:
+    """The kind of an agent whose source is a name or a command; None if it may be a file, a class or an object.
+
+    Parameters
+    ----------
+    source : str
+
+    Returns
+    -------
+    str or None
+    """
     if source.startswith(PROGRAM):
         return "program"
-    if source in BUILT_IN:
-        return "built_in"
+    return "built_in" if source in BUILT_IN else "repository" if is_known(source) else None
+
+
+def _kind(source):
+    found = kind_by_name(source)
+    if found is not None:
+        return found
     if Path(source).exists():
         return "model"
     if OWN.fullmatch(source):
         return "class"
-    if is_known(source):
-        return "repository"
     known = ", ".join(names())
     raise refuse("agent", source, f'must be one of {known}, a .zip or run folder, MODULE:CLASS or program:"COMMAND"')
 

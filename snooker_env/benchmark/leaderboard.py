@@ -1,8 +1,10 @@
 """How are results compared? A leaderboard table for each task, and performance profiles, none wider than 100 columns."""
 
 from collections.abc import Iterable, Sequence
+from textwrap import wrap
 from typing import Any
 
+from .playing import COLUMNS
 from .tasks import TASKS, Task
 
 WIDTH = 100
@@ -102,7 +104,7 @@ def _row(r, task):
     agent, timing, figures = r["agent"], r["timing"], r["figures"]
     mark = "" if r["protocol"]["official"] else " *"
     shots = "?" if agent["simulated_shots"] is None else f"{agent['simulated_shots']:,.0f}{' d' if agent['declared'] else ''}"
-    ms = 1e3 * timing["seconds"] / timing["decisions"]
+    ms = 1e3 * timing["seconds"] / max(1, sum(row[COLUMNS.index("strokes")] for row in r["rows"]))
     alone = timing["one_table_ms"]
     score = shown(figures["score"], 1.0 if task.counts else 100.0)
     middle = "" if figures["iqm"] is None else f"{figures['iqm']['value']:.1f}"
@@ -165,20 +167,33 @@ LEGEND = (
 )
 
 
-def lines(results: Sequence[dict[str, Any]], *, markdown: bool = False) -> list[str]:
+TWO_PLAYERS = (
+    "Two players are called ghost_ball. In these tables it is the agent: one constant choice, the widest pot at one soft speed. The "
+    "opponent in the frames is another, a kernel that also breaks off, plays softly and escapes."
+)
+PROVED = (
+    "A result is its strokes: its file holds every one, and check plays each episode again from its seed and computes all figures anew. "
+    "What strokes cannot prove is who chose them: that no held-out seed was peeked at, the class and its simulated shots, the budget of "
+    "training, times and machines are the word of whoever made the file. Only random and ghost_ball are played again, too. To doubt a row, "
+    "let its agent play on fresh seeds: check FILE --agent AGENT --fresh 500."
+)
+AWAITED = "Rows made before results held their strokes proved nothing and have been taken down. They return as they are played anew."
+
+
+def lines(results: Sequence[dict[str, Any]], *, markdown: bool = False, awaited: Sequence[str] = ()) -> list[str]:
     """Leaderboard and profiles of all tasks that there are results of.
 
     Parameters
     ----------
     results : sequence of dict
     markdown : bool
+    awaited : sequence of str
+        Labels that are named where their result is missing.
 
     Returns
     -------
     list of str
     """
-    from textwrap import wrap
-
     made, table = [], markdown_table if markdown else text_table
 
     def safe(rows, label):
@@ -187,24 +202,30 @@ def lines(results: Sequence[dict[str, Any]], *, markdown: bool = False) -> list[
 
     for task in TASKS.values():
         head, rows = board(results, task)
-        if not rows:
+        there = {r["agent"]["label"] for r in results if r["task"] == task.id}
+        lacking = [label for label in awaited if label not in there]
+        if not rows and not lacking:
             continue
         title = f"{task.id}: {task.title}"
-        made += [f"## {title}" if markdown else title, "", f"Judged by {task.measure}, {task.episodes:,} episodes.", ""]
-        made += [*table(head, safe(rows, 1), 2), ""]
-        if task.counts:
+        made += [f"## {title}" if markdown else title, ""]
+        made += [*wrap(f"Judged by {task.measure}, {task.episodes:,} episodes. {task.note}", WIDTH), ""]
+        made += [*table(head, safe(rows, 1), 2), ""] if rows else []
+        made += [*wrap(f"Missing: {', '.join(lacking)}.", WIDTH), ""] if lacking else []
+        if task.counts and rows:
             shares = profile(results, task)
             made += ["Share of visits [%] with at least so many points:", "", *table(shares[0], safe(shares[1], 0)), ""]
-    return [*made, *wrap(LEGEND, WIDTH)]
+    return [*made, *wrap(LEGEND, WIDTH), "", *wrap(TWO_PLAYERS, WIDTH)]
 
 
-def page(results: Sequence[dict[str, Any]]) -> str:
+def page(results: Sequence[dict[str, Any]], awaited: Sequence[str] = ()) -> str:
     """The leaderboard as a Markdown page.
 
     Parameters
     ----------
     results : sequence of dict
         Results without faults, as ``read_result`` returns them.
+    awaited : sequence of str
+        Labels that are named where their result is missing.
 
     Returns
     -------
@@ -217,11 +238,12 @@ def page(results: Sequence[dict[str, Any]]) -> str:
     >>> page([]).splitlines()[0]
     '# Leaderboard'
     """
-    versions = sorted({r["software"]["snooker_env"] for r in results})
-    machines = sorted({f"{r['machine']['cpu']}, {r['machine']['cores']} cores" for r in results})
-    head = [
-        "# Leaderboard", "", "The rules are in [the benchmark](benchmark.md). This page is made by", "", "```console",
-        "$ python -m snooker_env.benchmark table leaderboard/*.json --markdown docs/leaderboard.md", "```", "",
-        f"with snooker_env {', '.join(map(plain, versions))}; machine: {'; '.join(map(plain, machines))}.", "",
-    ]  # fmt: skip
-    return "\n".join([*head, *lines(results, markdown=True)]) + "\n"
+    words = ["The rules are in [the benchmark](benchmark.md). This page is made by `leaderboard/make.sh`."]
+    if results:
+        versions = sorted({r["software"]["snooker_env"] for r in results})
+        machines = sorted({f"{r['machine']['cpu']}, {r['machine']['cores']} cores" for r in results})
+        words[0] += f" snooker_env {', '.join(map(plain, versions))}; machine: {'; '.join(map(plain, machines))}."
+    tables = lines(results, markdown=True, awaited=awaited)
+    words += [PROVED, *([AWAITED] if any(line.startswith("Missing: ") for line in tables) else [])]
+    head = [line for text in words for line in (*wrap(text, WIDTH), "")]
+    return "\n".join(["# Leaderboard", "", *head, *tables]) + "\n"

@@ -11,7 +11,7 @@ from .._types import Bools, ObservationKind
 from ..tasks.discrete_actions import Choices
 from ..tasks.observations import OBSERVATIONS, shaped, space
 from ..tasks.options import Options
-from ..tasks.saved_models import SavedModel, outline
+from ..tasks.saved_models import SavedModel, one_thread, outline
 from .tasks import FREE
 
 
@@ -179,7 +179,8 @@ class ForeignModelPlayer:
         actions = np.zeros(tables.action_space.shape, tables.action_space.dtype)
         shown = tables.action_masks()[going] if self._kind == "masked" else None
         seen = shaped(self._kind, observations[going], shown)
-        actions[going] = self._network.predict(seen, deterministic=True, **masks)[0]
+        with one_thread():
+            actions[going] = self._network.predict(seen, deterministic=True, **masks)[0]
         return actions
 
 

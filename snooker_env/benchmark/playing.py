@@ -3,14 +3,16 @@
 A player has ``options``, how it sees and acts (``FREE``), and ``act(tables, observations, going)``, an action for each table of a
 ``SnookerVectorEnv`` with flat observations. In a frame a player of visits sees the stroke to come as one of a visit (``AtFrames``); a
 player whose attribute ``frames`` is true gets the frames themselves. Episodes are played ``BATCH`` at a time, and a player that has a
-method ``begin(seed)`` is called before each batch: so the same episodes are played again alike, however many follow.
+method ``begin(seed)`` is called before each batch: so the same episodes are played again alike, however many follow. Box actions
+are rounded to float32, the type of the action space, before they are played: what is kept is what was played.
 """
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._check import choice, refuse, refuse_what
 from .._shots import simulated
@@ -18,6 +20,7 @@ from .._types import Floats, Ints
 from ..envs.at_frames import AtFrames
 from ..envs.vector import SnookerVectorEnv
 from .rollouts import play_visits
+from .strokes import Keeper
 from .tasks import FREE, Task
 
 BATCH = 100
@@ -34,6 +37,8 @@ class PlayedEpisodes:
     ----------
     rows : list of list of int
         One row for each episode, columns ``COLUMNS``.
+    strokes : list of numpy.ndarray
+        The strokes of each episode, one row each: uint16 choices, or float32 box actions.
     decisions : int
         Number of decisions of the player.
     seconds : float
@@ -49,9 +54,43 @@ class PlayedEpisodes:
     """
 
     rows: list[list[int]]
+    strokes: list[NDArray[Any]] = field(default_factory=list)
     decisions: int = 0
     seconds: float = 0.0
     simulated: int = 0
+
+    def add(self, more: "PlayedEpisodes") -> None:
+        """Add episodes that were played after these.
+
+        Parameters
+        ----------
+        more : PlayedEpisodes
+            The next episodes.
+
+        Returns
+        -------
+        None
+        """
+        self.rows += more.rows
+        self.strokes += more.strokes
+        self.decisions += more.decisions
+        self.seconds += more.seconds
+        self.simulated += more.simulated
+
+
+def begin(player: Any, batch: int) -> None:
+    """Have a player draw the random numbers of this batch, if it can.
+
+    Parameters
+    ----------
+    player : object
+    batch : int
+    """
+    inner = getattr(player, "player", player)
+    for one in (player, inner):
+        if callable(getattr(one, "begin", None)):
+            one.begin(batch)
+            return
 
 
 def check_player(player: Any, task: Task) -> None:
@@ -90,7 +129,7 @@ def play_episodes(task: Task, player: Any, seeds: list[int], run: int = 0, threa
     Returns
     -------
     PlayedEpisodes
-        The rows, and the time and simulated shots of the decisions.
+        The rows and strokes, and the time and simulated shots of the decisions.
 
     Examples
     --------
@@ -109,25 +148,26 @@ def play_episodes(task: Task, player: Any, seeds: list[int], run: int = 0, threa
 
 def _visits(task, player, seeds, run, threads):
     options = {**task.frozen, "layout": task.judged_layout}  # all of them: whatever a player's options say now, these hold
-    s = play_visits(player, len(seeds), first_seed=seeds, threads=threads, **options)
+    keeper = Keeper(player, len(seeds))
+    s = play_visits(keeper, len(seeds), first_seed=seeds, threads=threads, **options)
     points, pots, fouls = s.a_visit(s.points), s.a_visit(s.made), s.a_visit(s.foul)
     scores = {"points": points, "pots": pots, "legal": 1 - fouls}
     zeros = np.zeros(len(seeds))
     strokes, cleared = s.a_visit(np.ones(len(s.points))), s.a_visit(s.clears)
     columns = (zeros + run, seeds, scores[task.score], strokes, points, pots, fouls, cleared, zeros, zeros + 1)
-    return PlayedEpisodes(np.array(columns).T.astype(int).tolist(), len(s.points), s.decision_seconds, s.simulated)
+    return PlayedEpisodes(np.array(columns).T.astype(int).tolist(), keeper.strokes(), len(s.points), s.decision_seconds, s.simulated)
 
 
 def _frames(task, player, seeds, run, threads):
     n = len(seeds)
     tables = SnookerVectorEnv(n, task.judged(**player.options), threads=threads)
-    player = player if getattr(player, "frames", False) else AtFrames(player)
+    keeper = Keeper(player if getattr(player, "frames", False) else AtFrames(player), n)
     observations, _ = tables.reset(seed=seeds)
     going, ended, played = np.ones(n, bool), np.zeros(n, bool), PlayedEpisodes([])
     sums: dict[str, Floats] = {name: np.zeros(n) for name in ("strokes", "pots", "fouls")}
     last: dict[str, Ints] = {name: np.zeros(n, np.int64) for name in ("score", "opponent_score", "winner")}
     while going.any():
-        actions, asked = _decided(player, tables, observations, going, played)
+        actions, asked = _decided(keeper, tables, observations, going, played)
         observations, _, terminated, truncated, info = tables.step(actions)
         sums["strokes"] += asked
         sums["pots"] += asked & (info["points"] > 0)
@@ -143,7 +183,7 @@ def _frames(task, player, seeds, run, threads):
         zeros + run, seeds, won, sums["strokes"], last["score"], sums["pots"], sums["fouls"], zeros, last["opponent_score"], ended
     )  # fmt: skip
     tables.close()
-    played.rows = np.array(columns).T.astype(int).tolist()
+    played.rows, played.strokes = np.array(columns).T.astype(int).tolist(), keeper.strokes()
     return played
 
 

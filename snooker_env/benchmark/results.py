@@ -8,11 +8,11 @@ from typing import Any
 from .._files import write_whole
 from .agents import Agent
 from .figures import figures_of
-from .playing import BATCH, COLUMNS, PlayedEpisodes
-from .provenance import commit, machine, software
-from .schema import NAME, PROTOCOL, VERSION
-from .statistics import RESAMPLES
-from .tasks import HELD_OUT_SEED, Task
+from .playing import COLUMNS, PlayedEpisodes
+from .provenance import arithmetic, commit, machine, software
+from .schema import DATE, NAME, PROTOCOL, VERSION, line
+from .strokes import packed
+from .tasks import Task
 
 BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}
 """Training budgets [simulated shots]."""
@@ -133,12 +133,9 @@ def result_of(
     dict
     """
     shots, declared = simulated_shots(agent.kind, agent.shots_declared, played.simulated, played.decisions)
-    timed = one_table.decisions if one_table is not None else 0
     found: dict[str, Any] = {
         "schema": {"name": NAME, "version": VERSION},
-        "protocol": {
-            "version": PROTOCOL, "first_seed": HELD_OUT_SEED, "episodes": episodes, "resamples": RESAMPLES, "official": False,
-        },
+        "protocol": {"version": PROTOCOL, "episodes": episodes, "official": False},
         "task": task.id,
         "agent": {
             "label": agent.label, "kind": agent.kind, "sources": list(agent.sources), "options": options, "class": class_of(shots),
@@ -146,15 +143,14 @@ def result_of(
             "declared": declared,
         },
         "software": software(),
-        "machine": load | {"load_at_end": machine()["load"]},
+        "machine": load | {"load_at_end": machine()["load"], "arithmetic": arithmetic()},
         "timing": {
-            "decisions": played.decisions, "seconds": played.seconds, "simulated_shots": played.simulated,
-            "tables_at_once": agent.tables_at_once or BATCH,
-            "one_table_ms": 1e3 * one_table.seconds / timed if one_table is not None and timed else None, "one_table_decisions": timed,
+            "seconds": played.seconds, "simulated_shots": played.simulated,
+            "one_table_ms": 1e3 * one_table.seconds / one_table.decisions if one_table is not None and one_table.decisions else None,
         },
-        "command": command, "commit": commit(), "date": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "command": line(command), "commit": commit(), "date": datetime.now(timezone.utc).strftime(DATE),
         "columns": list(COLUMNS), "rows": played.rows, "figures": figures_of(task, agent.label, played.rows) if played.rows else None,
-        "incomplete": incomplete,
+        "incomplete": incomplete and line(incomplete), "strokes": packed(played.strokes),
     }  # fmt: skip
     found["protocol"]["official"] = not missing(found, task)
     return found
@@ -205,7 +201,7 @@ def read_result(path: str | Path) -> Any:
     Raises
     ------
     ValueError
-        If it is not JSON in UTF-8, or contains NaN or Infinity.
+        If it is not JSON in UTF-8, contains NaN or Infinity, or a key twice in one object.
     OSError
         If it cannot be read.
 
@@ -221,7 +217,14 @@ def read_result(path: str | Path) -> Any:
     def no_number(name):
         raise ValueError(f"{name} is no number of JSON")
 
+    def once(pairs):
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            names = [name for name, _ in pairs]
+            raise ValueError(f"the key {next(name for name in names if names.count(name) > 1)!r} stands there twice")
+        return found
+
     try:
-        return json.loads(Path(path).read_text(encoding="utf-8"), parse_constant=no_number)
+        return json.loads(Path(path).read_text(encoding="utf-8"), parse_constant=no_number, object_pairs_hook=once)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: must be JSON ({error})") from None

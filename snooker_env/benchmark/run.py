@@ -7,7 +7,8 @@ from typing import Any
 
 from .._check import refuse
 from .agents import Agent
-from .playing import BATCH, PlayedEpisodes, one_table, play_episodes
+from .checking import faults, strokes_of
+from .playing import BATCH, PlayedEpisodes, begin, one_table, play_episodes
 from .program import AgentError
 from .provenance import machine
 from .results import read_result, result_of, write_result
@@ -43,7 +44,7 @@ def judge(
     threads : int, optional
         As in ``SnookerVectorEnv``.
     tick : callable, optional
-        Called after each batch as ``tick(episodes played, episodes in all)``.
+        Called at the start and after each batch as ``tick(episodes played, episodes in all)``.
 
     Returns
     -------
@@ -66,29 +67,33 @@ def judge(
     """
     episodes = task.episodes if episodes is None else episodes
     seeds = task.seeds(episodes)
-    played, why, timed = PlayedEpisodes([]), None, None
+    played, why, timed, options = PlayedEpisodes([]), None, None, None
+    batch, total = agent.tables_at_once or BATCH, episodes * len(agent.sources)
+    parts = [(run, first, min(first + batch, episodes)) for run in range(len(agent.sources)) for first in range(0, episodes, batch)]
     if resume and out is not None and Path(out).exists():
-        kept, played = _kept(Path(out), task, agent, episodes)
+        kept, played = _kept(Path(out), task, agent, episodes, {0, *(run * episodes + end for run, _, end in parts)})
         if kept["incomplete"] is None:
             return kept
-    load, batch, options, saved = machine(), agent.tables_at_once or BATCH, {}, time.monotonic()
-    done = {(row[0], row[1]) for row in played.rows}
-    total = episodes * len(agent.sources)
+        options = kept["agent"]["options"] if kept["rows"] else None
+    load, saved = machine(), time.monotonic()
+    if tick is not None:
+        tick(len(played.rows), total)
 
     def result(why):
-        return result_of(task, agent, episodes, played, command=command, options=options, load=load, one_table=timed, incomplete=why)
+        return result_of(task, agent, episodes, played, command=command, options=options or {}, load=load, one_table=timed, incomplete=why)
 
     try:
         for run in range(len(agent.sources)):
             player = agent.player(task, run)
-            options = dict(player.options)
             try:
-                for first in range(0, episodes, batch):
-                    some = seeds[first : first + batch]
-                    if all((run, seed) in done for seed in some):
+                if options not in (None, dict(player.options)):
+                    raise refuse("options", dict(player.options), f"must be those of all training seeds: {options}")
+                options = dict(player.options)
+                for of, first, end in parts:
+                    if of != run or run * episodes + end <= len(played.rows):
                         continue
                     begin(player, first // batch)
-                    add(played, play_episodes(task, player, some, run, threads))
+                    played.add(play_episodes(task, player, seeds[first:end], run, threads))
                     if tick is not None:
                         tick(len(played.rows), total)
                     if out is not None and time.monotonic() - saved > SAVED:
@@ -116,43 +121,17 @@ def judge(
     return found
 
 
-def begin(player: Any, batch: int) -> None:
-    """Have a player draw the random numbers of this batch, if it can.
-
-    Parameters
-    ----------
-    player : object
-    batch : int
-    """
-    inner = getattr(player, "player", player)
-    for one in (player, inner):
-        if callable(getattr(one, "begin", None)):
-            one.begin(batch)
-            return
-
-
-def add(played: PlayedEpisodes, more: PlayedEpisodes) -> None:
-    """Add a batch to what was played.
-
-    Parameters
-    ----------
-    played, more : PlayedEpisodes
-    """
-    played.rows += more.rows
-    played.decisions += more.decisions
-    played.seconds += more.seconds
-    played.simulated += more.simulated
-
-
-def _kept(path, task, agent, episodes):
+def _kept(path, task, agent, episodes, ends):
     """A file of the same run, and what was played for it."""
     found = read_result(path)
-    try:
-        same = (found["task"], found["agent"]["label"], found["agent"]["sources"], found["protocol"]["episodes"])
-        timing = found["timing"]
-        played = PlayedEpisodes(found["rows"], timing["decisions"], timing["seconds"], timing["simulated_shots"])
-    except (KeyError, TypeError):
-        raise refuse("out", str(path), "must be a result to go on with") from None
+    said = faults(found)
+    if said:
+        raise refuse("out", str(path), f"must be a sound result to go on with ({said[0]})")
+    same = (found["task"], found["agent"]["label"], found["agent"]["sources"], found["protocol"]["episodes"])
     if same != (task.id, agent.label, list(agent.sources), episodes):
         raise refuse("out", str(path), f"must be a result of {agent.label} on {task.id} with {episodes} episodes to go on with")
-    return found, played
+    if len(found["rows"]) not in ends:
+        raise refuse("out", str(path), f"must hold whole batches to go on with, not {len(found['rows'])} episodes")
+    strokes = strokes_of(found)
+    timing, decisions = found["timing"], sum(map(len, strokes))
+    return found, PlayedEpisodes(found["rows"], strokes, decisions, timing["seconds"], timing["simulated_shots"])

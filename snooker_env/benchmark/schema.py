@@ -2,21 +2,23 @@
 
 import re
 from collections.abc import Mapping
-from datetime import datetime
+from datetime import datetime, timedelta, timezone
 from typing import Any
 
-NAME, VERSION = "snooker_env.benchmark.result", 1
+NAME, VERSION = "snooker_env.benchmark.result", 2
 PROTOCOL = 1
 """Version of the rules: tables, episodes, figures. Results of different versions are never put into one table."""
+PACKAGES = ("0.3.0.dev0",)
+"""Versions of the package whose results compare by these rules, the present one last."""
+BEGUN = "2026-11-21T00:00:00Z"
+"""No result is older than the project."""
 NUMBER = (int, float)
 
 FIELDS: dict[str, tuple[Any, bool, str]] = {
     "schema.name": (str, False, f'"{NAME}"'),
     "schema.version": (int, False, f"{VERSION}; another number means other fields"),
     "protocol.version": (int, False, f"{PROTOCOL}: version of the rules on this page"),
-    "protocol.first_seed": (int, False, "seed of the first judged table"),
     "protocol.episodes": (int, False, "episodes asked for, for each training seed"),
-    "protocol.resamples": (int, False, "bootstrap samples of the intervals"),
     "protocol.official": (bool, False, "whether the rules for a leaderboard entry are kept"),
     "task": (str, False, "id of the task, with its version"),
     "agent.label": (str, False, "the name in tables; 1 to 20 letters, digits or . + - _"),
@@ -41,12 +43,10 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "machine.cores": (int, False, "logical processors"),
     "machine.load": (NUMBER, True, "load average of the minute before the first episode"),
     "machine.load_at_end": (NUMBER, True, "load average of the minute before the last one ended"),
-    "timing.decisions": (int, False, "how often the agent decided"),
-    "timing.seconds": (NUMBER, False, "what that took together"),
-    "timing.simulated_shots": (int, False, "shots that this process simulated meanwhile"),
-    "timing.tables_at_once": (int, False, "episodes played side by side"),
+    "machine.arithmetic": (str, False, "digest of 128 strokes: machines with the same one play strokes alike, bit for bit"),
+    "timing.seconds": (NUMBER, False, "what all decisions took together"),
+    "timing.simulated_shots": (int, False, "shots that this process simulated for them"),
     "timing.one_table_ms": (NUMBER, True, "milliseconds a decision on one table, measured alone; null: not measured"),
-    "timing.one_table_decisions": (int, False, "how many decisions that is the mean of"),
     "command": (str, False, "how this file was made"),
     "commit": (str, True, "of the checkout, with -dirty if files were changed; null outside one"),
     "date": (str, False, "when, in UTC: 2026-11-22T19:00:00Z"),
@@ -54,27 +54,41 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "rows": (list, False, "one list of whole numbers for each episode, see below"),
     "figures": (dict, True, "what follows from the rows, see below; null: the runs are not complete"),
     "incomplete": (str, True, "why episodes are missing; null: none are"),
+    "strokes.sha256": (str, False, "digest of the strokes, against damage"),
+    "strokes.data": (str, False, "every stroke that was played, see below"),
 }
 """Dotted name: type, whether it may be null, meaning."""
+UNPROVED = (
+    "agent.label", "agent.kind", "agent.sources", "agent.training_shots", "agent.simulated_shots", "agent.declared",
+    *(f"software.{name}" for name in ("python", "numpy", "numba", "gymnasium", "torch", "stable_baselines3", "sb3_contrib")),
+    "machine.platform", "machine.cpu", "machine.cores", "machine.load", "machine.load_at_end", "machine.arithmetic",
+    "timing.seconds", "timing.simulated_shots", "timing.one_table_ms", "command", "commit", "date", "incomplete",
+)  # fmt: skip
+"""Fields that a replay cannot prove: their form is checked, and that they fit the others. Class and budget follow from them."""
 
-LABEL = re.compile(r"[\w.+-]{1,20}")
+LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")
 MOST_WHOLE = 2**53
 """Whole numbers up to here are exact in every reader of JSON."""
 _COUNT, _AMOUNT = (0, MOST_WHOLE), (0.0, 1e12)
 RANGES: dict[str, tuple[float, float]] = {
-    "schema.version": _COUNT, "protocol.version": _COUNT, "protocol.first_seed": _COUNT, "protocol.episodes": (1, 2**20),
-    "protocol.resamples": _COUNT, "agent.training_shots": _COUNT, "agent.simulated_shots": (0, MOST_WHOLE), "machine.cores": (1, 2**20),
-    "machine.load": _AMOUNT, "machine.load_at_end": _AMOUNT, "timing.decisions": _COUNT, "timing.seconds": _AMOUNT,
-    "timing.simulated_shots": _COUNT, "timing.tables_at_once": (1, 2**20), "timing.one_table_ms": _AMOUNT,
-    "timing.one_table_decisions": _COUNT,
+    "schema.version": _COUNT, "protocol.version": _COUNT, "protocol.episodes": (1, 2**20), "agent.training_shots": _COUNT,
+    "agent.simulated_shots": (0, MOST_WHOLE), "machine.cores": (1, 2**20), "machine.load": _AMOUNT, "machine.load_at_end": _AMOUNT,
+    "timing.seconds": _AMOUNT, "timing.simulated_shots": _COUNT, "timing.one_table_ms": _AMOUNT,
 }  # fmt: skip
 """Lowest and highest value of every field that is a number."""
+_LINE = re.compile(r"[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]{1,200}"), "one line of at most 200 characters"
+LONG_LINE = re.compile(r"[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]{0,2000}"), "one line of at most 2,000 characters"
+MOST_SOURCES = 100
+"""Training seeds of one result."""
 VERSION_TEXT = re.compile(r"[\w.+!-]{1,60}")
-PATTERNS = {
+PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
     "agent.label": (LABEL, "1 to 20 letters, digits or . + - _"),
     **{name: (VERSION_TEXT, "a version") for name in FIELDS if name.startswith("software.")},
-    "machine.platform": (re.compile(r"[^\x00-\x1f\x7f-\x9f\u2028\u2029]{1,200}"), "one line of at most 200 characters"),
-    "machine.cpu": (re.compile(r"[^\x00-\x1f\x7f-\x9f\u2028\u2029]{1,200}"), "one line of at most 200 characters"),
+    "machine.platform": _LINE,
+    "machine.cpu": _LINE,
+    "command": LONG_LINE,
+    "incomplete": LONG_LINE,
+    "machine.arithmetic": (re.compile("[0-9a-f]{16}"), "16 hexadecimal digits"),
     "commit": (re.compile(r"[0-9a-f]{7,64}(-dirty)?"), "a commit's hash, with -dirty if files were changed"),
 }
 """Texts that must have a form."""
@@ -143,12 +157,14 @@ def _words(kind):
 def _faults_of_value(name, value, ranges):
     """What is wrong with the value of a field that has the right type."""
     what = None
-    if name in ranges and not ranges[name][0] <= value <= ranges[name][1]:
+    if name in ranges and not (ranges[name][0] <= value <= ranges[name][1] and str(value) != "-0.0"):
         what = f"between {ranges[name][0]:g} and {ranges[name][1]:g}"
     elif name in PATTERNS and not PATTERNS[name][0].fullmatch(value):
         what = PATTERNS[name][1]
     elif name == "date" and not _is_date(value):
         what = "a time in UTC, as 2026-11-22T19:00:00Z"
+    elif name == "date" and not BEGUN <= value <= (datetime.now(timezone.utc) + timedelta(hours=1)).strftime(DATE):
+        what = f"between {BEGUN} and now"
     return [] if what is None else [f"{name} = {shortened(value)}: must be {what}"]
 
 
@@ -160,6 +176,20 @@ def _is_date(text):
 
 
 DATE = "%Y-%m-%dT%H:%M:%SZ"
+
+
+def line(text: str) -> str:
+    """A text as one line that a result file may hold.
+
+    Parameters
+    ----------
+    text : str
+
+    Returns
+    -------
+    str
+    """
+    return re.sub(LONG_LINE[0].pattern.partition("]")[0].replace("[^", "[") + "]+", " ", text)[:2000]
 
 
 def shortened(value: Any) -> str:

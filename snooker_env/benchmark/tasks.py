@@ -46,6 +46,8 @@ class Task:
         Number of episodes of an official result for each training seed.
     thresholds : tuple of int
         Scores of the performance profile, which is the share of episodes with at least each of these scores.
+    note : str
+        What a reader of its table should know; empty: nothing.
 
     Examples
     --------
@@ -63,6 +65,7 @@ class Task:
     measure: str
     episodes: int
     thresholds: tuple[int, ...] = (1,)
+    note: str = ""
 
     def options(self, **free: Any) -> Options:
         """The options of the task as it is trained.
@@ -134,7 +137,7 @@ class Task:
         return self.changes.get("task") == "frame"
 
     def seeds(self, n: int) -> list[int]:
-        """The seeds of the first judged tables, by ``tables_of``.
+        """The seeds of the first judged tables, by ``tables_of``; of frames, which all begin with the same rack, those of the errors.
 
         Parameters
         ----------
@@ -151,7 +154,8 @@ class Task:
         ValueError
             If ``n`` is out of range, or the layout has fewer tables.
         """
-        return tables_of(self.judged_layout, integer("episodes", n, 1, 2**20))
+        integer("episodes", n, 1, 2**20)
+        return list(range(HELD_OUT_SEED, HELD_OUT_SEED + n)) if self.frame else tables_of(self.judged_layout, n)
 
     @property
     def most(self) -> int:
@@ -162,6 +166,11 @@ class Task:
 _USUAL = {f.name: f.default for f in fields(Options) if f.init}
 _BREAK = (1, 10, 25, 50, 75, 100, 147)
 _PROFESSIONAL = {"noise": "professional"}
+_ESCAPE = "The stroke of the built-in opponent ghost_ball escapes from 97.7 % of these tables: a share below that is no achievement."
+_FRAME = (
+    "A constant choice wins 84.5 % of these frames: the widest pot at 2.3 m/s with a little top, whatever lies on the table. A share near "
+    "that shows no skill."
+)
 
 
 def _task(name: str, **given: Any) -> Task:
@@ -194,13 +203,13 @@ TASKS: dict[str, Task] = {
         _task(
             "SnookerEscape-v0", title="one stroke out of a snooker, without a foul",
             changes={"layout": "snookered", "reward": "legal", "one_stroke": True} | _PROFESSIONAL,
-            judged_layout="snookered", score="legal", measure="share of escapes", episodes=1000,
+            judged_layout="snookered", score="legal", measure="share of escapes", episodes=1000, note=_ESCAPE,
         ),
         _task(
             "SnookerFrame-v0", title="win a frame against ghost_ball",
             changes={"task": "frame", "layout": "break_off", "opponent": "ghost_ball", "reward": "win"}
             | _PROFESSIONAL,
-            judged_layout="break_off", score="won", measure="share of frames won", episodes=200,
+            judged_layout="break_off", score="won", measure="share of frames won", episodes=200, note=_FRAME,
         ),
     )
 }  # fmt: skip

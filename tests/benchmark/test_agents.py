@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from snooker_env.benchmark import TASKS, Agent, AgentError, faults, judge, read_result
+from snooker_env.benchmark import TASKS, Agent, AgentError, faults, figures_of, judge, read_result, write_result
 from snooker_env.benchmark.__main__ import main
+from snooker_env.benchmark.checking import strokes_of
 from snooker_env.benchmark.playing import BATCH
+from snooker_env.benchmark.strokes import packed
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE = f"program:{sys.executable} {ROOT / 'examples/program_player.py'}"
@@ -66,10 +68,39 @@ def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tm
     out = tmp_path / "one.json"
     arguments = ["run", "SnookerEscape-v0", "--agent", program(tmp_path, body), "--episodes", "6", "--out", str(out), "--timeout", "3"]
     assert main([*arguments, "--training-shots", "0", "--simulated-shots", "0"]) == 1
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and why in error and error.endswith("(after 3 of 6 episodes)\n")
+    *said, error = capsys.readouterr().err.splitlines()
+    assert why in error and error.endswith("(after 3 of 6 episodes)")
+    assert said[0] == "SnookerEscape-v0: 0 of 6 episodes" and said[-1].startswith("SnookerEscape-v0: 3 of 6 episodes, ")
     found = read_result(out)
     assert len(found["rows"]) == 3 and why in found["incomplete"] and faults(found) == [] and not found["protocol"]["official"]
+
+
+def test_a_result_is_resumed_by_whole_batches_with_the_same_options(tmp_path):
+    out, task = tmp_path / "one.json", TASKS["SnookerPotHard-v0"]
+    made = iter([{"action": "discrete"}, {"action": "discrete"}, {"aim": "target"}])
+
+    class Still:
+        def __init__(self):
+            self.options = next(made)
+
+        def act(self, tables, observations, going):
+            return np.zeros(tables.action_space.shape, tables.action_space.dtype)
+
+    agent = Agent(label="still", kind="object", sources=("here",), maker=Still, training_shots=0)
+    whole = judge(task, agent, episodes=BATCH + 30)
+    for many, why in (
+        (BATCH - 1, "must hold whole batches to go on with, not 99 episodes"),
+        (BATCH, "must be those of all training seeds"),
+    ):
+        rows, strokes = whole["rows"][:many], packed(strokes_of(whole)[:many])
+        figures = figures_of(task, "still", rows)
+        part = whole | {"rows": rows, "strokes": strokes, "figures": figures, "incomplete": "stopped"}
+        write_result(out, part)
+        if many == BATCH:
+            assert len(judge(task, agent, episodes=BATCH + 30, out=out, resume=True)["rows"]) == BATCH + 30
+            write_result(out, part)
+        with pytest.raises(ValueError, match=why):
+            judge(task, agent, episodes=BATCH + 30, out=out, resume=True)
 
 
 def test_a_program_that_is_not_there(capsys):
@@ -122,10 +153,18 @@ def test_ctrl_c_keeps_what_was_played_and_it_can_be_resumed(tmp_path, capsys):
     assert main([*arguments, "--resume"]) == 0
     whole = read_result(out)
     assert whole["incomplete"] is None and len(whole["rows"]) == 2 * BATCH + 30 and faults(whole) == []
-    assert whole["rows"][: 2 * BATCH] == found["rows"] and whole["timing"]["decisions"] == 2 * BATCH + 30
+    assert whole["rows"][: 2 * BATCH] == found["rows"] and len(strokes_of(whole)) == 2 * BATCH + 30
     assert main([*arguments, "--resume"]) == 0 and read_result(out) == whole  # left as it is
     assert main(arguments) == 2 and "must be a new file" in capsys.readouterr().err and read_result(out) == whole
     assert main([*arguments, "--force"]) == 0 and read_result(out)["rows"] == whole["rows"]
+    forged = found | {"rows": [[*row[:2], 1, 1, 1, 1, 0, 1, 0, 1] for row in found["rows"]]}
+    for part, why in (
+        (forged, "must be a sound result to go on with (rows["),
+        ({"rows": []}, "must be a sound result to go on with (schema"),
+    ):
+        write_result(tmp_path / "part.json", part)
+        assert main([*arguments[:-4], "--out", str(tmp_path / "part.json"), "--training-shots", "0", "--resume"]) == 2
+        assert why in capsys.readouterr().err and read_result(tmp_path / "part.json") == part
     wrong = [*arguments, "--resume", "--label", "other"]
     assert main(wrong) == 2 and "must be a result of other on SnookerPotHard-v0" in capsys.readouterr().err
 
@@ -138,6 +177,7 @@ def test_wrong_agents_are_refused_in_one_line(tmp_path, capsys):
         ("program:", "must name a program"),
         ('program:"cat', """agent = 'program:"cat': must be a command line (No closing quotation)"""),
         ("a=train.py,train.py", "must be different models"),
+        ("ppo_mask=train.py", "label = 'ppo_mask': must not be the name of another player: give --label"),
         (str(tmp_path / "no.zip"), "must be one of"),
     ):
         assert main(["run", "SnookerEscape-v0", "--agent", agent, "--episodes", "4"]) == 2

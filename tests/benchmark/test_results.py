@@ -2,7 +2,6 @@
 
 import copy
 import json
-import shutil
 
 import numpy as np
 import pytest
@@ -23,7 +22,6 @@ from snooker_env.benchmark import (
     play_episodes,
     read_result,
     unseen,
-    write_result,
 )
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.leaderboard import LEGEND, lines
@@ -52,9 +50,9 @@ def test_what_is_written_is_sound(made, name):
     assert faults(found) == []
     assert found["protocol"]["official"] is False and found["incomplete"] is None and found["agent"]["class"] == "model_free"
     assert [row[1] for row in found["rows"]] == TASKS[name].seeds(len(found["rows"]))
-    assert found["timing"]["one_table_decisions"] > 0 and found["timing"]["one_table_ms"] > 0
+    assert found["timing"]["one_table_ms"] > 0
     written = (made / f"{name}.json").read_text(encoding="utf-8")
-    assert json.loads(written) == found and max(map(len, written.splitlines())) < 140
+    assert json.loads(written) == found and max(len(line) for line in written.splitlines() if '"data"' not in line) < 140
 
 
 def test_rows_are_the_visits_that_the_environment_plays(made):
@@ -114,24 +112,24 @@ def changed(found, path, value):
 TAMPERED = [
     (("figures", "score", "value"), 99.0, "figures.score.value = 99.0: must be "),
     (("figures", "profile", 1, "high"), 0.9, "figures.profile[1].high = 0.9: must be "),
+    (("figures", "by_run"), [1.0, 2.0], "figures.by_run = [1.0, 2.0]: must be "),
     (("rows", 3, 2), 147, "rows[3].score = 147: must be "),
-    (("rows", 3, 4), 147, "rows[3].points = 147: must be possible with these pots"),
+    (("rows", 3, 4), 147, "rows[3].points = 147: must be "),
     (("rows", 5, 1), HELD_OUT_SEED + 999, f"rows[5]: run 0, table {HELD_OUT_SEED + 999}: must be run 0, table "),
     (("rows", 5, 1), HELD_OUT_SEED, "rows[5]: run 0, table 1000000: must be run 0, table 1000005"),
-    (("rows", 2, 3), 1000, "rows[2].strokes = 1000: must be the pots, and the stroke"),
+    (("rows", 2, 3), 1001, "rows[2].strokes = 1001: must be between 0 and 1000"),
     (("rows", 2), [1, 2], "rows[2] = [1, 2]: must be 10 whole numbers"),
-    (("rows", 2, 6), 2, "rows[2].fouls = 2: must be 0 or 1"),
-    (("protocol", "episodes"), 25, "rows: must be 25 episodes (1 x 25), not 24"),
+    (("rows", 2, 6), 2, "rows[2].fouls = 2: must be "),
+    (("protocol", "episodes"), 25, "rows: must be 25 episodes, 25 for each training seed, not 24"),
     (("protocol", "version"), 7, "protocol.version = 7: must be 1"),
     (("protocol", "official"), True, "protocol.official = True: must be False by the rules"),
     (("task",), "SnookerBreak-v1", "task = 'SnookerBreak-v1': must be one of SnookerBreak-v0"),
     (("agent", "class"), "planning", "agent.class = 'planning': must be 'model_free' by agent.simulated_shots"),
     (("agent", "budget"), "1M", "agent.budget = '1M': must be 'none' by agent.training_shots"),
-    (("timing", "simulated_shots"), 10**6, "agent.simulated_shots = 0: must be at least "),
-    (("timing", "decisions"), 1, "timing.decisions: must be at least the strokes of all rows"),
+    (("timing", "simulated_shots"), 10**6, "agent.simulated_shots = 0.0, counted: must be "),
     (("software", "numpy"), 2, "software.numpy = 2: must be a text or null"),
-    (("machine", "colour"), 2, "machine.colour: is no field of version 1"),
-    (("extra",), 2, "extra: is no field of version 1"),
+    (("machine", "colour"), 2, "machine.colour: is no field of version 2"),
+    (("extra",), 2, "extra: is no field of version 2"),
     (("incomplete",), False, "incomplete = False: must be a text or null"),
 ]
 
@@ -153,31 +151,6 @@ def test_a_missing_field_is_named(made, field):
     assert f"{field}: is missing" in faults(found)
 
 
-def test_points_that_add_up_are_found_by_the_figures_alone(made):
-    """A row made better in every column that hangs together: only the figures show it, unless they are made again, too."""
-    found = result(made)
-    row = found["rows"][0]
-    row[2], row[4], row[5], row[3] = row[2] + 7, row[4] + 7, row[5] + 1, row[3] + 1
-    found["timing"]["decisions"] += 1
-    assert faults(found) and all(line.startswith("figures") for line in faults(found))
-
-
-def test_replay_finds_what_the_figures_cannot(made, capsys, tmp_path):
-    file = tmp_path / "one.json"
-    shutil.copy(made / "SnookerColours-v0.json", file)
-    arguments = ["check", str(file), "--replay", "5", "--agent", "ghost_ball"]
-    assert main(arguments) == 0
-    found = read_result(file)
-    row = found["rows"][0]
-    row[2], row[4], row[5], row[3] = 2, 2, 1, 2 if row[4] != 2 else 9
-    found["timing"]["decisions"] += 30
-    found["figures"] = figures_of(TASKS[found["task"]], "ghost_ball", found["rows"])
-    write_result(file, found)
-    if faults(found) == []:
-        assert main(arguments) == 1
-        assert f"table {row[1]}: played again" in capsys.readouterr().out
-
-
 def test_simulated_shots_are_counted():
     class Thinks:
         """Plays 7 shots on copies of each table before each stroke, 3 more by ``simulate``, and one batch of 5."""
@@ -195,10 +168,10 @@ def test_simulated_shots_are_counted():
 
     agent = Agent(label="thinks", kind="object", sources=("here",), maker=Thinks, training_shots=40_000)
     found = judge(TASKS["SnookerPotHard-v0"], agent, episodes=9)
-    assert found["timing"]["decisions"] == 9 and found["timing"]["simulated_shots"] == 9 * 15
+    assert sum(row[3] for row in found["rows"]) == 9 and found["timing"]["simulated_shots"] == 9 * 15
     assert (found["agent"]["simulated_shots"], found["agent"]["class"], found["agent"]["budget"]) == (15.0, "planning", "50k")
     frames = judge(TASKS["SnookerFrame-v0"], agent, episodes=1)  # the opponent's strokes and the agent's own are not counted
-    assert frames["timing"]["simulated_shots"] == 15 * frames["timing"]["decisions"] > 15
+    assert frames["timing"]["simulated_shots"] == 15 * sum(row[3] for row in frames["rows"]) > 15
     assert faults(found) == faults(frames) == []
 
 
@@ -248,7 +221,7 @@ def test_tables_fit_100_columns(made, capsys):
             if figure is not None:
                 figure.update(value=130.0, low=120.0, high=140.0)
         one["figures"]["best"] = 147
-        one["timing"]["seconds"], one["timing"]["one_table_ms"] = 99.9 * one["timing"]["decisions"], 99999.0
+        one["timing"]["seconds"], one["timing"]["one_table_ms"] = 99.9 * sum(row[3] for row in one["rows"]), 99999.0
     assert max(map(len, lines(results))) <= 100
     assert main(["profile", *files]) == 0 and max(map(len, capsys.readouterr().out.splitlines())) <= 100
     assert main(["tasks"]) == 0 and max(map(len, capsys.readouterr().out.splitlines())) <= 100

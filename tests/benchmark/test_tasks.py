@@ -3,6 +3,8 @@
 import dataclasses
 import json
 import multiprocessing
+import re
+from pathlib import Path
 
 import gymnasium
 import numpy as np
@@ -14,11 +16,17 @@ import snooker_env as sn
 from snooker_env._registration import ENTRY_POINTS, ID
 from snooker_env.benchmark import COLUMNS, FREE, HELD_OUT_SEED, TASKS, play_episodes, tables_of, task_of
 from snooker_env.benchmark.playing import one_table
+from snooker_env.benchmark.strokes import Repeater
 from snooker_env.game import layout
-from snooker_env.tasks import OBSERVATION_SIZE
+from snooker_env.tasks import OBSERVATION_SIZE, SIDES, SPEEDS, TOPS, choice_of
+from snooker_env.tasks.frame import Frames
+from snooker_env.tasks.ghost_ball import GhostBallOpponent
+from snooker_env.tasks.stroke import ShotBuffers
+from snooker_env.tasks.tables import I_FOULS, Crew
 from tests.processes import python
 
 IDS = tuple(TASKS)
+DOCS = Path(__file__).parents[2] / "docs"
 
 
 def test_every_registered_id_but_snooker_is_a_task():
@@ -171,3 +179,47 @@ def test_a_frame_lost_before_the_first_stroke_counts_as_lost_and_asks_for_no_dec
     assert 4 <= len(lost_at_once) <= 36 and all(row["score"] == 0 and row["ended"] and row["opponent_points"] > 0 for row in lost_at_once)
     assert player.asked == played.decisions == sum(row["strokes"] for row in rows) > 0
     assert one_table(easy, Counted(), list(range(8)), 5).decisions <= 5
+    again = play_episodes(easy, Repeater(Counted.options, played.strokes), list(range(40)))
+    assert again.rows == played.rows and list(map(len, again.strokes)) == [row["strokes"] for row in rows]
+
+
+# what the notes say --------------------------------------------------------------------------------------------------------------
+
+
+def said(task, before):
+    """The share that a task's note names, and as the page of the benchmark and that of the task repeat it [%]."""
+    (share,) = re.findall(rf"{before} (\d+\.\d) %", task.note)
+    page = {"SnookerFrame-v0": "task_frame", "SnookerEscape-v0": "task_escape"}[task.id]
+    for name in ("benchmark", f"environment/{page}"):
+        assert f"{before} {share} %" in " ".join((DOCS / f"{name}.md").read_text(encoding="utf-8").replace("`", "").split())
+    return float(share)
+
+
+def test_what_a_constant_choice_wins():
+    task = TASKS["SnookerFrame-v0"]
+
+    class Constant:
+        options = {"action": "discrete"}  # noqa: RUF012
+
+        def act(self, tables, observations, going):
+            return np.full(len(going), choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.2)))
+
+    rows = play_episodes(task, Constant(), task.seeds(task.episodes)).rows
+    assert 100 * np.mean([row[2] for row in rows]) == pytest.approx(said(task, "A constant choice wins"), abs=3.0)
+
+
+def test_how_often_the_built_in_stroke_escapes():
+    """The stroke of the opponent ghost_ball on the judged tables."""
+    task = TASKS["SnookerEscape-v0"]
+    n, options = task.episodes, {"noise": task.frozen["noise"], "layout": task.judged_layout, "aim": "target", "placement": True}
+    frames, buffers = Frames(sn.Options(task="frame", decision=True, **options).rules, n), ShotBuffers(n)
+    visits = sn.SnookerVectorEnv(n, task.judged())
+    visits.reset(seed=task.seeds(n))
+    for k, seed in enumerate(task.seeds(n)):
+        frames.seed(k, np.random.default_rng(seed))
+    frames.deal(np.arange(n), drawn=False)
+    assert np.array_equal(frames.positions, visits.tables.positions)
+    out = frames.output()
+    frames.complete(GhostBallOpponent().prepare(frames, np.arange(n), None, buffers), out, buffers, Crew(buffers), own=True)
+    share = 100 * (out.counts[:, I_FOULS] == 0).mean()
+    assert share == pytest.approx(said(task, "opponent ghost_ball escapes from"), abs=1.0)

@@ -1,0 +1,408 @@
+"""Does ``check`` refuse what nobody played? Forged points, strokes, episodes, versions and dates, and a change of every field."""
+
+import base64
+import copy
+import os
+import subprocess
+import sys
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.benchmark import COLUMNS, TASKS, Agent, afresh, arithmetic, faults, figures_of, judge, read_result, schema, write_result
+from snooker_env.benchmark.__main__ import main
+from snooker_env.benchmark.checking import strokes_of
+from snooker_env.benchmark.schema import DATE, FIELDS, PACKAGES, UNPROVED
+from snooker_env.benchmark.strokes import packed
+
+COLOURS, BREAK, HARD = (TASKS[f"Snooker{name}-v0"] for name in ("Colours", "Break", "PotHard"))
+
+
+class Aims:
+    """Box actions from a stream of its own, with more digits than float32 has."""
+
+    options = {"aim": "target", "placement": True}  # noqa: RUF012
+
+    def begin(self, batch):
+        self._rng = np.random.default_rng(batch)
+
+    def act(self, tables, observations, going):
+        actions = self._rng.uniform(-0.2, 0.2, (len(going), 6))
+        actions[:, 1:4] *= 0.1
+        return actions
+
+
+def agent(maker=Aims):
+    return Agent(label="aims", kind="class", sources=("a:Aims",), maker=maker, training_shots=0)
+
+
+@pytest.fixture(scope="module")
+def official():
+    """All 500 episodes of ghost_ball on the colours."""
+    return judge(COLOURS, Agent.of("ghost_ball"), command="a test")
+
+
+@pytest.fixture(scope="module")
+def boxes():
+    """24 episodes of box actions."""
+    found = judge(HARD, agent(), episodes=24)
+    assert faults(found) == [] and 0 < found["figures"]["score"]["value"] < 1
+    return found
+
+
+def consistent(task, found):
+    """With the figures that follow from its rows."""
+    found["figures"] = figures_of(task, found["agent"]["label"], found["rows"])
+    return found
+
+
+@pytest.mark.parametrize("label", ["random", "genius"])
+def test_a_maximum_in_every_visit(label):
+    """Rows that the rules of snooker allow, figures that follow from them."""
+    found = judge(BREAK, Agent.of("random") if label == "random" else agent(), episodes=100)
+    found["rows"] = [[0, seed, 147, 36, 147, 36, 0, 1, 0, 1] for seed in BREAK.seeds(100)]
+    consistent(BREAK, found)
+    assert faults(found)[0].startswith("strokes.data = ")
+    found["strokes"] = packed([np.zeros((36, 6), "<f4")] * 100)
+    assert faults(found)[0].startswith("rows[0].") and faults(found)[-1].endswith(" more faults")
+
+
+def test_rows_101_to_500(official):
+    """With the strokes as they were, and with strokes for every row."""
+    found = copy.deepcopy(official)
+    for row in found["rows"][100:]:
+        row[2:] = [27, 6, 27, 6, 0, 1, 0, 1]
+    assert faults(consistent(COLOURS, found))[0].startswith("strokes.data = ")
+    strokes = strokes_of(official)
+    found["strokes"] = packed(strokes[:100] + [np.resize(one, (6, one.shape[1])) for one in strokes[100:]])
+    said = faults(found)
+    assert all(line.startswith(("rows[10", "rows[11")) for line in said[:-1]) and said[-1].endswith(" more faults")
+
+
+@pytest.mark.parametrize("name", ["random", "ghost_ball"])
+def test_the_name_of_a_built_in_player_for_other_strokes(name):
+    """Sound in all that a replay can see; but this player does not play so, or not with these options."""
+
+    class Other(Aims):
+        options = {"aim": "absolute", "placement": True}  # noqa: RUF012
+
+    for maker, line in ((Other, "run 0, table 1000000: played again "), (Aims, "options = ")):
+        found = judge(HARD, agent(maker), episodes=30)
+        assert faults(found) == []
+        found["agent"] |= {"label": name, "kind": "built_in", "sources": [name]}
+        assert faults(found)[0].startswith(line)
+
+
+def test_a_planner_under_the_name_of_a_model_free_player():
+    """The strokes of random, with simulated shots that it never needs."""
+    found = judge(HARD, Agent.of("random"), episodes=4)
+    found["timing"]["simulated_shots"] = 8
+    found["agent"] |= {"simulated_shots": 2.0, "class": "planning"}
+    assert faults(found) == ["timing.simulated_shots = 8: must be 0, as the agent played again"]
+
+
+@pytest.mark.parametrize(("kind", "name"), [("built_in", "lookahead"), ("repository", "planner_500"), ("repository", "ppo_foresight")])
+def test_a_known_planner_is_not_model_free(official, kind, name):
+    found = copy.deepcopy(official)
+    found["agent"] |= {"kind": kind, "sources": [name], "label": name}
+    assert [line for line in faults(found) if line.startswith("agent.class = 'model_free': must be 'planning'")]
+
+
+@pytest.mark.parametrize("label", ["r\u0430ndom", "RANDOM", "Random", "random.", "ghost-ball"])
+def test_a_label_that_a_reader_would_take_for_a_built_in_player(official, label):
+    found = copy.deepcopy(official)
+    found["agent"] |= {"kind": "class", "sources": ["mine:Player"], "label": label}
+    assert [line for line in faults(found) if line.startswith("agent.label = ")]
+
+
+@pytest.mark.parametrize("text", ["two\nlines", "\x1b[2J", "\ud800", "x" * 2001])
+def test_texts_are_one_line(official, text):
+    assert [line for line in faults(official | {"command": text}) if line.startswith("command = ")]
+    found = copy.deepcopy(official)
+    found["agent"] |= {"kind": "class", "sources": [text]}
+    assert [line for line in faults(found) if line.startswith("agent.sources: must be texts, one for each")]
+    assert schema.LONG_LINE[0].fullmatch(schema.line(text))
+
+
+def test_one_model_is_not_two_training_seeds():
+    task = TASKS["SnookerPotHard-v0"]
+    found = judge(task, Agent.of("random"), episodes=100)
+    strokes = strokes_of(found)
+    found["agent"] |= {"kind": "model", "sources": ["a.zip", "./a.zip"], "label": "twice"}
+    found["rows"] += [[1, *row[1:]] for row in found["rows"]]
+    found["strokes"] = packed(strokes + strokes)
+    assert faults(found) == ["agent.sources: 0 and 1 must be different training seeds: their strokes are equal"]
+
+
+def test_another_version(official):
+    found = copy.deepcopy(official)
+    found["software"]["snooker_env"] = "9.9.9"
+    assert faults(found) == [f"software.snooker_env = '9.9.9': must be {PACKAGES[-1]}"]
+    assert PACKAGES[-1] == sn.__version__
+
+
+@pytest.mark.parametrize("date", ["2999-01-01T00:00:00Z", "2026-11-20T23:59:59Z", "1970-01-01T00:00:00Z", "tomorrow"])
+def test_a_date_in_the_future_or_before_the_project(official, date):
+    date = (datetime.now(timezone.utc) + timedelta(days=1)).strftime(DATE) if date == "tomorrow" else date
+    assert [line for line in faults(official | {"date": date}) if line.startswith(f"date = '{date}': must be between 2026-11-21")]
+
+
+def test_repeated_keys(official, tmp_path, capsys):
+    file = tmp_path / "twice.json"
+    write_result(file, official)
+    assert read_result(file) == official
+    text = file.read_text(encoding="utf-8")
+    for name in ("task", "official", "figures"):
+        file.write_text(text.replace(f'"{name}":', f'"{name}": 1,\n "{name}":', 1), encoding="utf-8")
+        with pytest.raises(ValueError, match=f"the key '{name}' stands there twice"):
+            read_result(file)
+        assert main(["check", str(file)]) == 1 and f"the key '{name}' stands there twice" in capsys.readouterr().out
+
+
+def test_a_truncated_file(official, tmp_path):
+    file = tmp_path / "part.json"
+    write_result(file, official)
+    whole = file.read_bytes()
+    for many in (0, 1, 1000, len(whole) // 2, len(whole) - 3):
+        file.write_bytes(whole[:many])
+        with pytest.raises(ValueError, match="must be JSON"):
+            read_result(file)
+    short = copy.deepcopy(official)
+    short["strokes"]["data"] = short["strokes"]["data"][: len(short["strokes"]["data"]) // 8 * 4]
+    assert faults(short)[0].startswith("strokes.data = more than ") and "or cut off: must be " in faults(short)[0]
+
+
+def test_one_flipped_bit_of_a_stroke(boxes):
+    """Each bit of the first stroke, each bit that the file gives, and the digest."""
+    found, strokes = copy.deepcopy(boxes), strokes_of(boxes)
+    for bit in range(8 * strokes[0][0].nbytes):
+        raw = bytearray(strokes[0].tobytes())
+        raw[bit // 8] ^= 1 << bit % 8
+        flipped = np.frombuffer(bytes(raw), "<f4").reshape(strokes[0].shape)
+        found["strokes"] = packed([flipped, *strokes[1:]]) | {"sha256": boxes["strokes"]["sha256"]}
+        assert faults(found)[0].startswith("strokes.sha256 = ")
+    raw = base64.b64decode(boxes["strokes"]["data"])
+    for bit in np.random.default_rng(0).integers(0, 8 * len(raw), 60).tolist():
+        other = bytearray(raw)
+        other[bit // 8] ^= 1 << bit % 8
+        found["strokes"] = boxes["strokes"] | {"data": base64.b64encode(bytes(other)).decode()}
+        assert faults(found)[0].startswith("strokes."), bit
+    found["strokes"] = boxes["strokes"] | {"sha256": "0" * 64}
+    assert faults(found)[0].startswith("strokes.sha256 = ")
+
+
+def test_other_strokes_are_found_by_what_they_score(boxes):
+    """With a digest of their own: a stroke away from the ball in each episode that potted one."""
+    found, strokes = copy.deepcopy(boxes), [one.copy() for one in strokes_of(boxes)]
+    potted = [k for k, row in enumerate(found["rows"]) if row[5]]
+    for k in potted:
+        strokes[k][0, 3] = 1.0
+    found["strokes"] = packed(strokes)
+    assert {line.split(".")[0] for line in faults(found)[:-1]} <= {f"rows[{k}]" for k in potted}
+    assert faults(found)[0].startswith(f"rows[{potted[0]}].score = 1: must be 0, as its strokes play")
+
+
+def test_strokes_too_few_and_too_many(boxes):
+    for more, line in ((1, "rows[3].strokes = 2: must be 1, as its strokes play"), (-1, "rows[3].strokes = 0: must be more: the episode")):
+        found, strokes = copy.deepcopy(boxes), strokes_of(boxes)
+        found["rows"][3][COLUMNS.index("strokes")] += more
+        strokes[3] = np.resize(strokes[3], (1 + more, 6))
+        found["strokes"] = packed(strokes)
+        found["agent"]["simulated_shots"] = 0.0
+        assert any(one.startswith(line) for one in faults(consistent(HARD, found))), faults(found)
+
+
+@pytest.mark.parametrize("value", [1.5, -1.0000001, np.nan, np.inf])
+def test_strokes_outside_the_space(boxes, value):
+    found, strokes = copy.deepcopy(boxes), [one.copy() for one in strokes_of(boxes)]
+    strokes[7][0, 0] = value
+    found["strokes"] = packed(strokes)
+    assert faults(found)[0].startswith("strokes.data: actions[") and "must be finite and within [-1, 1]" in faults(found)[0]
+
+
+def test_choices_outside_the_space():
+    found = judge(HARD, Agent.of("agents.players.built_in:Random", label="mine"), episodes=3)
+    assert faults(found) == []
+    found["strokes"] = packed([np.full((1, 1), 540, "<u2")] * 3)
+    assert faults(found) == ["strokes.data: actions[0] = 540: must be in [0, 540)"]
+
+
+def test_swapped_episodes_and_other_seeds(boxes):
+    rows, strokes = copy.deepcopy(boxes["rows"]), strokes_of(boxes)
+    a, b = (next(k for k, row in enumerate(rows) if row[5] == pots) for pots in (0, 1))
+    found = copy.deepcopy(boxes)
+    found["rows"][a], found["rows"][b] = copy.deepcopy((rows[b], rows[a]))
+    assert faults(consistent(HARD, found))[0].startswith(f"rows[{min(a, b)}]: run 0, table ")
+    for row, old in ((found["rows"][a], rows[a]), (found["rows"][b], rows[b])):
+        row[1] = old[1]
+    strokes[a], strokes[b] = strokes[b], strokes[a]
+    found["strokes"] = packed(strokes)
+    assert faults(consistent(HARD, found))[0].startswith(f"rows[{min(a, b)}].")
+    later = copy.deepcopy(boxes)
+    for row in later["rows"]:
+        row[1] += 1
+    assert faults(later) == ["rows[0]: run 0, table 1000001: must be run 0, table 1000000, as the protocol says"]
+
+
+def test_rows_more_or_fewer(boxes):
+    strokes = strokes_of(boxes)
+    for rows, some in ((boxes["rows"][:-1], strokes[:-1]), (boxes["rows"] + boxes["rows"][-1:], strokes + strokes[-1:])):
+        found = consistent(HARD, boxes | {"rows": rows, "strokes": packed(some)})
+        assert faults(found)[0].startswith(f"rows: must be 24 episodes, 24 for each training seed, not {len(rows)}")
+
+
+def test_a_stroke_is_kept_as_it_was_played(boxes):
+    """Not as the player gave it: box actions are rounded to float32 first. And one table stroke by stroke plays the same."""
+    player, seeds = Aims(), HARD.seeds(24)
+    player.begin(0)
+    given = player.act(None, None, np.ones(24, bool))
+    kept = strokes_of(boxes)
+    assert np.array_equal(np.concatenate(kept), given.astype(np.float32)) and not np.array_equal(np.concatenate(kept), given)
+    env = sn.SnookerEnv(HARD.judged(**Aims.options))
+    for row, strokes in zip(boxes["rows"], kept, strict=True):
+        env.reset(seed=row[1])
+        assert env.step(strokes[0])[1] == row[2]
+    assert seeds == [row[1] for row in boxes["rows"]]
+
+
+# every field ---------------------------------------------------------------------------------------------------------------------
+
+
+def leaves(value, path=()):
+    """The paths of all values inside, of lists and objects of results alike."""
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    return [leaf for key, one in inner for leaf in leaves(one, (*path, key))] or [path]
+
+
+def others(value):
+    """Other values: of the same type, and of another."""
+    near = [value + 1, value - 1, 0, 10**400] if type(value) is int else [value * (1 + 2**-52) + 5e-324] if type(value) is float else []
+    near += [value + "x", value[1:], value.upper()] if type(value) is str else [not value] if type(value) is bool else []
+    wrong = [None, True, "other", 7, -1, 0.5, [], {}, ["a"]]
+    return [one for one in near + wrong if type(one) is not type(value) or one != value]
+
+
+def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves(boxes):
+    """All but a few rows and words of the profile are tried; what passes must be a field that the page calls unproved."""
+    passed = set()
+    for path in leaves(boxes):
+        if path[0] == "rows" and path[1] not in (0, 23):
+            continue
+        for value in others(at(boxes, path)):
+            found = put(boxes, path, value)
+            if faults(found) == []:
+                passed.add(".".join(part for part in path if isinstance(part, str)))
+    assert passed <= set(UNPROVED), passed - set(UNPROVED)
+    assert passed >= {"agent.label", "agent.sources", "machine.cpu", "timing.seconds", "command", "commit", "software.numpy"}
+
+
+def at(found, path):
+    for key in path:
+        found = found[key]
+    return found
+
+
+def put(found, path, value):
+    found = copy.deepcopy(found)
+    at(found, path[:-1])[path[-1]] = value
+    return found
+
+
+def test_what_is_called_unproved_can_be_changed_unseen(boxes):
+    """All of it at once, as long as the fields fit each other."""
+    found = copy.deepcopy(boxes)
+    found["agent"] |= {
+        "label": "other", "kind": "object", "sources": ["there"], "training_shots": 60_000, "budget": "1M", "simulated_shots": 9.0,
+        "class": "planning", "declared": True,
+    }  # fmt: skip
+    found["software"] |= {name: "1.0" for name in found["software"] if name != "snooker_env"}
+    found["machine"] = {"platform": "one", "cpu": "two", "cores": 3, "load": 4.0, "load_at_end": 5.0, "arithmetic": "0" * 16}
+    found["timing"] = {"seconds": 1.0, "simulated_shots": 6, "one_table_ms": 2.0}
+    found |= {"command": "none", "commit": "0" * 40, "date": "2026-11-22T00:00:00Z", "incomplete": "stopped"}
+    assert faults(found) == []
+    changed = {name for name in FIELDS if at(found, name.split(".")) != at(boxes, name.split("."))}
+    assert changed == {*UNPROVED, "agent.class", "agent.budget"}
+
+
+# elsewhere -----------------------------------------------------------------------------------------------------------------------
+
+CHECK = """
+import sys
+from snooker_env.benchmark import arithmetic, faults, read_result
+print(arithmetic(), *faults(read_result(sys.argv[1])), sep="\\n")
+"""
+
+
+def test_where_strokes_end_otherwise_that_is_said_first(tmp_path):
+    """With the system's functions for processors without fused multiply-add, whose last bits differ: no forger is suspected."""
+    file = tmp_path / "one.json"
+    judge(TASKS["SnookerFrame-v0"], Agent.of("ghost_ball"), episodes=40, out=file)
+    here = os.environ | {"PYTHONPATH": str(Path(sn.__file__).parents[1]), "SNOOKER_ENV_QUIET": "1"}
+    said = {}
+    for where, tunables in (("here", ""), ("there", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable")):
+        run = subprocess.run([sys.executable, "-c", CHECK, file], env=here | {"GLIBC_TUNABLES": tunables}, capture_output=True, check=True)
+        said[where] = run.stdout.decode().splitlines()
+    assert said["here"] == [arithmetic()]
+    if said["there"][0] == arithmetic():
+        pytest.skip("this system has no such functions, or this processor has no others")
+    assert said["there"][1].startswith(f"machine.arithmetic = {arithmetic()!r}: must be {said['there'][0]!r} to check it here")
+    assert said["there"][2].startswith("rows[")
+
+
+# the agent itself ----------------------------------------------------------------------------------------------------------------
+
+
+def test_fresh_seeds_find_an_agent_that_knew_the_tables():
+    """It remembers the strokes that potted on the judged tables, by where the balls lie; elsewhere it plays anything."""
+    known = {}
+
+    class Remembers(Aims):
+        options = {"action": "discrete"}  # noqa: RUF012
+
+        def begin(self, batch):
+            self._rng = np.random.default_rng(batch)
+
+        def act(self, tables, observations, going):
+            where = [p[:2].tobytes() for p in tables.tables.positions]
+            return np.array([known.get(place, c) for place, c in zip(where, self._rng.integers(0, 90, len(going)), strict=True)])
+
+    peeking = sn.SnookerVectorEnv(100, HARD.judged(action="discrete"))
+    for choice in range(0, 135, 2):
+        peeking.reset(seed=HARD.seeds(100))
+        where = [p[:2].tobytes() for p in peeking.tables.positions]
+        _, rewards, *_ = peeking.step(np.full(100, choice))
+        known |= {place: choice for place, reward in zip(where, rewards, strict=True) if reward > 0}
+    peeks = agent(Remembers)
+    found = judge(HARD, peeks, episodes=100)
+    assert faults(found) == [] and found["figures"]["score"]["value"] > 0.9
+    mean, _, said = afresh(found, peeks, 100, 5_000_000)
+    assert mean < 0.7 and said[0].startswith("figures.score.value = ") and said[0].endswith("as on fresh seeds")
+    honest = judge(HARD, agent(), episodes=100)
+    assert afresh(honest, agent(), 100, 5_000_000)[2] == []
+
+
+def test_fresh_seeds_find_a_planner_that_calls_itself_model_free():
+    class Plans(Aims):
+        def act(self, tables, observations, going):
+            sn.simulate_batch(np.zeros((5, 1, 2)), np.zeros((5, 1, 2)), np.zeros((5, 1, 3)))
+            return super().act(tables, observations, going)
+
+    found = judge(HARD, agent(Plans), episodes=10)
+    assert found["agent"]["class"] == "planning" and afresh(found, agent(Plans), 10, 5_000_000)[2] == []
+    found["timing"]["simulated_shots"] = 0
+    found["agent"] |= {"simulated_shots": 0.0, "class": "model_free"}
+    assert faults(found) == []
+    said = afresh(found, agent(Plans), 10, 5_000_000)[2]
+    assert said == ["agent.class = 'model_free': must be 'planning': it simulated 5 shots for 10 strokes"]
+
+
+def test_the_command_plays_on_fresh_seeds(tmp_path, capsys):
+    file = tmp_path / "one.json"
+    judge(HARD, Agent.of("ghost_ball"), episodes=100, out=file)
+    assert main(["check", str(file), "--agent", "ghost_ball", "--replay", "100", "--fresh", "100"]) == 0
+    assert "fresh seeds from " in capsys.readouterr().out
+    for wrong in (["--fresh", "5"], ["--agent", "ghost_ball"], ["--agent", "ghost_ball", "--fresh", "1"]):
+        assert main(["check", str(file), *wrong]) == 2
