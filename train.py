@@ -26,7 +26,6 @@ import platform
 import shlex
 import sys
 import tempfile
-import time
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
@@ -56,6 +55,7 @@ with needs("train.py"):
     from snooker_env.checks import refuse
     from snooker_env.game import HELD_OUT
     from snooker_env.planning import processors
+    from snooker_env.progress import Progress
 
 # settings ------------------------------------------------------------------------------------------------------------------------
 
@@ -112,7 +112,7 @@ def parse(argv):
     parser.add_argument("--resume", action="store_true", help="continue the run in that folder; options left out keep their values")
     add_ray(parser)
     parser.add_argument("--mirror", metavar="URL", help="copy each checkpoint to this folder or fsspec URL; --resume goes on from there")
-    parser.add_argument("--no-progress", action="store_true", help="no progress bar")
+    parser.add_argument("--no-progress", action="store_true", help="do not say every few seconds how far it is")
     given = vars(parser.parse_args(argv))
     rest = {name: given.pop(name) for name in ("out", "resume", "no_progress", "ray", "mirror")}
     for name, (low, high) in BOUNDS.items():
@@ -221,12 +221,23 @@ def prepared(parser, given, rest, ending):
     return settings, recipe, state, tables, model
 
 
-def train(out, settings, recipe, state, tables, model, progress, ray=None):
+def speaker(settings, recipe, quiet):
+    """``said(number, what, total, unit, done)``: the ``Progress`` of a part of this run; number 0 is before PPO, 2 the evaluation."""
+    before = int(recipe.imitation > 0)
+
+    def said(number, what, total, unit, done=0):
+        what = f"{settings.agent}, part {number + before} of {2 + before}, {what}"
+        return Progress(what, total, unit, done=done, to=sys.stdout, quiet=quiet)
+
+    return said
+
+
+def train(out, settings, recipe, state, tables, model, said, ray=None):
     """Imitate, then train, to the end or to a signal. Simulations of the imitation are played by the cluster at ``ray``, if it is given.
 
     Returns (``RunCallback``, or None if stopped before it; the curve of the imitation; the signal or None).
     """
-    threads, began, imitation = 1 if settings.parallel == "one" else processors(), time.perf_counter(), state["imitation"] if state else []
+    threads, imitation = 1 if settings.parallel == "one" else processors(), state["imitation"] if state else []
     begun = state["imitating"] if state else None
     model.tensorboard_log = str(out / "tb")
     with Stop() as stop:
@@ -235,49 +246,59 @@ def train(out, settings, recipe, state, tables, model, progress, ray=None):
             with place(ray, threads) as where:
                 imitated = teacher(model, tables, recipe.imitation, settings.seed, threads, begun, where)
                 of_all = f"{imitated.done:,} of {imitated.states:,} positions"
-                print(f"{settings.agent} in {out}: {imitated.doing}{where.says}, {of_all}", flush=True)
-                completed = imitate(imitated, out, settings, model, stop, progress)
+                print(f"{settings.agent} in {out}: {recipe.pretraining}{where.says}, {of_all}", flush=True)
+                with said(0, f"{recipe.pretraining}{where.says}", imitated.states, "positions", imitated.done) as progress:
+                    completed = imitate(imitated, out, settings, model, stop, progress)
             if not completed:
                 print(f"Saved at {imitated.done:,} of {imitated.states:,} positions. {go_on(out)}")
                 return None, imitated.curve, stop.signal
             imitation = imitated.curve
-            seconds, curve, running = imitated.seconds, [], None
-        elif state:
+        if state and not begun:
             seconds, curve, running = (state[name] for name in ("seconds", "curve", "running"))
         else:
-            seconds, curve, running = time.perf_counter() - began, [], None
+            seconds, curve, running = 0.0, [], None
         if recipe.expert:
             judge_rewards(tables, model.policy, threads)
         stop.running = f"this rollout of {rollout_of(model):,} shots"
-        callback = RunCallback(out, settings, seconds, curve, imitation, running, stop, progress)
         goal, asked = goal_of(model, settings.steps), settings.steps
+        progress = said(1, recipe.method, goal, "shots", model.num_timesteps)
+        callback = RunCallback(out, settings, seconds, curve, imitation, running, stop, progress)
         whole = f" ({asked:,} asked for; whole rollouts of {rollout_of(model):,})" if goal > asked > model.num_timesteps else ""
         print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {goal:,} shots played{whole}", flush=True)
         if model.num_timesteps >= settings.steps:
             print("All steps are done: nothing left to train.", flush=True)
         else:
             fresh = state is None or begun is not None
-            try:
+            with progress:
                 model.learn(settings.steps - model.num_timesteps, callback, tb_log_name=settings.agent, reset_num_timesteps=fresh)
-            finally:
-                callback.bar.stop()  # restores the terminal's cursor
         if stop.signal:
             done = "; training is complete, the evaluation is left" if model.num_timesteps >= settings.steps else ""
             print(f"Saved at {callback.saved or model.num_timesteps:,} shots{done}. {go_on(out)}")
         return callback, imitation, stop.signal
 
 
-def judge(out, settings, recipe, model, callback, imitation):
+def trained_parts(recipe, model, seconds, imitation):
+    """What was learned from, part by part: how much of what, in how many seconds, and how much a second."""
+    parts = [(recipe.pretraining, "positions", imitation[-1]["states"], imitation[-1]["seconds"])] if imitation else []
+    parts.append((recipe.method, "shots", model.num_timesteps, seconds))
+    return [
+        {"part": name, "unit": unit, "amount": amount, "seconds": took, "per_second": amount / max(took, 1e-9)}
+        for name, unit, amount, took in parts
+    ]
+
+
+def judge(out, settings, recipe, model, callback, imitation, said):
     """Play held-out visits, write the model and every figure, print the conclusion."""
-    steps, seconds = model.num_timesteps, callback.seconds_before
-    print(f"{steps:,} shots in {seconds:.0f} s: {steps / seconds:.0f} a second, learning included. Evaluating ...", flush=True)
+    steps, parts = model.num_timesteps, trained_parts(recipe, model, callback.seconds_before, imitation)
+    lines = [f"{p['part']}: {p['amount']:,} {p['unit']} in {p['seconds']:.0f} s, {p['per_second']:,.0f} a second" for p in parts]
+    print("\n".join(lines) + " (learning included)", flush=True)
     write_atomic(out / "model.zip", made := zipped(model))
     copied(out, made, "model.zip")
-    figures = evaluate(recipe, model, settings.eval_visits)
+    figures = evaluate(recipe, model, settings.eval_visits, lambda total: said(2, "evaluation", total, "visits"))
     learned = conclusion(settings.agent, steps, model.imitated, figures, model.start)
     results = {
-        "command": command_of(settings), "settings": asdict(settings), "steps": steps, "seconds": seconds,
-        "steps_per_second": steps / seconds, "start": model.start, "learned": learned,
+        "command": command_of(settings), "settings": asdict(settings), "steps": steps,
+        "seconds": sum(part["seconds"] for part in parts), "parts": parts, "start": model.start, "learned": learned,
         "evaluation": figures, "curve": callback.curve, "imitation": imitation, **provenance(),
     }  # fmt: skip
     write_atomic(out / "results.json", text := json.dumps(results, indent=1).encode())
@@ -297,10 +318,11 @@ def main(argv=None):
         settings, recipe, state, tables, model = prepared(parser, given, rest, ending)
         try:
             snooker_env.warmup()
-            callback, imitation, stopped = train(out, settings, recipe, state, tables, model, not rest.no_progress, rest.ray)
+            said = speaker(settings, recipe, rest.no_progress)
+            callback, imitation, stopped = train(out, settings, recipe, state, tables, model, said, rest.ray)
             if stopped:
                 return 128 + stopped
-            judge(out, settings, recipe, model, callback, imitation)
+            judge(out, settings, recipe, model, callback, imitation, said)
         except KeyboardInterrupt:
             print(f"Interrupted. {kept(out)}", file=sys.stderr)
             return 130

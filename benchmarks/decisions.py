@@ -2,8 +2,9 @@
 
     python -m benchmarks.decisions [--agents planner lookahead ...] [--tables 1 256] [--repeats 9] [--seed 0] [--json FILE] [--out FOLDER]
 
-Opened tables, a professional's errors. Milliseconds a decision: the median over the repeats, each on new tables; on several tables the time
-of all divided by their number. The first decision on tables, which makes the search, is not timed.
+Opened tables, a professional's errors. Milliseconds a decision, on the clock and of all processors together: medians over the repeats,
+each on new tables; on several tables the time of all divided by their number. The first decision on tables, which makes the search, is
+not timed.
 """
 
 import time
@@ -21,15 +22,16 @@ AGENTS = (
 
 
 def milliseconds(player, tables, repeats, seed):
-    """Milliseconds a decision on so many tables, of each repeat."""
+    """Milliseconds a decision on so many tables, of each repeat: on the clock, of all processors."""
     env, taken = sn.SnookerVectorEnv(tables, noise="professional", **player.options), []
     for k in range(repeats + 1):
         seen, _ = env.reset(seed=np.random.SeedSequence([seed, k]).generate_state(tables).tolist())
-        start = time.perf_counter()
+        start = time.perf_counter(), time.process_time()
         player.act(env, seen, np.ones(tables, bool))
-        taken.append(1e3 * (time.perf_counter() - start) / tables)
+        ends = time.perf_counter(), time.process_time()
+        taken.append([1e3 * (end - began) / tables for began, end in zip(start, ends, strict=True)])
     env.close()
-    return taken[1:]
+    return dict(zip(("clock", "processors"), map(list, zip(*taken[1:], strict=True)), strict=True))
 
 
 def main():
@@ -41,11 +43,12 @@ def main():
     args = parser.options()
     players = {name: player_of(name) for name in args.agents}
     sn.warmup()
-    print(f"{'ms a decision':20s}" + "".join(f"{n:>8,} tables" for n in args.tables))
+    print(f"{'ms a decision':20s}" + "".join(f"{f'{n:,} tables':>13s}{'processors':>13s}" for n in args.tables))
     found = {}
     for name, player in players.items():
         found[name] = {n: milliseconds(player, n, args.repeats, args.seed) for n in args.tables}
-        print(f"{name:20s}" + "".join(f"{np.median(taken):15.2f}" for taken in found[name].values()), flush=True)
+        medians = [np.median(taken) for both in found[name].values() for taken in both.values()]
+        print(f"{name:20s}" + "".join(f"{median:13.2f}" for median in medians), flush=True)
     save_json(args.json, found)
     return 0
 

@@ -11,10 +11,11 @@ import numpy as np
 from snooker_env.game import layouts
 from snooker_env.game.apply_ruling import settle_table
 from snooker_env.game.balls import CUE, N_BALLS, N_REDS, REDS_MASK, BallOn, mask_of
+from snooker_env.game.in_hand import within_d
 from snooker_env.game.opened import FILE
 from snooker_env.game.pots import pots
 from snooker_env.game.referee import Situation, Stroke
-from snooker_env.geometry import BALL_RADIUS
+from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from snooker_env.physics import cue
 from snooker_env.physics.impact.contact import parse_fidelity
 from snooker_env.physics.parameters import Physics
@@ -50,9 +51,9 @@ def stroke(rng, positions, on_table):
 def in_hand(rng, positions, on_table):
     """The cue ball at a free random place of the D."""
     while True:
-        place = layouts.break_off(rng)[0][CUE]
+        place = rng.uniform((-D_RADIUS, BAULK_Y - D_RADIUS), (D_RADIUS, BAULK_Y))
         others = positions[on_table]
-        if np.all(np.hypot(*(others - place).T) > 2 * BALL_RADIUS + layouts.GAP):
+        if within_d(*place) and np.all(np.hypot(*(others - place).T) > 2 * BALL_RADIUS + layouts.GAP):
             positions[CUE], on_table[CUE] = place, True
             return positions, on_table
 

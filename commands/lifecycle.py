@@ -17,6 +17,11 @@ DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 """Error numbers of a full or failing disk."""
 
 
+def installs(extra):
+    """The line that installs an extra: a command of this repository runs in a clone."""
+    return f'pip install -e ".[{extra}]"'
+
+
 def what_is_missing(error):
     """An ``ImportError`` in words. Raised again if a module of this repository lacks a name."""
     if not error.name:  # its text names what is missing
@@ -24,7 +29,7 @@ def what_is_missing(error):
     package = error.name.partition(".")[0]
     if package in OUR_OWN:
         raise error
-    return f'{package} is missing; in a clone of the repository:  pip install -e ".[{EXTRAS.get(package, "train")}]"'
+    return f"{package} is missing; in a clone of the repository:  {installs(EXTRAS.get(package, 'train'))}"
 
 
 class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import torch

@@ -4,7 +4,7 @@
     python -m examples.self_play --out runs/self_play        # trains, then judges 1,000 frames against each built-in opponent
     python -m examples.self_play --out runs/self_play        # the same command continues an interrupted run, bit for bit
 
-A choice is one of 540: a pot, a speed, a side and a top; without a direct pot it is a full hit on the nearest ball on. The networks are
+A choice is one of 540: a pot, a speed, a side and a top; without a direct pot another line of the cue ball stands for it. The networks are
 those of ``train.py`` (``agents.learning.networks``). The reward is the growth of the lead. The built-in opponents are not trained against.
 """
 
@@ -32,6 +32,7 @@ from agents.features.pot_features import with_pots
 from agents.learning.networks import TablePolicy, TableReader
 from commands.files import write_atomic
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
+from snooker_env.progress import Progress
 from snooker_env.sb3 import SnookerVecEnv
 from snooker_env.tasks import CHOICES, OBSERVATION_SIZE, SIDES, SPEEDS, TOPS, OpponentPool, choice_of, observation_space
 
@@ -157,9 +158,9 @@ class Softly:
 class Run(BaseCallback):
     """Between two rollouts, from time to time: the pool grows, some frames are judged, and everything is saved."""
 
-    def __init__(self, args, pool, curve, seconds):
+    def __init__(self, args, pool, curve, seconds, progress):
         super().__init__()
-        self.args, self.pool, self.curve, self.began = args, pool, curve, time.perf_counter() - seconds
+        self.args, self.pool, self.curve, self.progress, self.began = args, pool, curve, progress, time.perf_counter() - seconds
 
     def _on_rollout_start(self):
         policy, shots, args = self.model.policy, self.num_timesteps, self.args
@@ -168,7 +169,6 @@ class Run(BaseCallback):
                 add(self.pool, weights(policy))
             won = {name: judge(policy, name, args.checked, args.threads)["won"] for name in ("random", "ghost_ball")}
             self.curve.append({"shots": shots, "seconds": round(time.perf_counter() - self.began), **won})
-            print(json.dumps(self.curve[-1]), flush=True)
             self.save()
 
     def save(self):
@@ -183,6 +183,8 @@ class Run(BaseCallback):
         write_atomic(args.out / "checkpoint.pkl", pickle.dumps(state))
 
     def _on_step(self):
+        won = ", ".join(f"{self.curve[-1][name]:.1%} won against {name}" for name in ("random", "ghost_ball"))
+        self.progress.at(self.num_timesteps, won)
         return True
 
 
@@ -199,7 +201,6 @@ def train(args):
     model = MaskablePPO(
         FramePolicy, tables, seed=None if state else args.seed, device="cpu", batch_size=min(2048, rollout), learning_rate=rate, **LEARNING
     )
-    run = Run(args, pool, state["curve"] if state else [], state["seconds"] if state else 0.0)
     for past in state["pool"] if state else [weights(model.policy)]:
         add(pool, past)
     if state:
@@ -210,7 +211,10 @@ def train(args):
         numpy_state, torch_state = state["random"]
         np.random.set_state(numpy_state)  # noqa: NPY002 - Stable-Baselines3 draws from the global one
         torch.set_rng_state(torch_state)
-    model.learn(args.shots - model.num_timesteps, run, reset_num_timesteps=not state)
+    goal, done = rollout * -(-args.shots // rollout), state["shots"] if state else 0
+    with Progress("self-play", goal, "shots", done=done, to=sys.stdout) as progress:
+        run = Run(args, pool, state["curve"] if state else [], state["seconds"] if state else 0.0, progress)
+        model.learn(args.shots - model.num_timesteps, run, reset_num_timesteps=not state)
     return model, run.curve, time.perf_counter() - run.began
 
 

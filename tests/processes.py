@@ -27,7 +27,8 @@ def copy_of_package(to):
     return to
 
 
-def replace(path, old, new):
+def replace(path, old, new, times=1):
+    """Put ``new`` in the place of ``old``, which the file holds so many times."""
     text = path.read_text()
-    assert text.count(old) == 1, f"{path.name} holds {old!r} {text.count(old)} times"
+    assert text.count(old) == times, f"{path.name} holds {old!r} {text.count(old)} times"
     path.write_text(text.replace(old, new))

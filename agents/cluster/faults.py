@@ -2,6 +2,7 @@
 
 import socket
 
+from commands.lifecycle import installs
 from snooker_env.checks import refuse
 
 ANSWER = 10.0
@@ -44,7 +45,7 @@ def of_part(cause, where=""):
     if isinstance(cause, MemoryError):
         return out_of_memory(here)
     if isinstance(cause, ImportError):
-        everywhere = 'install the same clone on every node (pip install -e ".[cluster]")'
+        everywhere = f"install the same clone on every node ({installs('cluster')})"
         return ClusterError(f"a worker{here} cannot import {cause.name or cause}: {everywhere}")
     if isinstance(cause, OSError) and cause.errno in (28, 122):  # ENOSPC, EDQUOT
         return ClusterError(f"the disk of a worker{here} is full ({cause.filename or 'its temporary folder'}): free space there")

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 
+from commands.lifecycle import installs
 from snooker_env.checks import refuse
 from snooker_env.planning import processors
 
@@ -35,7 +36,7 @@ def ray_of():
     try:
         import ray
     except ImportError:
-        raise ImportError('Ray is missing; in a clone of the repository:  pip install -e ".[cluster]"') from None
+        raise ImportError(f"Ray is missing; in a clone of the repository:  {installs('cluster')}") from None
     return ray
 
 
@@ -147,9 +148,8 @@ class Cluster:
                 what = self.get(ref)
                 if "missing" in what:
                     raise ClusterError(
-                        f"the node {asked[ref]} has no {what['missing']}: install the same clone on every node "
-                        '(pip install -e ".[cluster]")'
-                    )  # fmt: skip
+                        f"the node {asked[ref]} has no {what['missing']}: install the same clone on every node ({installs('cluster')})"
+                    )
                 differs = difference(software(), what["software"])
                 if differs:
                     raise ClusterError(f"the node {asked[ref]} holds other software: {differs}. Install the same on every node")

@@ -79,7 +79,7 @@ def play_on(tournament, cluster, tick=None, saved=None):
             tournament.times[k][0] += decisions
             tournament.times[k][1] += seconds
         if tick is not None:
-            tick(len({tuple(row[:4]) for row in tournament.rows}))
+            tick(tournament.ended)
         if saved is not None:
             saved()
 

@@ -33,6 +33,7 @@ from commands.lifecycle import command, needs, of_disk
 
 with needs("agents.evaluate"):
     import numpy as np
+    import rich  # noqa: F401 - for the tables at the end, imported here so that a missing package is reported before anything starts
 
     import snooker_env
     from commands.files import writable, write_atomic
@@ -42,6 +43,7 @@ with needs("agents.evaluate"):
     from snooker_env.benchmark import HELD_OUT_SEED, RESAMPLES, counts, play_visits, tables_of
     from snooker_env.checks import choice, integer, parse_fidelity, refuse
     from snooker_env.game import plan_of
+    from snooker_env.progress import Progress
     from snooker_env.tasks import Noise
 
     from ..cluster.faults import ClusterError
@@ -270,23 +272,18 @@ def main(argv=None):
 
 
 def played(report, agents, seeds, shown, where, keep, conditions):
-    """Play everything, with a bar of progress. Exit code 0; 130 if it was interrupted, 1 if the cluster could not play on."""
-    from rich.console import Console
-    from rich.progress import Progress
+    """Play everything and say how far it is. Exit code 0; 130 if it was interrupted, 1 if the cluster could not play on."""
+    why, code, size = "", 0, lambda part: len(part.given["seeds"])
 
-    why, code = "", 0
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        visits = bar.add_task("visits", total=None)
+    def tick(part, result):
+        progress.at(progress.done + size(part), part.given["condition"]["layout"] + where.says)
 
-        def tick(part, result):
-            bar.update(visits, advance=len(part.given["seeds"]), description=f"visits{where.says}")
-
-        try:
-            job = job_of(report, agents, seeds, where, keep, tick)
-        except ValueError as error:  # what is kept is of another job
-            print(f"agents.evaluate: error: {error}", file=sys.stderr)
-            raise SystemExit(2) from None
-        bar.update(visits, total=job.total(lambda part: len(part.given["seeds"])))
+    try:
+        job = job_of(report, agents, seeds, where, keep, tick)
+    except ValueError as error:  # what is kept is of another job
+        print(f"agents.evaluate: error: {error}", file=sys.stderr)
+        raise SystemExit(2) from None
+    with Progress("evaluation", job.total(size), "visits") as progress:
         try:
             evaluate(report, agents, seeds, shown, job)
         except KeyboardInterrupt:

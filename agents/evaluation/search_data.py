@@ -21,6 +21,7 @@ with needs("agents.search"):
     from commands.physics_option import physics_option
     from snooker_env.checks import integer, parse_fidelity, refuse
     from snooker_env.game import plan_of
+    from snooker_env.progress import Progress
     from snooker_env.tasks import Noise
 
     from ..cluster.faults import ClusterError
@@ -86,9 +87,6 @@ def read(url):
 @command("agents.search")
 def main(argv=None):
     """Check, search, write. Exit code 0; 130 if it was interrupted, 1 if the cluster could not play on: what was searched is kept."""
-    from rich.console import Console
-    from rich.progress import Progress
-
     p = parser()
     args = p.parse_args(argv)
     try:
@@ -101,11 +99,10 @@ def main(argv=None):
     about = {"command": "agents.search", "agent": digest_of(agent), "seed": args.seed, **condition, "budget": args.budget} | software()
     parts = parts_of(args.positions, args.seed, condition, args.budget)
     try:
-        with place(args.ray) as where, Progress(console=Console(stderr=True), transient=True) as bar:
-            positions = bar.add_task("positions", total=each * len(parts))
+        with place(args.ray) as where, Progress(f"search{where.says}", each * len(parts), "positions") as progress:
 
             def tick(part, result):
-                bar.update(positions, advance=each, description=f"positions{where.says}")
+                progress.at(progress.done + each)
 
             try:
                 job = Job(parts, {"search": agent}, where, store, about, tick)

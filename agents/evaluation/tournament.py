@@ -27,6 +27,7 @@ with needs("agents.tournament"):
     from snooker_env import Options
     from snooker_env.benchmark import RESAMPLES, machine, read_result, write_result
     from snooker_env.checks import choice, integer, refuse
+    from snooker_env.progress import Progress
 
     from ..cluster.faults import ClusterError
     from ..cluster.options import add_ray, checked_ray, place
@@ -229,6 +230,11 @@ class Tournament:
         done = {tuple(row[:3]) for row in self.rows}
         return [(pair, seeds) for pair, seeds in self.parts if not all((*pair, seed) in done for seed in seeds)]
 
+    @property
+    def ended(self):
+        """Number of matches in the rows."""
+        return len({tuple(row[:4]) for row in self.rows})
+
     def play(self, threads=None, tick=None, saved=None):
         """Play all parts that are not in the rows yet.
 
@@ -240,10 +246,7 @@ class Tournament:
         saved : callable, optional
             Called after each part.
         """
-        ended = len({tuple(row[:4]) for row in self.rows})
-        if tick is not None:
-            tick(ended)
-        game, budget = played_with(self.game), self.protocol["search_budget"]
+        ended, game, budget = self.ended, played_with(self.game), self.protocol["search_budget"]
         for pair, seeds in self.left:
             players = tuple(
                 TimedPlayer(player_for(self.entrants[k], self.labels[other], seeds[0], budget))
@@ -323,10 +326,7 @@ def main(argv=None):
 
 
 def _play(tournament, args, where):
-    """Play, with a bar of progress: why it is incomplete, or None, and the exit code."""
-    from rich.console import Console
-    from rich.progress import Progress, TimeRemainingColumn
-
+    """Play and say how far it is: why it is incomplete, or None, and the exit code."""
     last = [time.monotonic()]
 
     def saved():
@@ -335,16 +335,14 @@ def _play(tournament, args, where):
             last[0] = time.monotonic()
 
     total, units = sum(2 * len(seeds) for _, seeds in tournament.parts), "frames" if args.match == 1 else "matches"
-    columns = (*Progress.get_default_columns()[:-1], TimeRemainingColumn(elapsed_when_finished=True))
-    with Progress(*columns, console=Console(stderr=True), transient=True, disable=args.quiet) as bar:
-        task = bar.add_task(units, total=total)
+    with Progress(f"tournament{where.says}", total, units, done=tournament.ended, quiet=args.quiet) as progress:
         try:
             if args.ray:
-                play_on(tournament, where, lambda n: bar.update(task, completed=n, description=f"{units}{where.says}"), saved)
+                play_on(tournament, where, progress.at, saved)
             else:
-                tournament.play(args.threads, lambda n: bar.update(task, completed=n), saved)
+                tournament.play(args.threads, progress.at, saved)
         except (KeyboardInterrupt, ClusterError) as error:
-            ended, stopped = len({tuple(row[:4]) for row in tournament.rows}), isinstance(error, KeyboardInterrupt)
+            ended, stopped = tournament.ended, isinstance(error, KeyboardInterrupt)
             kept = "these are kept" if ended else "nothing is kept"
             return f"{'interrupted' if stopped else error} after {ended:,} of {total:,} {units}: {kept}", 130 if stopped else 1
         except BaseException as error:

@@ -16,12 +16,12 @@ from ..players.stroke_players import BUDGET, StrokePlayer
 from ..players.trained import ModelPlayer, player_options
 
 
-def evaluate(recipe, model, visits):
+def evaluate(recipe, model, visits, said):
     """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, on the same tables, under the training's noise and physics.
 
     The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also figures of the planner with
     it and of the planner by the rule of thumb (``lookahead``). These are the first tables of ``agents.evaluate``. Raises ValueError if
-    there are not so many tables.
+    there are not so many tables. ``said(total)``: the ``Progress`` of so many visits.
     """
     options = player_options(recipe.env_kwargs)
     players = {"trained": ModelPlayer(model, options, view_of(recipe.view)), "ghost_ball": GhostBall(), "random": Random()}
@@ -31,7 +31,15 @@ def evaluate(recipe, model, visits):
     if not recipe.fidelity_given:  # some learn on "fast" to save time, and are meant to play on the usual fidelity
         shared.pop("fidelity", None)
     seeds = tables_of("held_out", visits)
-    return {name: summary(play_visits(player, visits, first_seed=seeds, **shared)) for name, player in players.items()}
+    figures = {}
+    with said(visits * len(players)) as progress:
+        for k, (name, player) in enumerate(players.items()):
+
+            def each(going, done=(k + 1) * visits, name=name):
+                progress.at(done - going, name)
+
+            figures[name] = summary(play_visits(player, visits, first_seed=seeds, each=each, **shared))
+    return figures
 
 
 def _better(a, b):

@@ -48,8 +48,8 @@ def arrived(agent, budget, seed):
 
 
 def one_thread(run):
-    """Let the networks of a player compute with one thread: the last bits of PyTorch's products depend on their number."""
-    if ":" in run or run.startswith("planner") or not is_player(run):
+    """Let a player of one's own compute with one thread of PyTorch, as models do: the last bits of its products depend on their number."""
+    if ":" in run:
         try:
             import torch
         except ImportError:  # one's own player may do without

@@ -24,7 +24,20 @@ from snooker_env.geometry import AIM_Y as POCKET_Y
 from snooker_env.geometry import AXIS_X, AXIS_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, IS_MIDDLE, POCKET_AIMS
 from snooker_env.kernels import GHOST_X as POT_X
 from snooker_env.kernels import GHOST_Y as POT_Y
-from snooker_env.kernels import POT_BALL, POT_COLUMNS, POT_POCKET, balls_on, bits, clear_segment, entry, find_pots, kernel, line_of, window
+from snooker_env.kernels import (
+    LINE_ROWS,
+    POT_BALL,
+    POT_COLUMNS,
+    POT_POCKET,
+    balls_on,
+    bits,
+    clear_segment,
+    entry,
+    find_pots,
+    kernel,
+    line_of,
+    window,
+)
 from snooker_env.kernels import TOLERANCE as POT_TOLERANCE
 
 DIRECT, BANK, PLANT, CANNON = range(4)
@@ -276,9 +289,9 @@ def _indirect(positions, on_table, ball_on, noses, e, shots):
 def direct_pots(positions, on_table, ball_on, shots, counts):
     """Fill ``shots`` (n, m, COLUMNS) with the direct pots of n tables, widest first; ``counts`` (n,) of them.
 
-    Where there is none the first is the line to the nearest ball on, with -1 for its ball.
+    Where there is none the first is the best other line of the cue ball (``line_of``), with -1 for its ball.
     """
-    found = np.empty((shots.shape[1], POT_COLUMNS))
+    found, space = np.empty((shots.shape[1], POT_COLUMNS)), np.empty((LINE_ROWS, POT_COLUMNS))
     for t in range(len(counts)):
         p, on = positions[t], balls_on(ball_on[t], bits(on_table[t]))
         counts[t] = find_pots(p, on_table[t], on, BALL_RADIUS, found)
@@ -293,7 +306,7 @@ def direct_pots(positions, on_table, ball_on, shots, counts):
             )
             row[TOLERANCE] = row[REACH] = found[j, POT_TOLERANCE]
         if counts[t] == 0:
-            row, angle = shots[t, 0], line_of(p, on_table[t], on, found)
+            row, angle = shots[t, 0], line_of(p, on_table[t], on, space)
             row[KIND], row[BALL], row[OTHER], row[POCKET], row[TOLERANCE], row[REACH] = DIRECT, -1, -1, -1, 0.0, 0.0
             row[AIM_X] = row[GHOST_X] = p[0, 0] + cos(angle)
             row[AIM_Y] = row[GHOST_Y] = p[0, 1] + sin(angle)

@@ -6,7 +6,6 @@ so that the grid does not limit the search.
 """
 
 import numpy as np
-import torch
 
 from snooker_env.planning import action_masks, sobol_points, strokes_at
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS
@@ -26,19 +25,17 @@ class PolicyProposals:
 
     Parameters
     ----------
-    policy : MaskableActorCriticPolicy
-        It observes ``with_pots``.
+    policy : TablePolicy
+        Its ``fused.scores`` are those of tables seen as ``with_pots`` shows them.
     """
 
     def __init__(self, policy):
         self.policy = policy
 
     def scores(self, at):
-        """Log-probabilities of all choices in n ``Positions``: float32 (n, CHOICES), and which are available."""
+        """Scores of all choices in n ``Positions``: float32 (n, CHOICES), and which are available."""
         masks = action_masks(at)
-        with torch.no_grad():
-            seen = torch.as_tensor(with_pots(at.observations()))
-            return self.policy.get_distribution(seen, masks).distribution.logits.numpy(), masks
+        return self.policy.fused.scores(with_pots(at.observations()), masks), masks
 
     def __call__(self, search, at, m, seeds):
         """m strokes for each position, as ``StrokeSearch`` wants them."""

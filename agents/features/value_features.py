@@ -23,6 +23,7 @@ FAR = 0.01
 LOGIT = SIZE - 1
 """The entry that holds the logit of the likeliest pot, where the network's own estimate begins."""
 WORTH_A_THREAD = 128
+"""Positions for which another thread pays."""
 _CORNER_EDGE, _MIDDLE_EDGE = cos(radians(50.0)), cos(radians(70.0))
 """Beyond these angles no pocket has a window (``kernels.window``)."""
 _NEAR_CUSHION, _CLUSTER = 3.0 * BALL_RADIUS, 2.3 * BALL_RADIUS
@@ -197,20 +198,19 @@ def _features(positions, on_table, ball_on, spread, out):
         _fill(positions[k], on_table[k], ball_on[k], spread, there, open_to, best, out[k])
 
 
+def in_parts(n, threads, fill):
+    """Call ``fill`` with slices of n positions, on as many threads as are worth it, at most ``threads``."""
+    threads = min(threads, n // WORTH_A_THREAD)
+    if threads <= 1:
+        fill(slice(0, n))
+        return
+    ends = np.linspace(0, n, threads + 1).astype(int).tolist()
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(fill, map(slice, ends[:-1], ends[1:])))
+
+
 def value_features(at, spread, threads=1):
     """Features of n ``Positions`` with the cue ball on the table: float32 (n, SIZE). ``spread``: of ``planning.spread_of``."""
-    n, ball_on = len(at), at.ball_on.copy()
-    out = np.empty((n, SIZE), np.float32)
-    threads = min(threads, n // WORTH_A_THREAD)
-
-    def fill(first, last):
-        here = slice(first, last)
-        _features(at.positions[here], at.on_table[here], ball_on[here], spread, out[here])
-
-    if threads <= 1:
-        fill(0, n)
-    else:
-        ends = np.linspace(0, n, threads + 1).astype(int)
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(fill, ends[:-1], ends[1:]))
+    ball_on, out = at.ball_on.copy(), np.empty((len(at), SIZE), np.float32)
+    in_parts(len(at), threads, lambda rows: _features(at.positions[rows], at.on_table[rows], ball_on[rows], spread, out[rows]))
     return out

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 import rich
-import rich.progress
 from stable_baselines3.common.callbacks import BaseCallback
 
 from .run_folder import save_checkpoint
 
 POINTS_OF_THE_CURVE = 20
+LOSSES = {"policy": "train/policy_gradient_loss", "value": "train/value_loss", "actor": "train/actor_loss", "critic": "train/critic_loss"}
+"""The losses that are said, by the names under which SB3 records them: of PPO, of SAC and TQC."""
 
 
 class Stop:
@@ -50,21 +51,18 @@ def goal_of(model, steps):
 
 
 class RunCallback(BaseCallback):
-    """Progress bar, learning curve, checkpoints and an orderly stop."""
+    """Progress, learning curve, checkpoints and an orderly stop."""
 
     def __init__(self, out, settings, seconds, curve, imitation, running, stop, progress):
         super().__init__()
         self.imitation, self.running, self.stop = imitation, running, stop
         self.out, self.settings, self.seconds_before, self.curve = out, settings, seconds, curve
-        self.bar = rich.progress.Progress(
-            "[progress.description]{task.description}", rich.progress.BarColumn(), rich.progress.MofNCompleteColumn(),
-            rich.progress.TimeElapsedColumn(), rich.progress.TextColumn("left"), rich.progress.TimeRemainingColumn(), disable=not progress,
-        )  # fmt: skip
+        self.progress, self.figures = progress, ""
         self.saved, self.stopping = None, False
 
     @property
     def seconds(self):
-        """Training time [s], with the time before a resume."""
+        """Time of this part of the training [s], with the time before a resume."""
         return self.seconds_before + time.perf_counter() - self.started
 
     def _on_training_start(self):
@@ -72,9 +70,6 @@ class RunCallback(BaseCallback):
         if self.running is not None:  # learn() begins with a reset, which set them to 0
             tables: Any = self.training_env
             tables.running = self.running
-        self.bar.start()
-        total = goal_of(self.model, self.settings.steps)
-        self.task = self.bar.add_task(self.settings.agent, total=total, completed=self.num_timesteps)
 
     def _on_rollout_start(self):
         # only here is there no rollout that has not been learned from: a checkpoint loses nothing
@@ -82,14 +77,17 @@ class RunCallback(BaseCallback):
         due = self.num_timesteps >= len(self.curve) * self.settings.steps // POINTS_OF_THE_CURVE
         if recent and due and self.num_timesteps > (self.curve[-1]["steps"] if self.curve else -1):  # a resume calls this a second time
             self.curve.append({"steps": self.num_timesteps, "points": round(float(np.mean(recent)), 3)})
-        if recent:
-            self.bar.update(self.task, description=f"{self.settings.agent} {np.mean(recent):.2f} points a visit")
+        rollout, losses = rollout_of(self.model), self.model.logger.name_to_value
+        words = [f"round {self.num_timesteps // rollout + 1:,} of {goal_of(self.model, self.settings.steps) // rollout:,}"]
+        words += [f"{name} loss {losses[key]:.3g}" for name, key in LOSSES.items() if key in losses]
+        words += [f"{np.mean(recent):.2f} points a visit"] if recent else []
+        self.figures = ", ".join(words)
         self.stopping = self.stop.signal is not None
         if self.stopping or self.saved is None or self.num_timesteps - self.saved >= self.settings.checkpoint_every:
             self.save()
 
     def _on_step(self):
-        self.bar.update(self.task, completed=self.num_timesteps)
+        self.progress.at(self.num_timesteps, self.figures)
         return not self.stopping  # SB3 can stop only here; the one shot since the save is repeated after a resume
 
     def _on_training_end(self):
@@ -113,19 +111,16 @@ half a second. One of expert iteration holds at most 41,000 positions with 2.3 k
 
 def imitate(imitation, out, settings, model, stop, progress):
     """Pre-train by imitation, with checkpoints in between. Returns whether it was completed."""
-    bar = rich.progress.Progress(disable=not progress)
-    task = bar.add_task(f"{settings.agent}: {imitation.doing}", total=imitation.states, completed=imitation.done)
     last, cost = time.perf_counter(), 0.0
-    with bar:
-        while imitation.done < imitation.states:
-            imitation.round()
-            bar.update(task, completed=imitation.done)
-            now = time.perf_counter()
-            if stop.signal is not None or now - last > max(LEAST, cost / SHARE):
-                save_checkpoint(out, settings, model, imitation.seconds, [], imitation.curve, imitation.get_state())
-                last = time.perf_counter()
-                cost = last - now
-            if stop.signal is not None:
-                return False
+    while imitation.done < imitation.states:
+        imitation.round()
+        progress.at(imitation.done, imitation.figures)
+        now = time.perf_counter()
+        if stop.signal is not None or now - last > max(LEAST, cost / SHARE):
+            save_checkpoint(out, settings, model, 0.0, [], imitation.curve, imitation.get_state())
+            last = time.perf_counter()
+            cost = last - now
+        if stop.signal is not None:
+            return False
     model.imitated = imitation.curve[-1]["states"]
     return True

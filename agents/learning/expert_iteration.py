@@ -19,6 +19,7 @@ from snooker_env import SnookerVectorEnv
 from snooker_env.planning import Positions, StrokeSearch, spread_of
 
 from ..cluster.job import Here
+from .imitation import round_of
 from .judged_choices import JudgedChoices
 from .self_play import in_slices, policy_given, positions_given
 from .value_learning import ValueLearning
@@ -64,8 +65,6 @@ class ExpertIteration:
     ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit for bit. ``where``: who plays
     the slices, ``Here`` by default, or a ``Cluster``; the result does not depend on it.
     """
-
-    doing = "learning a value and a policy from the planner"
 
     def __init__(self, model, venv, states, seed, threads, before=None, where=None):
         tables = venv.unwrapped.tables
@@ -119,10 +118,20 @@ class ExpertIteration:
         if self.done > hand:
             self._value.fit(remaining)
         if self.done * 20 // self.states > len(self.curve):
-            losses = [round(float(np.mean(one)), 3) if one else None for one in (self._choices.losses, self._value.losses)]
-            value = self._value.mean_target
-            entry = {"states": self.done, "seconds": round(self.seconds, 1), "loss": losses[0], "value_loss": losses[1]}
-            self.curve.append(entry | {"value": None if value is None else round(value, 2)})
+            self.curve.append({"states": self.done, "seconds": round(self.seconds, 1), **self._figures()})
+
+    def _figures(self):
+        """Mean losses of the last gradient steps, and the points that the value expects of a position; None before there are any."""
+        losses = [round(float(np.mean(one)), 3) if one else None for one in (self._choices.losses, self._value.losses)]
+        value = self._value.mean_target
+        return {"loss": losses[0], "value_loss": losses[1], "value": None if value is None else round(value, 2)}
+
+    @property
+    def figures(self):
+        """The same and the number of the round, in words."""
+        found = {name: value for name, value in self._figures().items() if value is not None}
+        words = {"loss": "loss {:.1f}", "value_loss": "value loss {:.2f}", "value": "{:.1f} points expected"}
+        return ", ".join([round_of(self.done, self.states, self._n), *(words[name].format(value) for name, value in found.items())])
 
     def _play(self):
         """Choose a stroke for each position, keep what its samples lead to, and go on with one of them."""

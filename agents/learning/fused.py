@@ -1,11 +1,13 @@
 """How are the choices, values and gradients of ``TablePolicy`` computed quickly? In blocks of tables that stay in the processor's cache.
 
 The plain network (``networks.TableReader`` and its heads) spends most of its time on moving intermediate results through memory, and on
-operations that PyTorch cannot join. Here the same functions are computed for ``BLOCK`` tables at a time, in arrays that are made once:
-PyTorch multiplies matrices, the kernels of ``fused_kernels`` do all that lies between. The gradient is written out by hand, layer by
-layer. tests/agents/learning/test_fused.py compares both with PyTorch's own.
+operations that PyTorch cannot join. Here the same functions are computed for ``BLOCK`` tables at a time, in arrays that are made once. The
+kernels of ``fused_kernels`` do all that lies between the layers. These are computed by ``dense_layers`` where a policy plays, so that a
+table's scores do not depend on the tables beside it, and by PyTorch where it learns, which is faster. The gradient is written out by hand,
+layer by layer. tests/agents/learning/test_fused.py compares scores, values and gradients with PyTorch's own.
 """
 
+from threading import Lock
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,16 +18,17 @@ from snooker_env.tasks import CHOICES, POTS, STROKES
 
 from ..features.pot_features import POT_ENTRIES
 from . import fused_kernels as kernels
+from .dense_layers import linear, relu
 from .fused_kernels import BALL_INPUTS, STATE
 
 BLOCK = 128
 """Tables of a block: their intermediate results take 3 MB."""
 SCORED = -(-STROKES // 16) * 16
-"""Columns of the scores: 144 take a sixth less time than 135, because whole registers are written."""
+"""Columns of the scores: 144 take less time than 135, because whole registers are written."""
 
 
 class FusedTable:
-    """Passes through the network of a ``TablePolicy`` with its present weights, on one thread."""
+    """Passes through the network of a ``TablePolicy`` with its present weights. Several threads may call it; one at a time computes."""
 
     def __init__(self, policy):
         reader, value = policy.features_extractor, policy.value_net.value
@@ -41,15 +44,26 @@ class FusedTable:
         parts = [self.gradient[end - p.numel() : end].view_as(p) for p, end in zip(self.parameters, ends, strict=True)]
         self._views = parts
         pairs = zip(layers.items(), parts[::2], parts[1::2], strict=True)
-        self._layers = {name: _Layer(layer, d_weight, d_bias) for (name, layer), d_weight, d_bias in pairs}
-        self._score_weight, self._score_bias = torch.zeros(layers["scores"].in_features, SCORED), torch.zeros(SCORED)
-        self._blocks = {}
+        wider = {"scores": SCORED}
+        self._layers = {name: _Layer(layer, d_weight, d_bias, wider.get(name)) for (name, layer), d_weight, d_bias in pairs}
+        self._blocks, self._lock = {}, Lock()
 
     def zero_grad(self):
         """Set the gradient to 0."""
         self.gradient.zero_()
         for p, view in zip(self.parameters, self._views, strict=True):
             p.grad = view
+
+    def scores(self, seen, masks):
+        """The scores of all choices (n, CHOICES) on n tables, ``fused_kernels.NEVER`` for those not available. Arguments as in ``act``."""
+        scores = np.empty((len(seen), CHOICES), np.float32)
+        with self._lock:
+            for b, rows in self._blocks_of(np.arange(len(seen))):
+                here = scores[rows[0] : rows[-1] + 1]
+                self._read(b, rows, seen, _Layer.by_kernel)
+                self._score(b, rows, masks, here, _Layer.by_kernel)
+                kernels.as_seen(here, b.sides)
+        return scores
 
     def act(self, seen, masks, uniform):
         """Choices drawn for n tables (int64), the values and the logarithms of the choices' probabilities (float32), each (n,).
@@ -58,11 +72,9 @@ class FusedTable:
         """
         n = len(seen)
         choices, values, logs = np.empty(n, np.int64), np.empty(n, np.float32), np.empty(n, np.float32)
-        with torch.no_grad():
-            self._refresh()
-            for start in range(0, n, BLOCK):
-                rows = np.arange(start, min(start + BLOCK, n))
-                here, b = slice(start, start + len(rows)), self._block(len(rows))
+        with self._lock, torch.no_grad():
+            for b, rows in self._blocks_of(np.arange(n)):
+                here = slice(rows[0], rows[-1] + 1)
                 self._forward(b, rows, seen, masks)
                 kernels.draw(b.likely_, uniform[here], b.sides, choices[here])
                 kernels.log_probabilities(b.by_table_, b.likely_, b.sides, choices[here], logs[here])
@@ -77,11 +89,8 @@ class FusedTable:
         share of clipped ratios and the approximate KL divergence.
         """
         sums, size = np.zeros(5), len(rows)
-        with torch.no_grad():
-            self._refresh()
-            for start in range(0, size, BLOCK):
-                here = rows[start : start + BLOCK]
-                b = self._block(len(here))
+        with self._lock, torch.no_grad():
+            for b, here in self._blocks_of(rows):
                 m = self._forward(b, here, seen, masks)
                 torch.sum(torch.mul(b.likely, b.by_table, out=b.d_by_table), 1, out=b.mean)
                 kernels.ppo_gradient(
@@ -91,35 +100,44 @@ class FusedTable:
                 self._backward(b, m)
         return sums / size
 
-    def _refresh(self):
-        """Take the present weights of the scores."""
-        layer = self._layers["scores"]
-        self._score_weight[:, :STROKES], self._score_bias[:STROKES] = layer.turned, layer.bias
+    def _blocks_of(self, rows):
+        """The arrays for each ``BLOCK`` of the rows, and these; takes the present weights first."""
+        for layer in self._layers.values():
+            layer.refresh()
+        for start in range(0, len(rows), BLOCK):
+            here = rows[start : start + BLOCK]
+            yield self._block(len(here)), here
 
     def _block(self, n):
         if n not in self._blocks:
             self._blocks = {k: b for k, b in self._blocks.items() if k == BLOCK} | {n: _Block(n, self._layers)}
         return self._blocks[n]
 
-    def _linear(self, name, x, out):
-        layer = self._layers[name]
-        return torch.addmm(layer.bias, x, layer.turned, out=out)
+    def _read(self, b, rows, seen, linear):
+        """The results of all layers before the heads for the tables seen[rows]; returns their number of object balls."""
+        layers = self._layers
+        m = kernels.read_tables(rows, seen, b.balls_, b.group, b.first, b.pots_, b.context_, b.at, b.sides)
+        linear(layers["ball_2"], _relu(linear(layers["ball_1"], b.balls_[:m], b.ball_1_[:m])), b.ball_2_[:m])
+        kernels.sum_balls(b.ball_2_, b.group, b.first, b.context_, b.width)
+        linear(layers["pot_2"], _relu(linear(layers["pot_1"], b.pots_, b.pot_1_)), b.pot_2_)
+        kernels.sum_pots(b.pot_2_, b.pots_, b.context_, 3 * b.width)
+        _relu(linear(layers["context_2"], _relu(linear(layers["context_1"], b.context_, b.context_1_)), b.context_2_))
+        return m
+
+    def _score(self, b, rows, masks, scores, linear):
+        """Write the scores of all choices of the tables that were read, as ``mask_scores`` does."""
+        layers = self._layers
+        linear(layers["shared"], b.context_2_, b.shared_)
+        linear(layers["joint"], b.pot_2_, b.joint_)
+        kernels.join(b.joint_, b.shared_, b.pots_)
+        linear(layers["scores"], b.joint_, b.scores_)
+        kernels.mask_scores(rows, masks, b.sides, b.scores_, scores)
 
     def _forward(self, b, rows, seen, masks):
         """The results of all layers for the tables seen[rows]; returns their number of object balls."""
-        m = kernels.read_tables(rows, seen, b.balls_, b.group, b.first, b.pots_, b.context_, b.at, b.sides)
-        self._linear("ball_2", self._linear("ball_1", b.balls[:m], b.ball_1[:m]).relu_(), b.ball_2[:m])
-        kernels.sum_balls(b.ball_2_, b.group, b.first, b.context_, b.width)
-        self._linear("pot_2", self._linear("pot_1", b.pots, b.pot_1).relu_(), b.pot_2)
-        kernels.sum_pots(b.pot_2_, b.pots_, b.context_, 3 * b.width)
-        self._linear("context_2", self._linear("context_1", b.context, b.context_1).relu_(), b.context_2).relu_()
-        self._linear("shared", b.context_2, b.shared)
-        joint = self._layers["joint"]
-        torch.mm(b.pot_2, joint.turned, out=b.joint)
-        kernels.join(b.joint_, b.shared_, joint.bias_, b.pots_)
-        torch.addmm(self._score_bias, b.joint, self._score_weight, out=b.scores)
-        self._linear("value_2", self._linear("value_1", b.context_2, b.value_1).relu_(), b.value_2)
-        kernels.mask_scores(rows, masks, b.sides, b.scores_, b.by_table_)
+        m, layers, linear = self._read(b, rows, seen, _Layer.by_torch), self._layers, _Layer.by_torch
+        self._score(b, rows, masks, b.by_table_, linear)
+        linear(layers["value_2"], _relu(linear(layers["value_1"], b.context_2_, b.value_1_)), b.value_2_)
         torch.softmax(b.by_table, 1, out=b.likely)
         return m
 
@@ -172,12 +190,34 @@ class FusedTable:
 
 
 class _Layer:
-    """A linear layer's weights and their gradients, without autograd; ``turned``: the transposed weights."""
+    """A linear layer's weights and their gradients, without autograd. Its results: ``by_kernel`` where one plays, ``by_torch`` to learn."""
 
-    def __init__(self, layer, d_weight, d_bias):
-        self.weight, self.bias, self.outputs = layer.weight.detach(), layer.bias.detach(), int(layer.out_features)
-        self.turned, self.bias_ = self.weight.t(), self.bias.numpy()
+    def __init__(self, layer, d_weight, d_bias, columns=None):
+        self.weight, self._bias, self.outputs = layer.weight.detach(), layer.bias.detach(), int(layer.out_features)
+        columns = columns or self.outputs
+        self._own = np.zeros((layer.in_features, columns), np.float32), np.zeros(columns, np.float32)
+        self._turned, self._bias_turned = map(torch.from_numpy, self._own)
         self.d_weight, self.d_bias, self.d_turned = d_weight, d_bias, d_weight.t()
+
+    def refresh(self):
+        """Take the present weights."""
+        weight, bias = self._own
+        weight[:, : self.outputs], bias[: self.outputs] = self.weight.numpy().T, self._bias.numpy()
+
+    def by_kernel(self, rows, out):
+        """Write the results for each row; returns them."""
+        linear(rows, *self._own, out)
+        return out
+
+    def by_torch(self, rows, out):
+        """The same on PyTorch's threads, a third faster on one; the last bits depend on the number of rows."""
+        torch.addmm(self._bias_turned, torch.from_numpy(rows), self._turned, out=torch.from_numpy(out))
+        return out
+
+
+def _relu(x):
+    relu(x)
+    return x
 
 
 class _Block(SimpleNamespace):

@@ -118,16 +118,15 @@ def sum_pots(codes, pots, context, at):
 
 
 @entry
-def join(joint, shared, bias, pots):
-    """joint (n * POTS, width) = ReLU(joint + shared of the table + bias), in place, 0 where there is no pot."""
+def join(joint, shared, pots):
+    """joint (n * POTS, width) = ReLU(joint + shared of the table), in place, 0 where there is no pot."""
     width = joint.shape[1]
     for j in range(shared.shape[0]):
         common = shared[j]
         for p in range(POTS * j, POTS * (j + 1)):
             row, there = joint[p], pots[p, 0]
             for c in range(width):
-                x = row[c] + (common[c] + bias[c])
-                row[c] = max(x, _ZERO) * there
+                row[c] = max(row[c] + common[c], _ZERO) * there
 
 
 @entry
@@ -174,7 +173,7 @@ def mirrored(choice):
 
 @entry
 def mask_scores(rows, masks, sides, scores, out):
-    """The scores (n, choices) of the choices that masks[rows] allows, ``NEVER`` for others; sides are exchanged on mirrored tables.
+    """The scores (n, choices) of the choices that masks[rows] allows, ``NEVER`` for others; a mirrored table's are those in the mirror.
 
     scores (n * POTS, STROKES or more): of each pot's strokes.
     """
@@ -190,6 +189,18 @@ def mask_scores(rows, masks, sides, scores, out):
                     other = mirrored(at + c)
                     for t in range(_TOPS):
                         row[at + c + t] = of_pot[c + t] if own[other + t] else NEVER
+
+
+@entry
+def as_seen(scores, sides):
+    """Exchange the sides of strokes in scores (n, choices), in place, where the table was read mirrored."""
+    for j in range(scores.shape[0]):
+        if sides[j] < 0.0:
+            row = scores[j]
+            for c in range(row.shape[0]):
+                other = mirrored(c)
+                if other > c:
+                    row[c], row[other] = row[other], row[c]
 
 
 @entry

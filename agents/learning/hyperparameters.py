@@ -91,6 +91,16 @@ class Recipe:
         fidelity_given = any("fidelity" in options for options in (env_kwargs or {}, changed.get("env_kwargs", {})))
         return cls(name, **{key: found.pop(key) for key in own}, settings=found, fidelity_given=fidelity_given)
 
+    @property
+    def method(self):
+        """The name of the algorithm, as PPO."""
+        return self.algo.partition("_")[0].upper()
+
+    @property
+    def pretraining(self):
+        """The name of what precedes it."""
+        return "expert iteration" if self.expert else "imitation"
+
     def new_model(self, tables, seed):
         """The untrained agent on these tables."""
         from stable_baselines3.common.utils import LinearSchedule

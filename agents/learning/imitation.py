@@ -71,13 +71,12 @@ class Imitation:
     ``before``: of ``get_state``, with the model and its tables restored: the result equals that of an uninterrupted run, bit for bit.
     """
 
-    doing = "imitating the search"
-
     def __init__(self, model, venv, states, seed, threads, before=None, where=None):
         self._model, self._venv, self.states, self._rng = model, venv, states, np.random.default_rng(seed)
         self._expert = Expert(venv.unwrapped.tables, threads, self._rng, model.gamma > 0, where)
         self._optimizer = torch.optim.Adam(model.policy.parameters(), RATE)
         self.done, self.curve, self._kept, self._losses, self._seconds = 0, [], [], deque(maxlen=200), 0.0
+        self._points = deque(maxlen=1000)
         if before is None:
             venv.seed(seed)
         else:
@@ -100,6 +99,14 @@ class Imitation:
             "rng": self._rng.bit_generator.state, "optimizer": self._optimizer.state_dict(),
         }  # fmt: skip
 
+    @property
+    def figures(self):
+        """Round, mean loss of the last gradient steps and points of the last visits, in words."""
+        words = [round_of(self.done, self.states, self._venv.num_envs)]
+        words += [f"loss {np.mean(self._losses):.1f}"] if self._losses else []
+        words += [f"{np.mean(self._points):.2f} points a visit"] if self._points else []
+        return ", ".join(words)
+
     def round(self):
         """Learn from the present position of every table and play on. Every twentieth of all positions gives an entry of ``curve``."""
         policy, n = self._model.policy, self._venv.num_envs
@@ -115,11 +122,17 @@ class Imitation:
             rounds = self._rng.integers(len(self._kept), size=max(1, BATCH // n))
             batch = (np.concatenate(column) for column in zip(*(self._kept[i] for i in rounds), strict=True))
             self._losses.append(fit_values(policy, self._optimizer, *batch))
-        self._seen, _, _, _ = self._venv.step(np.where(masks, scores, -np.inf).argmax(1))
+        self._seen, _, _, infos = self._venv.step(np.where(masks, scores, -np.inf).argmax(1))
+        self._points.extend(info["episode"]["r"] for info in infos if "episode" in info)
         self.done += n
         if self.done * 20 // self.states > len(self.curve):
             loss = float(np.mean(self._losses))
             self.curve.append({"states": self.done, "seconds": round(self.seconds, 1), "loss": round(loss, 3)})
+
+
+def round_of(done, total, n):
+    """The round in progress in words: n positions a round."""
+    return f"round {-(-done // n):,} of {-(-total // n):,}"
 
 
 def fit_values(policy, optimizer, seen, masks, picks, there, worths):

@@ -183,12 +183,28 @@ class TablePolicy(_Policy):
 
     def forward(self, obs, deterministic=False, action_masks=None):
         """As in the base class. Drawing with masks, in a rollout, is quick: one random number a table from PyTorch's generator."""
-        plain = deterministic or action_masks is None or torch.is_grad_enabled() or obs.device.type != "cpu"
-        if plain or not self.has_fused:
+        if deterministic or not self._plays(obs, action_masks):
             return super().forward(obs, deterministic, action_masks)
-        seen, masks = np.ascontiguousarray(obs.float().numpy()), np.ascontiguousarray(action_masks, np.bool_).reshape(len(obs), -1)
-        choices, values, logs = self.fused.act(seen, masks, torch.rand(len(obs)).numpy())
+        choices, values, logs = self.fused.act(*_given(obs, action_masks), torch.rand(len(obs)).numpy())
         return torch.as_tensor(choices), torch.as_tensor(values)[:, None], torch.as_tensor(logs)
+
+    def get_distribution(self, obs, action_masks=None):
+        """As in the base class; with masks and without gradients by the quick passes."""
+        if not self._plays(obs, action_masks):
+            return super().get_distribution(obs, action_masks)
+        seen, masks = _given(obs, action_masks)
+        found = self.action_dist.proba_distribution(action_logits=torch.from_numpy(self.fused.scores(seen, masks)))
+        found.apply_masking(masks)
+        return found
+
+    def _plays(self, obs, action_masks):
+        """Whether there are quick passes for these observations."""
+        return self.has_fused and action_masks is not None and not torch.is_grad_enabled() and obs.device.type == "cpu"
+
+
+def _given(obs, action_masks):
+    """Observations and masks as ``FusedTable`` takes them."""
+    return np.ascontiguousarray(obs.float().numpy()), np.ascontiguousarray(action_masks, np.bool_).reshape(len(obs), -1)
 
 
 class JudgedPolicy(TablePolicy):

@@ -17,41 +17,18 @@ from commands.files import write_atomic
 from snooker_env.checks import choice, integer, number, refuse
 from snooker_env.tasks import CHOICES, OBSERVATION_SIZE
 
+from .dense_layers import ACTIVATIONS, Layers
 from .hyperparameters import SHOT_OPTIONS, TRAINING_OPTIONS
 from .model_files import Trained
 
-ACTIVATIONS = {"tanh": np.tanh, "relu": lambda x: np.maximum(x, 0.0)}
-"""Between two layers; after the last one there is none."""
 MOST = 2**27
 """The most bytes of weights that are read: a hundred times the largest policy of this repository."""
 ABOUT = {"trainer": "RLlib", "activation": "tanh", "shots": 0, "seed": 0, "gamma": 0.95, "env_options": {}}
 """What ``about`` says, with an example: ``env_options`` are the layout, noise, ... of the training."""
 
 
-class Layers:
-    """A multilayer perceptron: one row of scores for each row of observations.
-
-    Parameters
-    ----------
-    weights : list of (numpy.ndarray, numpy.ndarray)
-        (out, in) and (out,) of each layer, from the observation to the choices.
-    activation : {"tanh", "relu"}
-        Between two layers.
-    """
-
-    def __init__(self, weights, activation):
-        self.weights, self.activation = [tuple(np.asarray(part, np.float32) for part in layer) for layer in weights], activation
-
-    def __call__(self, rows):
-        """float32 (n, 121) -> (n, 540)."""
-        *hidden, (weight, bias) = self.weights
-        for inner, shift in hidden:
-            rows = ACTIVATIONS[self.activation](rows @ inner.T + shift)
-        return rows @ weight.T + bias
-
-
 def packed_policy(weights, **about):
-    """A policy as the bytes of its file. ``weights``: as in ``Layers``; ``about``: a value for each key of ``ABOUT``."""
+    """A policy as the bytes of its file. ``weights``: as in ``dense_layers.Layers``; ``about``: a value for each key of ``ABOUT``."""
     if set(about) != set(ABOUT):
         raise refuse("about", sorted(about), f"must have the keys {', '.join(ABOUT)}")
     arrays = {}
@@ -68,7 +45,7 @@ def write_policy(path, weights, **about):
 
 
 def read_policy(path, field):
-    """The ``Trained`` policy in a file, its network a ``Layers``. Raises ValueError, naming ``field``; nothing is unpickled."""
+    """The ``Trained`` policy in a file, its network ``dense_layers.Layers``. Raises ValueError, naming ``field``; nothing is unpickled."""
     try:
         with zipfile.ZipFile(path) as parts:
             if sum(part.file_size for part in parts.infolist()) > MOST:

@@ -1,8 +1,8 @@
 """How is a round of self-play simulated, here or by many workers? In slices of ``SLICE`` positions, by the weights of the learner.
 
-The learner draws all random numbers and cuts the positions into slices; a slice is computed from these alone. A slice has the same size
-wherever it is computed, since the last bits of a network's product depend on how many rows it has. So a training does not depend on the
-number of workers, not even when one dies and its slice is computed again.
+The learner draws all random numbers and cuts the positions into slices; a slice is computed from these alone, and no position's results
+depend on those beside it (``dense_layers``). So a training does not depend on the number of workers, not even when one dies and its slice
+is computed again.
 """
 
 from copy import copy
@@ -155,14 +155,10 @@ def _proposals(shared):
 
 def _network(recipe, env_options, view):
     """The untrained network of a recipe."""
-    import torch
-
     from snooker_env import SnookerVectorEnv
 
     from ..features.views import view_of
     from .hyperparameters import Recipe
 
-    torch.set_num_threads(1)
-    torch.distributions.Distribution.set_default_validate_args(False)
     tables = SnookerVectorEnv(1, **env_options)
     return Recipe.of(recipe, env_kwargs=env_options).new_network(view_of(view).space, tables.single_action_space)

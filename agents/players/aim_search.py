@@ -50,7 +50,8 @@ class Aimer:
         """An action (4,) float32 for each of n ``Positions``.
 
         In this order, until one pots without execution errors: the widest direct pot along its solved line; the direct pot with the widest
-        interval of aims; the indirect pot with the widest one. If none does, the first line (without a direct pot: to the nearest ball on).
+        interval of aims; the indirect pot with the widest one. If none does, the first line (without a direct
+        pot: at what is seen of a ball on, or an escape).
         """
         n, ball_on = len(at), at.ball_on.copy()
         shots, counts = np.empty((n, 1, COLUMNS)), np.empty(n, np.int64)

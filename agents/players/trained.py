@@ -11,6 +11,7 @@ from gymnasium import spaces
 
 from snooker_env.benchmark import FittingModel
 from snooker_env.checks import integer, number
+from snooker_env.tasks.saved_models import one_thread
 
 from ..features.pot_features import PlainView
 from ..features.views import view_of
@@ -52,7 +53,8 @@ class ModelPlayer:
         seen = self._view(tables, observations[going], going)
         masks = {"action_masks": self._view.masks(tables)[going]} if self._masked else {}
         actions = np.zeros(tables.action_space.shape, tables.action_space.dtype)
-        actions[going] = self.model.policy.predict(seen, deterministic=True, **masks)[0]
+        with one_thread():
+            actions[going] = self.model.policy.predict(seen, deterministic=True, **masks)[0]
         return actions
 
     def rank(self, tables, observations, going):
@@ -63,7 +65,7 @@ class ModelPlayer:
 
         policy, masks = self.model.policy, self._view.masks(tables)[going]
         seen, _ = policy.obs_to_tensor(self._view(tables, observations[going], going))
-        with torch.no_grad():
+        with one_thread(), torch.no_grad():
             shares = policy.get_distribution(seen, action_masks=masks).distribution.probs.cpu().numpy()
         orders = np.argsort(np.where(masks, -shares, np.inf), axis=1, kind="stable")
         counts = masks.sum(axis=1).tolist()

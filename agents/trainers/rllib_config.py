@@ -106,7 +106,7 @@ def restore(algorithm, folder):
 
 
 def layers_of(algorithm):
-    """The weights of its policy, as ``policy_files.Layers`` takes them."""
+    """The weights of its policy, as ``dense_layers.Layers`` takes them."""
     state = algorithm.get_module(DEFAULT_MODULE_ID).get_state()
     names = [f"encoder.encoder.net.mlp.{2 * k}" for k in range(len(HIDDEN))] + ["pi.net.mlp.0"]
     return [(state[f"{name}.weight"], state[f"{name}.bias"]) for name in names]

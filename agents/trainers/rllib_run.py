@@ -42,6 +42,7 @@ with needs("agents.train_rllib"):
     from snooker_env.benchmark import play_visits, summary, tables_of
     from snooker_env.checks import integer, refuse
     from snooker_env.game import HELD_OUT
+    from snooker_env.progress import Progress
 
     from ..evaluation.training_summary import show
     from ..learning.callback import Stop
@@ -113,7 +114,7 @@ def checked(settings):
 
 
 @dataclass
-class Progress:
+class Counters:
     """How far a run has come: what ``state.json`` holds beside the settings."""
 
     shots: int = 0
@@ -128,10 +129,10 @@ class Progress:
 def opened(out, given, resume):
     """(settings, progress) of a new run or of the one in the folder. Raises ValueError."""
     if not resume:
-        return checked(RunSettings(**given)), Progress()
+        return checked(RunSettings(**given)), Counters()
     try:
         found = json.loads((out / STATE).read_text(encoding="utf-8"))
-        was, progress = checked(RunSettings(**found["settings"])), Progress(**found["progress"])
+        was, progress = checked(RunSettings(**found["settings"])), Counters(**found["progress"])
         if not (out / str(progress.checkpoint)).is_dir():
             raise ValueError(f"{progress.checkpoint} is missing")
     except (OSError, ValueError, KeyError, TypeError) as error:
@@ -180,7 +181,13 @@ def _write(file, settings, progress, algorithm):
 
 
 def train(out, settings, progress, algorithm, stop):
-    """Updates until all shots are played or a signal comes, with checkpoints and a line for each update."""
+    """Updates until all shots are played or a signal comes, with checkpoints."""
+    with Progress("RLlib", settings.steps, "shots", done=progress.shots, to=sys.stdout) as said:
+        _train(out, settings, progress, algorithm, stop, said)
+    save(out, settings, progress, algorithm)
+
+
+def _train(out, settings, progress, algorithm, stop, said):
     saved, before, began = progress.shots, progress.seconds, time.perf_counter()
     while progress.shots < settings.steps and stop.signal is None:
         found = algorithm.train().get("env_runners")
@@ -189,12 +196,10 @@ def train(out, settings, progress, algorithm, stop):
             raise SystemExit(f"agents.train_rllib: no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots")
         progress.shots, progress.updates = int(found["num_env_steps_sampled_lifetime"]), progress.updates + 1
         progress.seconds = before + time.perf_counter() - began
-        points, rate = found.get("episode_return_mean", float("nan")), progress.shots / progress.seconds
-        print(f"RLlib: {progress.shots:,} of {settings.steps:,} shots, {points:.2f} points a visit, {rate:.0f} shots/s", flush=True)
+        said.at(progress.shots, f"update {progress.updates:,}, {found.get('episode_return_mean', float('nan')):.2f} points a visit")
         if progress.shots - saved >= settings.checkpoint_every:
             save(out, settings, progress, algorithm)
             saved = progress.shots
-    save(out, settings, progress, algorithm)
 
 
 def judge(out, settings, progress):

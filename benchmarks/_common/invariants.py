@@ -3,7 +3,8 @@
 The log holds each ball's motion as closed forms, so what lies between two events is checked as well as the events: for every pair the
 gap is followed by steps no longer than the gap allows (at least ``LEAST``, which can hide 2e-10 m at the most), and so are jaws.
 Energies are kinetic, of translation and rotation, per unit mass. A ball in the air over a pocket is judged by what it brings back: it may
-return with no more energy than it had at the edge.
+return with no more energy than it had at the edge. And all balls together may at no event have more than they had, those in the air
+no more than that and what a fall by R gives.
 """
 
 from dataclasses import dataclass
@@ -15,21 +16,26 @@ import numpy as np
 from snooker_env.physics import cloth
 from snooker_env.physics.cloth import AX, AY, COLUMNS, FALLING, GONE, REST, T0, T_END, VX, VY, X, Y
 from snooker_env.physics.engine import EventKind, Status
-from snooker_env.physics.parameters import P_MU_BB_EXTRA, P_MU_BB_LEAST, P_MU_S, P_R, P_SPIN
+from snooker_env.physics.parameters import P_G, P_MU_BB_EXTRA, P_MU_BB_LEAST, P_MU_S, P_R, P_SPIN
 from snooker_env.simulation import MAX_EVENTS, _run
 
-FINITE, CLOCK, JUMP, ENERGY, PHASE, MOMENTUM, PARTING, OVERLAP, CUSHION, REST_TIME, ACCOUNT = range(11)
-NAMES = ("finite", "clock", "jump", "energy at impact", "energy between", "momentum", "parting", "overlap", "in cushion", "rest", "account")
+FINITE, CLOCK, JUMP, ENERGY, PHASE, ALL, MOMENTUM, PARTING, OVERLAP, CUSHION, OUTSIDE, REST_TIME, ACCOUNT = range(13)
+NAMES = (
+    "finite", "clock", "jump", "energy at impact", "energy between", "energy of all", "momentum", "parting", "overlap", "in cushion",
+    "off the table", "rest", "account",
+)  # fmt: skip
 WHAT = {
     "finite": "numbers that are not finite",
     "clock": "time going backwards [s]",
     "jump": "jump of a path at an event [m]",
     "energy at impact": "energy gained in an impact, over the energy of its balls",
     "energy between": "energy gained between events, over the ball's",
+    "energy of all": "energy gained by all balls together, those in the air too, over the shot's, for each event of a flight",
     "momentum": "momentum of a pair changed by more than the cloth can [of the impulse]",
     "parting": "speed of a pair still closing after its impact, over the closing speed",
     "overlap": "overlap of two balls, at events and between [m]",
     "in cushion": "overlap with a nose or jaw, at events and between [m]",
+    "off the table": "place of a ball on the bed beyond all noses and falls [m]",
     "rest": "speed (v + R w) left at the reported time of rest [m/s]",
     "account": "balls whose place, fate or log does not add up",
 }
@@ -75,8 +81,43 @@ def _follow(rows, state, a, b, start, stop, d, phys):
 
 
 @numba.njit(nogil=True, error_model="numpy")
+def _all_energy(rows, state, t, phys):
+    """Energy of all balls at t, those in the air with no more than is certain; how many are in the air."""
+    total, air = 0.0, 0
+    for i in range(len(rows)):
+        if state[i] != GONE:
+            _, v, w = cloth.evaluate(rows, state, i, t, phys)
+            total += _energy(v, w, phys[P_R])
+            if state[i] == FALLING:
+                total -= phys[P_G] * phys[P_R]
+                air += 1
+    return total, air
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _beyond(r, noses, falls):
+    """How far a centre is outside the rectangle about the noses and falls [m]."""
+    out = -inf
+    for axis in range(2):
+        for side in (-1.0, 1.0):
+            level = -inf
+            for k in range(len(noses)):
+                if noses[k, 0] == axis and noses[k, 1] == side:
+                    level = max(level, noses[k, 2])
+            if level > -inf:
+                for k in range(len(falls)):
+                    level = max(level, side * falls[k, axis] + falls[k, 2])
+                out = max(out, side * r[axis] - level)
+    return out
+
+
+@numba.njit(nogil=True, error_model="numpy")
 def _in_boundary(r, noses, jaws, R):
-    """How deep a centre is in a nose or jaw; how far it is from the next jaw."""
+    """How deep a centre is in a nose or jaw; how far it is from the next jaw.
+
+    A jaw is no deeper than a ball: behind a straight facing, far away, lies another part of the table. (No path gets there unseen: it is
+    followed by steps much shorter.)
+    """
     deepest, clear = -inf, inf
     for k in range(len(noses)):
         across, along = (r[0], r[1]) if noses[k, 0] == 0.0 else (r[1], r[0])
@@ -85,7 +126,7 @@ def _in_boundary(r, noses, jaws, R):
     for k in range(len(jaws)):
         dx, dy = r[0] - jaws[k, 0], r[1] - jaws[k, 1]
         far = hypot(dx, dy)
-        if dx * jaws[k, 3] + dy * jaws[k, 4] >= jaws[k, 5] * far:
+        if dx * jaws[k, 3] + dy * jaws[k, 4] >= jaws[k, 5] * far and jaws[k, 2] - R < far:
             deepest = max(deepest, jaws[k, 2] + R - far)
         clear = min(clear, far - jaws[k, 2] - R)
     return deepest, clear
@@ -124,6 +165,8 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
         rows[i] = segments[i, :COLUMNS]
         state[i] = int(segments[i, COLUMNS + 1])
     at, now = n, 0.0
+    shot, _ = _all_energy(rows, state, 0.0, phys)
+    had, flown = shot, 0  # what all balls had when none was last in the air, and the events since then
     for e in range(n_events):
         kind, i, j = what[e, 0], what[e, 1], what[e, 2]
         balls = 2 if kind == _BALL_BALL else 1
@@ -165,6 +208,16 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
                 _, v, w = cloth.evaluate(rows, state, b, t, phys)
                 after += _energy(v, w, R)
         at += balls
+        total, air = _all_energy(rows, state, t, phys)
+        flown += 1
+        if shot > 0.0:
+            _note(worst, ALL, (total - had) / (shot * flown))
+        if air == 0:
+            had, flown = total, 0
+        for k in range(balls):
+            b = i if k == 0 else j
+            if state[b] != FALLING and state[b] != GONE:
+                _note(worst, OUTSIDE, _beyond((rows[b, X], rows[b, Y]), noses, falls))
         in_air = old_state[i] == FALLING or (balls == 2 and old_state[j] == FALLING)
         if kind == _DROP:
             brought[i] = before

@@ -3,6 +3,7 @@
 import json
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -19,7 +20,9 @@ from agents.learning.hyperparameters import names
 from agents.players.built_in import GhostBall, Random
 from agents.players.by_name import player_of
 from agents.players.trained import load_player
+from snooker_env import progress
 from snooker_env.benchmark import play_visits, summary, tables_of
+from snooker_env.progress import Progress
 
 ROOT = Path(__file__).resolve().parents[2]
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
@@ -37,6 +40,10 @@ def weights(out):
     """Every parameter of the saved model, flat."""
     model = load_player(out).model
     return np.concatenate([p.detach().numpy().ravel() for p in model.policy.parameters()])
+
+
+def silent(total):
+    return Progress("evaluation", total, "visits", quiet=True)
 
 
 def results(out):
@@ -67,11 +74,13 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
     assert list((out / "tb").rglob("events.out.tfevents.*"))
     found = results(out)
     assert set(found) == {
-        "command", "settings", "steps", "seconds", "steps_per_second", "start", "learned", "evaluation", "curve", "imitation", "versions",
+        "command", "settings", "steps", "seconds", "parts", "start", "learned", "evaluation", "curve", "imitation", "versions",
         "git_commit", "processors",
     }  # fmt: skip
     assert found["settings"]["agent"] == agent and found["steps"] == 512
-    assert found["steps_per_second"] == pytest.approx(512 / found["seconds"])
+    (part,) = found["parts"]
+    assert (part["part"], part["unit"], part["amount"]) == (agent.partition("_")[0].upper(), "shots", 512)
+    assert part["seconds"] == found["seconds"] and part["per_second"] == pytest.approx(512 / found["seconds"])
     assert set(found["evaluation"]) == {"trained", "ghost_ball", "random"}
     for figures in found["evaluation"].values():
         assert figures["visits"] == 4
@@ -118,6 +127,34 @@ def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, 
     before, after = results(finished / agent), results(tmp_path / "run")
     for name in ("evaluation", "settings", "steps", "curve", "learned"):
         assert after[name] == before[name]
+
+
+def test_it_says_in_a_pipe_what_it_does(tmp_path, capsys, monkeypatch):
+    """A line at the start of each part and every few seconds, with what was measured; the last words give each part its own time."""
+    monkeypatch.setattr(progress, "EVERY", 0.02)
+    spoken = [word for word in TINY if word != "--no-progress"]
+    more = ["--agent", "ppo_foresight", "--imitate", "64", "--steps", "256", "--out", str(tmp_path / "run")]
+    assert train.main([*spoken, *more]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    parts = [
+        ("part 1 of 3, imitation", "64 positions", r"round \d+ of 32, loss [\d.]+, (.* points a visit, )?.*positions/s"),
+        ("part 2 of 3, PPO", "256 shots", r"round 2 of 2, policy loss \S+, value loss \S+, [\d.]+ points a visit, .*shots/s"),
+        ("part 3 of 3, evaluation", "12 visits", r"(trained|ghost_ball|random), .*visits/s"),
+    ]
+    for name, total, figures in parts:
+        said = [line for line in lines if line.startswith(f"ppo_foresight, {name}: ")]
+        assert said[0] == f"ppo_foresight, {name}: 0 of {total}"
+        assert re.fullmatch(rf"ppo_foresight, {name}: {total.split()[0]} of {total}, .* elapsed", said[-1])
+        assert [line for line in said[1:-1] if re.search(rf"of {total}, {figures}, [\d:]+ elapsed, [\d:]+ left$", line)], said
+    found = results(tmp_path / "run")
+    assert [(part["part"], part["amount"], part["unit"]) for part in found["parts"]] == [
+        ("imitation", 64, "positions"), ("PPO", 256, "shots"),
+    ]  # fmt: skip
+    assert found["seconds"] == pytest.approx(sum(part["seconds"] for part in found["parts"]))
+    assert any(re.fullmatch(r"imitation: 64 positions in \d+ s, [\d,]+ a second", line) for line in lines)
+    assert any(re.fullmatch(r"PPO: 256 shots in \d+ s, [\d,]+ a second \(learning included\)", line) for line in lines)
+    seconds = {part["part"]: part["seconds"] for part in found["parts"]}
+    assert seconds["imitation"] == pytest.approx(found["imitation"][-1]["seconds"]) and seconds["PPO"] > 0
 
 
 def launch(out, *options):
@@ -266,14 +303,16 @@ def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
     monkeypatch.setattr(training_summary, "play_visits", watched)
     settings = train.Settings(agent="ppo_mask")
     model = load_player(finished / "ppo_mask").model
-    training_summary.evaluate(train.recipe_of(settings), model, 2)
+    training_summary.evaluate(train.recipe_of(settings), model, 2, silent)
     level = {"noise": "club", "table": "tight", "physics": {"preset": "paper", "mu_bb": "marlow"}, "fidelity": "fast"}
     given = str({"action": "discrete", "layout": "line_up", "reward": "pots", **level})
-    training_summary.evaluate(train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model, 2)
+    training_summary.evaluate(train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model, 2, silent)
     bare = train.recipe_of(train.Settings(agent="ppo_mask", set=("env_kwargs={'action': 'discrete'}",)))
-    training_summary.evaluate(bare, model, 2)
+    training_summary.evaluate(bare, model, 2, silent)
     levels = [{"noise": "professional"}] * 3 + [level] * 3 + [{"noise": "none"}] * 3
-    assert [options for _, options in played] == [{"first_seed": tables_of("held_out", 2)} | one for one in levels]
+    assert [{name: value for name, value in options.items() if name != "each"} for _, options in played] == [
+        {"first_seed": tables_of("held_out", 2)} | one for one in levels
+    ]
     assert all(own == {"action": "discrete"} for own, _ in played)
 
 
@@ -286,7 +325,7 @@ def test_agents_are_judged_at_the_usual_fidelity(finished, agent, monkeypatch):
     model = load_player(finished / "ppo_mask").model
     for settings in ({}, {"fidelity": "fast"}, {"set": ("env_kwargs={'action': 'discrete', 'fidelity': 'reference'}",)}):
         if "set" not in settings or agent in ("ppo_mask", "ppo_value"):
-            training_summary.evaluate(train.recipe_of(train.Settings(agent=agent, **settings)), model, 2)
+            training_summary.evaluate(train.recipe_of(train.Settings(agent=agent, **settings)), model, 2, silent)
     assert seen[:6] == [None] * 3 + ["fast"] * 3 and set(seen[6:]) <= {"reference"}
     assert len(seen) == (9 if agent in ("ppo_mask", "ppo_value") else 6)
 

@@ -137,7 +137,7 @@ def test_what_is_printed_is_written_beside_the_pictures(tmp_path):
 MISSING = [
     (name, library, f'{library} is missing; in a clone of the repository:  pip install -e ".[test]"')
     for name, library in (("fit_cushion", "scipy"), ("paper", "scipy"), ("tradeoff", "matplotlib"))
-] + [("pictures", "pygame", 'pictures need pygame-ce; install it, in a clone of snooker_env, with: pip install -e ".[render]"')]
+] + [("pictures", "pygame", f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -e ".[render]"')]
 
 
 @pytest.mark.parametrize(("name", "library", "said"), MISSING)

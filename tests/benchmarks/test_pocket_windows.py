@@ -5,7 +5,7 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.pockets import openings, pool_tables, rail_paths
-from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, LonePocket, alone, drops, windows
+from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, LonePocket, alone, drops, endless, windows
 from snooker_env.game import pots
 from tests.kernels import from_python
 
@@ -140,10 +140,8 @@ def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():
         jaws, fall = table.jaws[4 * k : 4 * k + 4], table.falls[k]
         mouth = jaws[jaws[:, 2] == 0.0, :2].mean(axis=0)
         axis = np.arctan2(*(fall[:2] - mouth)[::-1])
-        level = table.noses[:, 1] * table.noses[:, 2]
-        ends = [np.where(table.noses[:, :1] == 0, np.stack([level, e], 1), np.stack([e, level], 1)) for e in table.noses[:, 3:].T]
-        near = np.any([np.hypot(*(end - mouth).T) < 0.1 for end in ends], axis=0)
-        assert near.sum() == 2
-        here = LonePocket(sn.Table(kind, table.noses[near], jaws, fall[None]), tuple(mouth), float(axis))
+        noses = endless(table.noses, *mouth)
+        assert len(noses) == 2
+        here = LonePocket(sn.Table(kind, noses, jaws, fall[None]), tuple(mouth), float(axis))
         found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, physics).width / pool_tables.INCH
         assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)

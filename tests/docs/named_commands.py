@@ -15,6 +15,7 @@ SHORT = {
     "benchmarks.left_out": [],
     "benchmarks.make_opened": ["--tables", "2", "--out", "{tmp}"],
     "benchmarks.execution": ["--strokes", "40", "--visits", "4", "--levels", "professional", "robot"],
+    "benchmarks.fair": ["--tables", "2", "--kinds", "snookered"],
     "benchmarks.frames": ["--frames", "2", "--jobs", "1"],
     "benchmarks.layouts_picture": ["--out", "{tmp}"],
     "benchmarks.pictures": ["--out", "{tmp}"],

@@ -44,7 +44,7 @@ def toy(tmp_path):
         out, err = python(before + RUN, warn="error,default::RuntimeWarning", **variables)
         return out.strip(), err
 
-    run.cache, run.folder = tmp_path / "cache", tmp_path / "cache" / "snooker_env" / _cache.source_hash()
+    run.cache, run.folder = tmp_path / "cache", tmp_path / "cache" / "snooker_env" / _cache.kernel_hash()
     return run
 
 

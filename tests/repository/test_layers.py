@@ -19,11 +19,12 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
-BASE = {"_jit", "_lanes", "_check", "_files", "_shots", "_types", "geometry"}
+BASE = {"_jit", "_lanes", "_check", "_files", "_install", "_shots", "_types", "geometry"}
 ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
     "_inner": set(),
+    "_install": set(),
     "_lanes": set(),
     "_jit": {"_cache", "_notices", "_inner"},
     "_registration": set(),
@@ -34,6 +35,7 @@ ALLOWED = {
     "_entry_points": set(),
     "_check": {"_types"},
     "checks": {"_check", "physics"},
+    "progress": set(),
     "kernels": {"_jit", "game", "tasks"},
     "geometry": {"_check", "_types"},
     "physics": BASE,
@@ -48,10 +50,11 @@ ALLOWED = {
     "replays": BASE | {"physics", "simulation", "game", "tasks", "planning", "render"},
     "render": BASE - {"_jit", "_lanes"} | {"physics", "game.balls", "impacts", "simulation"},
     "sb3": BASE | {"physics", "simulation", "game", "tasks", "envs"},
-    "match": {"_types", "envs", "tasks"},
-    "widget": {"_check", "replays"},
+    "match": {"_install", "_types", "envs", "tasks"},
+    "widget": {"_check", "_install", "replays"},
     "play": BASE | {"physics", "shot", "simulation", "game", "tasks", "planning", "advice", "render", "replays"},
-    "benchmark": BASE | {"physics", "simulation", "game", "tasks", "planning", "advice", "envs", "play", "_warmup", "__version__"},
+    "benchmark": BASE
+    | {"physics", "simulation", "game", "tasks", "planning", "advice", "envs", "play", "progress", "_warmup", "__version__"},
     "_warmup": {"_jit", "_notices", "impacts", "simulation", "game", "tasks", "planning", "envs"},
     "__init__": BASE | {"physics", "impacts", "shot", "simulation", "tasks", "planning", "advice", "envs", "match", "replays"},
 }
@@ -68,13 +71,13 @@ OUTSIDE = {
 }
 OUTSIDE |= {name: {"play"} for name in ("hmac", "http", "secrets", "socket", "urllib", "webbrowser")}  # the network, as well
 OUTSIDE |= {name: {"benchmark"} for name in ("datetime", "platform", "queue", "shlex")}
-OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}}
+OUTSIDE |= {"stable_baselines3": {"sb3", "tasks"}, "sb3_contrib": {"tasks"}, "torch": {"tasks"}}
 """Who may import these libraries; of any library that is named neither here nor in ALWAYS, nobody."""
 ALWAYS = {"numpy", "numba"}
 STANDARD = {
     "__future__", "abc", "argparse", "base64", "collections", "concurrent", "contextlib", "copy", "dataclasses", "enum", "functools",
     "hashlib", "html", "importlib", "io", "itertools", "json", "math", "operator", "os", "pathlib", "re", "subprocess", "sys", "tempfile",
-    "statistics", "textwrap", "threading", "time", "types", "typing", "warnings", "weakref", "zipfile", "zlib",
+    "shutil", "statistics", "textwrap", "threading", "time", "types", "typing", "warnings", "weakref", "zipfile", "zlib",
 }  # fmt: skip
 
 
@@ -139,7 +142,7 @@ def test_each_file_imports_only_libraries_that_are_its_business(name):
             continue
         assert part in OUTSIDE.get(library, ()), f"{name} imports {library}"
         if (
-            library in ("pygame", "matplotlib", "stable_baselines3", "sb3_contrib") and part != "sb3"
+            library in ("pygame", "matplotlib", "stable_baselines3", "sb3_contrib", "torch") and part != "sb3"
         ):  # sb3.py itself is only loaded when it is wanted
             assert not top, f"{name} imports {library} when it is imported, not when it is wanted"
 
@@ -213,9 +216,9 @@ def test_wherever_a_layout_may_put_a_ball_the_table_of_the_physics_has_room(name
 
 
 def test_touching_and_overlapping_are_measured_alike():
-    assert balls.TOUCH == table.OVERLAP_ALLOWED == spotting.TOUCH == 1e-6
-    assert spotting.CLEARANCE > balls.TOUCH and in_hand.CLEARANCE > balls.REFEREE_TOUCH > balls.TOUCH
-    assert layouts.GAP > balls.REFEREE_TOUCH and balls.PINK_GAP > balls.REFEREE_TOUCH
+    assert balls.TOUCH == table.OVERLAP_ALLOWED == 1e-6
+    assert spotting.CLEARANCE is in_hand.CLEARANCE is balls.CLEARANCE  # of every ball that a hand puts down
+    assert layouts.GAP > balls.PINK_GAP > balls.CLEARANCE > balls.REFEREE_TOUCH > balls.TOUCH
 
 
 def test_actions_reach_to_the_miscue_limit_of_the_physics():

@@ -50,7 +50,7 @@ def toys(tmp_path):
         assert out == ""
         return err
 
-    run.kept = f"(kept in {tmp_path / 'cache' / 'snooker_env' / _cache.source_hash()}; SNOOKER_ENV_QUIET=1 hides this)"
+    run.kept = f"(kept in {tmp_path / 'cache' / 'snooker_env' / _cache.kernel_hash()}; SNOOKER_ENV_QUIET=1 hides this)"
     return run
 
 
@@ -110,10 +110,11 @@ def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
 LONG = {
     "snooker_env.physics.engine": ["run_batch"], "snooker_env.impacts": ["_collide_balls", "_collide_cushion"],
     "snooker_env.tasks.stroke": ["address"], "snooker_env.tasks.visit": ["_conclude", "_begin"],
-    "snooker_env.tasks.frame_kernels": ["decide", "remember", "conclude", "observe", "finish", "begin", "show"],
+    "snooker_env.tasks.attempts": ["remember"],
+    "snooker_env.tasks.frame_kernels": ["decide", "conclude", "observe", "finish", "begin", "show"],
     "snooker_env.tasks.uniform_opponent": ["_uniform"], "snooker_env.tasks.ghost_ball": ["_ghost_ball"],
     "snooker_env.game.layouts": ["deal_tables"],
-    "snooker_env.game.apply_ruling": ["settle_one"], "snooker_env.game.paths": ["_paths"], "snooker_env.game.snookered": ["_snookered"],
+    "snooker_env.game.apply_ruling": ["settle_one"], "snooker_env.game.paths": ["best_paths"], "snooker_env.game.snookered": ["_snookered"],
     "agents.features.pot_features": ["_add_pots"], "agents.features.indirect_pots": ["_indirect"],
     "snooker_env.planning.strokes": ["_as_actions", "_pot_aim"], "snooker_env.planning.geometry": ["_pots", "_clear_paths"],
 }  # fmt: skip

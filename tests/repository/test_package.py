@@ -58,8 +58,25 @@ def test_with_the_core_dependencies_alone_everything_but_pictures_works():
         "try: env.render()\n"
         "except ImportError as error: print(error)\n",
     )
-    assert out.splitlines() == ["True", 'pictures need pygame-ce; install it, in a clone of snooker_env, with: pip install -e ".[render]"']
+    wanted = f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -e ".[render]"'
+    assert out.splitlines() == ["True", wanted]
     assert err == ""
+
+
+def test_what_is_missing_is_installed_as_the_package_was(tmp_path):
+    """In a clone by its project file; the package alone, as a wheel leaves it, by its name: pip adds the extra to what is there."""
+    code = "from snooker_env._install import missing\nprint(missing('pictures need pygame-ce', 'render'))"
+    out, _ = python(code, at=copy_of_package(tmp_path))
+    assert out == 'pictures need pygame-ce; install it with: pip install "snooker-env[render]"\n'
+    (tmp_path / "pyproject.toml").touch()
+    out, _ = python(code, at=tmp_path)
+    assert out == f'pictures need pygame-ce; install it, in the clone {tmp_path}, with: pip install -e ".[render]"\n'
+
+
+def test_no_file_makes_such_a_line_by_itself():
+    package = {path.name for path in (ROOT / "snooker_env").rglob("*.py") if "pip install" in path.read_text(encoding="utf-8")}
+    commands = {path.name for room in ("agents", "commands") for path in (ROOT / room).rglob("*.py") if "pip install" in path.read_text()}
+    assert package == {"_install.py"} and commands == {"lifecycle.py"}
 
 
 def test_every_public_name_is_there_once_and_explained():
@@ -129,35 +146,36 @@ def test_the_warning_of_an_overwritten_id_would_be_seen():
 # The cache of machine code
 
 
-def test_the_cache_folder_depends_on_every_source_file(tmp_path):
+def test_the_cache_folder_depends_on_every_source_file_that_kernels_are_made_from(tmp_path):
     root = copy_of_package(tmp_path) / "snooker_env"
-    first = _cache.source_hash(root)
-    assert first == _cache.source_hash(root) == _cache.source_hash(ROOT / "snooker_env")
+    first = _cache.kernel_hash(root)
+    assert first == _cache.kernel_hash(root) == _cache.kernel_hash(ROOT / "snooker_env")
     seen = {first}
-    files = sorted(root.rglob("*.py"))
+    files = sorted(p for p in root.rglob("*.py") if p.relative_to(root).parts[0] in _cache.KERNEL_ROOMS)
     assert len(files) > 25
     for path in files:
         text = path.read_bytes()
         path.write_bytes(text.replace(b"e", b"f", 1) if b"e" in text else text + b"#")  # same size, other content
-        seen.add(_cache.source_hash(root))
+        seen.add(_cache.kernel_hash(root))
         path.write_bytes(text)
         os.utime(path, (1e9, 1e9))  # its age does not matter
     assert len(seen) == len(files) + 1
-    (root / "new.py").write_text("")
-    seen.add(_cache.source_hash(root))
-    (root / "new.py").rename(root / "newer.py")
-    seen.add(_cache.source_hash(root))
-    (root / "newer.py").unlink()
+    (root / "physics/new.py").write_text("")
+    seen.add(_cache.kernel_hash(root))
+    (root / "physics/new.py").rename(root / "physics/newer.py")
+    seen.add(_cache.kernel_hash(root))
+    (root / "physics/newer.py").unlink()
     assert len(seen) == len(files) + 3
-    assert _cache.source_hash(root) == first
-    (root / "notes.txt").write_text("no source")
-    assert _cache.source_hash(root) == first
+    assert _cache.kernel_hash(root) == first
+    (root / "physics/notes.txt").write_text("no source")
+    (root / "web/page.py").write_text("no kernel")
+    assert _cache.kernel_hash(root) == first
 
 
 def test_the_cache_is_where_it_is_said_to_be(tmp_path, monkeypatch):
     for name in CACHE:
         monkeypatch.delenv(name, raising=False)
-    key = _cache.source_hash()
+    key = _cache.kernel_hash()
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     assert _cache.cache_folder() == tmp_path / "home" / ".cache" / "snooker_env" / key
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
@@ -197,7 +215,7 @@ def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
 def test_without_the_hash_a_change_would_be_missed(tmp_path):
     """The control: one folder for all sources, and numba runs the old machine code. So the test above can fail."""
     at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
-    replace(at / "snooker_env/_cache.py", 'home / "snooker_env" / source_hash()', 'home / "snooker_env" / "one"')
+    replace(at / "snooker_env/_cache.py", 'home / "snooker_env" / kernel_hash()', 'home / "snooker_env" / "one"')
     assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()[:2] == ["1.4605", "0"]
     replace(at / "snooker_env/geometry.py", "(0.0, 1.4605)", "(0.0, 1.4005)")
     assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()[:2] == ["1.4605", "1"]
@@ -210,26 +228,30 @@ print(repr(shot.positions.tolist()))
 """
 
 
+CHANGED = [  # below the entry kernel: more friction wherever the cloth's kernels read it, less bounce off a cushion
+    ("physics/cloth.py", "phys[P_MU_R]", "(2.0 * phys[P_MU_R])", 3),
+    ("physics/impact/contact.py", "return phys[P_E_C]\n", "return 0.5 * phys[P_E_C]\n", 1),
+]
+"""File, text, what takes its place, and how often the file holds it."""
+
+
+@pytest.mark.parametrize(("file", "old", "new", "times"), CHANGED)
+def test_what_the_slow_test_below_changes_is_there(tmp_path, file, old, new, times):
+    """In every run, so that a change of the engine shows at once that the slow test changes nothing any more."""
+    copy = tmp_path / "copy.py"
+    copy.write_text((ROOT / "snooker_env" / file).read_text())
+    replace(copy, old, new, times)
+    assert copy.read_text().count(new) == times
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("file", "old", "new"),
-    [
-        ("physics/cloth.py", None, None),
-        ("physics/impact/contact.py", "phys[P_E_C] - phys[P_E_SLOPE]", "0.5 * phys[P_E_C] - phys[P_E_SLOPE]"),
-    ],
-)
-def test_a_shot_is_never_computed_by_old_code(tmp_path, file, old, new):
+@pytest.mark.parametrize(("file", "old", "new", "times"), CHANGED)
+def test_a_shot_is_never_computed_by_old_code(tmp_path, file, old, new, times):
     """The same with the whole engine: a constant or a term changed below the entry kernel changes the next run's shot."""
     at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
     first = python(SHOT, at=at, NUMBA_CACHE_DIR=cache)
     assert python(SHOT, at=at, NUMBA_CACHE_DIR=cache) == first
-    path = at / "snooker_env" / file
-    if old is None:  # more friction wherever the cloth's kernels read it
-        text = path.read_text()
-        assert "phys[P_MU_R]" in text
-        path.write_text(text.replace("phys[P_MU_R]", "(2.0 * phys[P_MU_R])"))
-    else:
-        replace(path, old, new)
+    replace(at / "snooker_env" / file, old, new, times)
     assert python(SHOT, at=at, NUMBA_CACHE_DIR=cache) != first
 
 

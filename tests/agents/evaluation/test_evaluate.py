@@ -241,7 +241,7 @@ def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     assert protocol.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
     lost = "interrupted when 1 of 2 parts (layouts under one noise) were complete: the others are lost"
-    assert printed.err.strip() == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(printed.out.split())
+    assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(printed.out.split())
     found = json.loads((tmp_path / "r.json").read_text())
     assert found["incomplete"] == lost and [(r["layout"], r["agent"]) for r in found["results"]] == [
         ("held_out", "random"), ("held_out", "ghost_ball")
@@ -256,7 +256,7 @@ def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatc
     assert protocol.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
     lost = "interrupted when 0 of 2 parts (layouts under one noise) were complete: nothing is kept"
-    assert printed.err.strip() == f"agents.evaluate: {lost}" and not printed.out
+    assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}" and not printed.out
     assert not list(tmp_path.iterdir())
 
 

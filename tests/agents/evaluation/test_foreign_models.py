@@ -1,11 +1,16 @@
 """Can models be evaluated that train.py did not make, and does nothing of such a file run before its user consents?"""
 
+import base64
 import json
+import re
+import sys
+import zipfile
+from types import ModuleType
 
 import numpy as np
 import pytest
-from sb3_contrib import MaskablePPO, RecurrentPPO
-from stable_baselines3 import DQN, PPO, SAC
+from sb3_contrib import TQC, MaskablePPO, RecurrentPPO
+from stable_baselines3 import A2C, DQN, PPO, SAC
 
 from agents.evaluation import protocol
 from agents.learning.models import PRETRAINED
@@ -13,6 +18,7 @@ from agents.players.trained import load_any
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from tests.bombs import bombed
+from tests.torch_threads import deciding_on_one_thread
 
 QUICK = ["--visits", "4", "--layouts", "held_out", "--noise", "professional", "--resamples", "100"]
 
@@ -48,7 +54,34 @@ def test_a_foreign_model_plays_what_it_would_play_itself(foreign, name, options,
     observations, _ = tables.reset(seed=0)
     its, _ = seen_by_it.reset(seed=0)
     masks = {"action_masks": tables.action_masks()} if name in ("mask", "masked") else {}
-    assert np.array_equal(player.act(tables, observations, np.ones(3, bool)), model.predict(its, deterministic=True, **masks)[0])
+    with deciding_on_one_thread(player.model.policy):
+        chosen = player.act(tables, observations, np.ones(3, bool))
+    assert np.array_equal(chosen, model.predict(its, deterministic=True, **masks)[0])
+
+
+@pytest.mark.parametrize("maker", [PPO, MaskablePPO, SAC, TQC, DQN, A2C])
+def test_a_model_plays_where_the_package_of_its_schedules_is_missing(tmp_path, monkeypatch, maker):
+    """As one of RL Baselines3 Zoo does, whose files name classes of ``rl_zoo3``: playing needs no schedule and no callback."""
+    zoo = ModuleType("rl_zoo3")
+    schedule = type("SimpleLinearSchedule", (), {"__module__": "rl_zoo3", "__call__": lambda self, left: 1e-3 * left})
+    zoo.SimpleLinearSchedule = schedule
+    options = {"action": "discrete"} if maker in (MaskablePPO, DQN) else {"aim": "target"}
+    more = {"clip_range": schedule(), "n_steps": 8, "batch_size": 8} if maker in (PPO, MaskablePPO) else {}
+    with monkeypatch.context() as patch:
+        patch.setitem(sys.modules, "rl_zoo3", zoo)
+        model = maker("MlpPolicy", SnookerEnv(**options), seed=4, device="cpu", learning_rate=schedule(), **more)
+        model.of_the_zoo = schedule()
+        model.save(tmp_path / "model.zip")
+    monkeypatch.setitem(sys.modules, "rl_zoo3", None)  # missing, also where it is installed
+    with zipfile.ZipFile(tmp_path / "model.zip") as file:
+        assert b"rl_zoo3" in b"".join(base64.b64decode(one) for one in re.findall(r'":serialized:": "([^"]*)"', file.read("data").decode()))
+    player = load_any(tmp_path / "model.zip", True, {} if "action" in options else options)
+    tables = SnookerVectorEnv(3, layout="held_out", threads=1, **options)
+    observations, _ = tables.reset(seed=0)
+    masks = {"action_masks": tables.action_masks()} if maker is MaskablePPO else {}
+    assert np.array_equal(
+        player.act(tables, observations, np.ones(3, bool)), model.predict(observations, deterministic=True, **masks)[0]
+    )  # fmt: skip
 
 
 def test_a_foreign_model_is_compared_with_consent(foreign, tmp_path, capsys):

@@ -1,10 +1,7 @@
 """Does a policy propose the strokes that it likes, near its choices and within the limits of a stroke?"""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
-import torch
 from positions import chances_by_width, tables
 
 from agents.features.policy_proposals import TEMPERATURE, PolicyProposals
@@ -20,11 +17,10 @@ class Preferring:
     """A policy with given scores of all choices, the same in every position."""
 
     def __init__(self, scores):
-        self._scores = torch.as_tensor(scores, dtype=torch.float32)
+        self._scores, self.fused = np.asarray(scores, np.float32), self
 
-    def get_distribution(self, seen, masks):
-        hidden = torch.where(torch.as_tensor(masks), self._scores, torch.tensor(-1e8))
-        return SimpleNamespace(distribution=SimpleNamespace(logits=torch.log_softmax(hidden, dim=1)))
+    def scores(self, seen, masks):
+        return np.where(masks, self._scores, np.float32(-1e8))
 
 
 def preferring(**worths):
@@ -106,6 +102,14 @@ def test_without_a_pot_the_policy_proposes_the_contacts(learned):
     found = learned(SEARCH, at, 30, np.array([5]))
     even = spread_strokes(at, 30, [5], SEARCH.spread, SEARCH.dynamics)
     assert np.array_equal(found.strokes, even.strokes) and (found.chances == 1.0).all()
+
+
+def test_the_proposals_in_a_position_do_not_depend_on_the_positions_beside_it(learned):
+    at, seeds = Positions.of(tables(40, layout="random:9", seed=3)), np.arange(40)
+    strokes, chances = learned(SEARCH, at, 30, seeds)
+    for k in range(0, 40, 7):
+        alone = learned(SEARCH, at[k : k + 1], 30, seeds[k : k + 1])
+        assert np.array_equal(alone.strokes[0], strokes[k]) and np.array_equal(alone.chances[0], chances[k])
 
 
 @pytest.mark.parametrize("layout", ["opened", "break_off", "colours", "random:1"])

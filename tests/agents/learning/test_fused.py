@@ -7,13 +7,14 @@ the entropy's gradient cancel. A forgotten term, factor or mirror changes them b
 
 import copy
 import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 import torch
 
 from agents.features.pot_features import BALL_X, VIEW_SPACE, with_pots
-from agents.learning import fused
+from agents.learning import fused, fused_kernels
 from agents.learning.networks import JudgedPolicy, TablePolicy
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.tasks import CHOICES, OBSERVATION_SIZE
@@ -54,6 +55,41 @@ def plain(policy, seen, masks, choices):
     return values[:, 0], logs, entropy
 
 
+def scored(policy, seen, masks):
+    """Logarithms of the probabilities of all choices by PyTorch, whose gradients keep the quick passes out."""
+    return policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.detach().numpy()
+
+
+def test_scores_are_those_of_the_network(policy, met):
+    """Also through the distribution, from which a model plays; on tables read mirrored and not."""
+    seen, masks = met
+    expected, found = scored(policy, seen, masks), policy.fused.scores(seen, masks)
+    assert np.array_equal(found == fused_kernels.NEVER, ~masks) and found.shape == (N, CHOICES)
+    shifted = np.where(masks, found - expected, np.nan)
+    assert np.nanmax(np.abs(shifted - np.nanmean(shifted, axis=1, keepdims=True))) < 1.4e-5 < np.where(masks, found, 0.0).std()
+    with torch.no_grad():
+        quick = scored(policy, seen, masks)
+    assert np.abs(np.where(masks, quick - expected, 0.0)).max() < 1.4e-5 and not np.array_equal(quick, expected)
+    for rows in (slice(0, 1), slice(0, N, 2)):
+        actions = policy.predict(seen[rows], action_masks=masks[rows], deterministic=True)[0]
+        assert np.array_equal(actions, found[rows].argmax(axis=1))
+
+
+def test_a_tables_scores_do_not_depend_on_the_tables_beside_it(policy, met):
+    """Bit for bit: alone, in any order, in blocks, and by several threads at once."""
+    seen, masks = met
+    together = policy.fused.scores(seen, masks)
+    for k in range(0, N, 7):
+        one = slice(k, k + 1)
+        assert np.array_equal(policy.fused.scores(seen[one], masks[one]), together[one])
+    order = np.random.default_rng(6).permutation(N)
+    assert np.array_equal(policy.fused.scores(seen[order], masks[order]), together[order])
+    parts = [np.sort(part) for part in np.array_split(order, 8)]
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda rows: policy.fused.scores(seen[rows], masks[rows]), parts * 5))
+    assert all(np.array_equal(one, together[rows]) for one, rows in zip(found, parts * 5, strict=True))
+
+
 def test_values_and_probabilities_are_those_of_the_network(policy, met):
     seen, masks = met
     choices, values, logs = policy.fused.act(seen, masks, np.random.default_rng(1).random(N))
@@ -80,8 +116,7 @@ def test_choices_are_drawn_by_their_probabilities(policy, met):
     for k in (np.flatnonzero(met[0][:, BALL_X] < 0)[0], np.flatnonzero(met[0][:, BALL_X] > 0)[0]):
         seen, masks = np.repeat(met[0][k : k + 1], m, 0), np.repeat(met[1][k : k + 1], m, 0)
         choices, _, _ = policy.fused.act(seen, masks, (np.arange(m) + 0.5) / m)
-        with torch.no_grad():
-            shares = policy.get_distribution(torch.as_tensor(seen[:1]), masks[:1]).distribution.probs[0].numpy()
+        shares = np.exp(scored(policy, seen[:1], masks[:1]))[0]
         assert np.abs(np.bincount(choices, minlength=CHOICES) - m * shares).max() < 1.01
         assert shares.max() > 3 / m
 
@@ -141,9 +176,7 @@ def test_choices_of_nearly_no_probability_keep_their_logarithm(policy, met):
         policy.action_net.score.weight.mul_(300.0)
     seen, masks = met
     rows, nothing = np.arange(N), np.zeros(N, np.float32)
-    with torch.no_grad():
-        scores = policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
-    choices = np.where(masks, scores, np.inf).argmin(1)
+    choices = np.where(masks, scored(policy, seen, masks), np.inf).argmin(1)
     _, logs, entropy = plain(policy, seen, masks, choices)
     assert (logs < -110.0).sum() > 20  # exp(-103) is the smallest that float32 holds
     policy.fused.zero_grad()

@@ -261,6 +261,13 @@ def test_a_mirrored_table_gives_the_mirrored_action(model, opened):
         first.copy_(kept)
 
 
+def to_nearest(positions, on_table, on):
+    """Direction from the cue ball to the nearest ball on [rad]."""
+    to = positions - positions[0]
+    far = np.where(on_table & ((on >> np.arange(N_BALLS)) & 1 == 1), np.hypot(*to.T), np.inf)
+    return np.arctan2(*to[far.argmin(), ::-1])
+
+
 def test_without_a_pot_the_nearest_ball_on_is_struck(model, without_pots):
     table = seen(without_pots)
     dist = density(model, table)
@@ -273,7 +280,7 @@ def test_without_a_pot_the_nearest_ball_on_is_struck(model, without_pots):
     assert torch.isfinite(total) and torch.isfinite(action).all()
     assert model.policy.action_net.no_pot.weight.grad.abs().max() > 0.0 and model.policy.action_net.pot.weight.grad.abs().max() == 0.0
     for env, aim in zip(without_pots, dist.mode()[:, 3].tolist(), strict=True):
-        off = pi * aim - line(env.positions, env.on_table, env.on)
+        off = pi * aim - to_nearest(env.positions, env.on_table, env.on)
         assert abs(sin(off)) < 1e-6 and cos(off) > 0.0
     for k in range(3):
         own = action[k].detach().numpy()
@@ -291,7 +298,7 @@ def test_the_nearest_ball_that_is_on_is_meant(model):
         if not far[19] < far[2] < far[1] or len(pots(positions, on_table, mask_of([1, 2]))):
             continue
         aim = density(model, shown(positions, on_table)).mode()[0, 3].item()
-        off = pi * aim - line(positions, on_table, mask_of([1, 2]))
+        off = pi * aim - to_nearest(positions, on_table, mask_of([1, 2]))
         assert abs(sin(off)) < 1e-5 and cos(off) > 0.0
         seen_ones += 1
 

@@ -17,6 +17,7 @@ from agents.learning.imitation import Imitation
 from agents.players.trained import load_player
 from commands import lock
 from commands.files import write_atomic
+from snooker_env.progress import Progress
 
 ROOT = Path(__file__).resolve().parents[3]
 TINY = [
@@ -165,7 +166,7 @@ def test_a_signal_saves_what_was_imitated_and_resume_goes_on_exactly(whole, tmp_
     assert {p.name for p in out.iterdir()} == {"checkpoint.pkl"}
     assert signal.getsignal(number) in (signal.default_int_handler, signal.SIG_DFL)
     assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
-    assert "imitating the search, 40 of 64 positions" in capsys.readouterr().out
+    assert "imitation, 40 of 64 positions" in capsys.readouterr().out
     assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
     assert len(untimed(out)[0]) == 20 and load_player(out).model.imitated == 64
 
@@ -205,7 +206,7 @@ def test_saves_are_rare(tmp_path, monkeypatch):
         now[0] += 5.0
 
     class Lessons:
-        doing, states, done, curve, seconds = "learning", 2000, 0, [{"states": 2000}], 0.0
+        states, done, curve, figures = 2000, 0, [{"states": 2000}], ""
 
         def round(self):
             self.done += 1
@@ -215,7 +216,7 @@ def test_saves_are_rare(tmp_path, monkeypatch):
             return None
 
     monkeypatch.setattr(callback, "save_checkpoint", save)
-    assert callback.imitate(Lessons(), tmp_path, train.Settings(), Lessons(), callback.Stop(), False)
+    assert callback.imitate(Lessons(), tmp_path, train.Settings(), Lessons(), callback.Stop(), Progress("", 2000, "", quiet=True))
     assert saves[0] == 31.0 and np.array_equal(np.diff(saves), [506.0] * 3)
 
 

@@ -91,13 +91,15 @@ def test_a_value_keeps_the_weights_that_it_was_made_of():
     assert np.array_equal(value.of(seen), before) and not np.allclose(Value(made, SPREAD).of(seen), before)
 
 
-def test_the_value_of_positions_is_that_of_their_features_on_any_number_of_threads():
+def test_the_value_of_a_position_is_that_of_its_features_on_any_number_of_threads_beside_any_others():
     made, at = network(), some(300)
     seen = value_features(at, SPREAD)
     kept = seen.copy()
     value = Value(made, SPREAD)
     assert np.array_equal(value(at), value.of(seen)) and np.array_equal(value(at), Value(made, SPREAD, threads=2)(at))
     assert np.array_equal(seen, kept) and value(at).dtype == np.float32
+    alone = [value(at[k : k + 1])[0] for k in range(0, 300, 11)]
+    assert np.array_equal(alone, value(at)[::11]) and np.array_equal(value(at[::-1]), value(at)[::-1])
     assert not np.allclose(Value(made, 4e-3)(at), value(at), rtol=0.05)  # larger errors, a lower value
     assert Value(made, 4e-3)(at).mean() < value(at).mean()
 

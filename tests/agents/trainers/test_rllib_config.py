@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from agents.learning.policy_files import Layers
+from agents.learning.dense_layers import Layers
 from snooker_env import SnookerEnv
 from tests.trainers import needed
 

@@ -77,7 +77,7 @@ def test_a_signal_saves_and_the_run_goes_on(tmp_path):
         lines = []
         for line in process.stdout:
             lines.append(line)
-            if re.search(r"RLlib: [\d,]+ of 1,000,000 shots", line):
+            if re.search(r"RLlib: [\d,]+ of 1,000,000 shots, update \d", line):
                 process.send_signal(signal.SIGINT)
                 break
         rest = process.stdout.read()
@@ -120,7 +120,7 @@ def test_an_update_without_a_sample_ends_the_run_in_one_line(tmp_path):
     saved = []
     with pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit, match=r"no env runner gave a sample in 600 s; saved at 7 shots"):
         patch.setattr(run, "save", lambda *parts: saved.append(parts))
-        run.train(tmp_path, run.RunSettings(), run.Progress(shots=7), Silent(), run.Stop())
+        run.train(tmp_path, run.RunSettings(), run.Counters(shots=7), Silent(), run.Stop())
     assert len(saved) == 1
 
 
