@@ -6,9 +6,9 @@
 Opened tables of their own seeds: no training sees them, and no table of results is played on them. All meet the same execution errors.
 """
 
-from agents.features import policy_proposals
 from agents.players.by_name import player_of
 from snooker_env.benchmark import play_visits
+from snooker_env.planning.learned import policy_proposals
 
 from ._common.command import Command, at_least, run, save_json
 

@@ -16,11 +16,11 @@ import torch
 from torch import nn
 
 import snooker_env as sn
-from agents.features.pot_features import VIEW_SPACE, with_pots
-from agents.features.value_features import value_features
 from agents.learning.networks import CONTEXT, TableReader, ValueHead
 from agents.learning.value_network import ValueNetwork
 from snooker_env.planning import Positions, StrokeSearch
+from snooker_env.planning.learned.pot_view import VIEW_SPACE, with_pots
+from snooker_env.planning.learned.value_features import value_features
 
 from ._common.command import Command, at_least, run, save_json
 

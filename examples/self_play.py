@@ -28,10 +28,10 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.utils import LinearSchedule
 
 import snooker_env
-from agents.features.pot_features import with_pots
 from agents.learning.networks import TablePolicy, TableReader
 from commands.files import write_atomic
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
+from snooker_env.planning.learned.pot_view import with_pots
 from snooker_env.progress import Progress
 from snooker_env.sb3 import SnookerVecEnv
 from snooker_env.tasks import CHOICES, OBSERVATION_SIZE, SIDES, SPEEDS, TOPS, OpponentPool, choice_of, observation_space

@@ -1,6 +1,6 @@
 """What does an agent with a one-shot lookahead observe? The simulated outcomes of 12 strokes at each of the two widest pots.
 
-The observation is ``pot_features.with_pots`` followed by ``STROKES_SEEN`` rows, one for each stroke at each of these pots: means of its
+The observation is ``pot_view.with_pots`` followed by ``STROKES_SEEN`` rows, one for each stroke at each of these pots: means of its
 outcomes over the errors of ``NOISE_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play
 only these strokes. A decision costs 120 simulated shots: slower than an agent that observes the table alone, far quicker than ``search``.
 
@@ -13,10 +13,10 @@ from gymnasium import spaces
 from snooker_env.game import BallOn
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning import RULE_OF_THUMB, Planner, Positions, prospects_of, spread_of
+from snooker_env.planning.learned.pot_view import SHOWN, with_pots
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
 from .noise_samples import NOISE_SAMPLES
-from .pot_features import SHOWN, with_pots
 
 POTS_SEEN = 2
 SEEN_SPEEDS, SEEN_TOPS = (1, 3, 5, 7), (0, 2, 4)

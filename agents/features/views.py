@@ -4,11 +4,45 @@ import numpy as np
 
 from snooker_env.checks import choice
 from snooker_env.planning import Positions
+from snooker_env.planning.learned.pot_view import SHOWN, VIEW_SPACE, with_pots
+from snooker_env.tasks import observation_space, shaped_observations
 
 from .lookahead_features import ForesightView
-from .pot_features import SHOWN, PotsView, with_pots
 
 VIEWS = ("pots", "foresight")
+
+
+class PotsView:
+    """The view with the table and its pots: ``with_pots``."""
+
+    space = VIEW_SPACE
+
+    def __call__(self, tables, observations, rows=None):
+        """The view of the tables ``rows``, from their flat observations."""
+        return with_pots(observations)
+
+    def masks(self, tables):
+        """Which choices may be played."""
+        return tables.action_masks()
+
+
+class PlainView:
+    """The view of a model from elsewhere: the environment's own observation of that ``kind``."""
+
+    def __init__(self, kind):
+        self._kind = kind
+        self.space = observation_space(kind)
+
+    def __call__(self, tables, observations, rows=None):
+        """The view of the tables ``rows``, from their flat observations."""
+        masks = None
+        if self._kind == "masked":
+            masks = tables.action_masks() if rows is None else tables.action_masks()[rows]
+        return shaped_observations(self._kind, observations, masks)
+
+    def masks(self, tables):
+        """Which choices may be played."""
+        return tables.action_masks()
 
 
 def view_of(name, threads=None):

@@ -23,7 +23,7 @@ from .imitation import round_of
 from .judged_choices import JudgedChoices
 from .self_play import in_slices, policy_given, positions_given
 from .value_learning import ValueLearning
-from .value_network import Value
+from .value_network import value_of
 
 BUDGET = 60
 """Simulated shots of a decision in training."""
@@ -160,4 +160,4 @@ class ExpertIteration:
 def judge_rewards(venv, policy, threads):
     """Let the training tables add the learned value of the afterstate to each reward: the reward-to-go of PPO with gamma = 0."""
     rules = venv.unwrapped.tables.options.rules
-    venv.judge = Value(policy.position_value, spread_of(rules.noise, rules.physics), threads)
+    venv.judge = value_of(policy.position_value, spread_of(rules.noise, rules.physics), threads)

@@ -1,10 +1,11 @@
 """How are the choices, values and gradients of ``TablePolicy`` computed quickly? In blocks of tables that stay in the processor's cache.
 
-The plain network (``networks.TableReader`` and its heads) spends most of its time on moving intermediate results through memory, and on
-operations that PyTorch cannot join. Here the same functions are computed for ``BLOCK`` tables at a time, in arrays that are made once. The
-kernels of ``fused_kernels`` do all that lies between the layers. These are computed by ``dense_layers`` where a policy plays, so that a
-table's scores do not depend on the tables beside it, and by PyTorch where it learns, which is faster. The gradient is written out by hand,
-layer by layer. tests/agents/learning/test_fused.py compares scores, values and gradients with PyTorch's own.
+The plain network (``networks.TableReader`` and its heads) spends most of its time on moving intermediate results
+through memory, and on operations that PyTorch cannot join. Here the same functions are computed for ``BLOCK`` tables at
+a time, in arrays that are made once. Kernels do all that lies between the layers, which PyTorch computes. Where the
+policy plays, the same network is a ``StrokePolicy``, whose scores of a table do not depend on the tables beside it. The
+gradient is written out by hand, layer by layer. tests/agents/learning/test_fused.py compares scores, values and
+gradients with PyTorch's own.
 """
 
 from threading import Lock
@@ -14,17 +15,14 @@ import numpy as np
 import torch
 
 from snooker_env.game import N_BALLS
-from snooker_env.tasks import CHOICES, POTS, STROKES
+from snooker_env.planning.learned import table_kernels
+from snooker_env.planning.learned.dense_layers import relu
+from snooker_env.planning.learned.pot_view import POT_ENTRIES
+from snooker_env.planning.learned.stroke_policy import BLOCK, SCORED, StrokePolicy
+from snooker_env.planning.learned.table_kernels import BALL_INPUTS, STATE
+from snooker_env.tasks import CHOICES, POTS
 
-from ..features.pot_features import POT_ENTRIES
 from . import fused_kernels as kernels
-from .dense_layers import linear, relu
-from .fused_kernels import BALL_INPUTS, STATE
-
-BLOCK = 128
-"""Tables of a block: their intermediate results take 3 MB."""
-SCORED = -(-STROKES // 16) * 16
-"""Columns of the scores: 144 take less time than 135, because whole registers are written."""
 
 
 class FusedTable:
@@ -54,16 +52,15 @@ class FusedTable:
         for p, view in zip(self.parameters, self._views, strict=True):
             p.grad = view
 
+    @property
+    def policy(self):
+        """The ``StrokePolicy`` with the present weights: how this network plays."""
+        parameters = [p.detach().numpy() for p in self.parameters]
+        return StrokePolicy(dict(zip(self._layers, zip(parameters[::2], parameters[1::2], strict=True), strict=True)))
+
     def scores(self, seen, masks):
-        """The scores of all choices (n, CHOICES) on n tables, ``fused_kernels.NEVER`` for those not available. Arguments as in ``act``."""
-        scores = np.empty((len(seen), CHOICES), np.float32)
-        with self._lock:
-            for b, rows in self._blocks_of(np.arange(len(seen))):
-                here = scores[rows[0] : rows[-1] + 1]
-                self._read(b, rows, seen, _Layer.by_kernel)
-                self._score(b, rows, masks, here, _Layer.by_kernel)
-                kernels.as_seen(here, b.sides)
-        return scores
+        """The scores of all choices (n, CHOICES) on n tables, ``NEVER`` for those not available. Arguments as in ``act``."""
+        return self.policy.scores(seen, masks)
 
     def act(self, seen, masks, uniform):
         """Choices drawn for n tables (int64), the values and the logarithms of the choices' probabilities (float32), each (n,).
@@ -113,31 +110,21 @@ class FusedTable:
             self._blocks = {k: b for k, b in self._blocks.items() if k == BLOCK} | {n: _Block(n, self._layers)}
         return self._blocks[n]
 
-    def _read(self, b, rows, seen, linear):
-        """The results of all layers before the heads for the tables seen[rows]; returns their number of object balls."""
-        layers = self._layers
-        m = kernels.read_tables(rows, seen, b.balls_, b.group, b.first, b.pots_, b.context_, b.at, b.sides)
-        linear(layers["ball_2"], _relu(linear(layers["ball_1"], b.balls_[:m], b.ball_1_[:m])), b.ball_2_[:m])
-        kernels.sum_balls(b.ball_2_, b.group, b.first, b.context_, b.width)
-        linear(layers["pot_2"], _relu(linear(layers["pot_1"], b.pots_, b.pot_1_)), b.pot_2_)
-        kernels.sum_pots(b.pot_2_, b.pots_, b.context_, 3 * b.width)
-        _relu(linear(layers["context_2"], _relu(linear(layers["context_1"], b.context_, b.context_1_)), b.context_2_))
-        return m
-
-    def _score(self, b, rows, masks, scores, linear):
-        """Write the scores of all choices of the tables that were read, as ``mask_scores`` does."""
-        layers = self._layers
-        linear(layers["shared"], b.context_2_, b.shared_)
-        linear(layers["joint"], b.pot_2_, b.joint_)
-        kernels.join(b.joint_, b.shared_, b.pots_)
-        linear(layers["scores"], b.joint_, b.scores_)
-        kernels.mask_scores(rows, masks, b.sides, b.scores_, scores)
-
     def _forward(self, b, rows, seen, masks):
         """The results of all layers for the tables seen[rows]; returns their number of object balls."""
-        m, layers, linear = self._read(b, rows, seen, _Layer.by_torch), self._layers, _Layer.by_torch
-        self._score(b, rows, masks, b.by_table_, linear)
-        linear(layers["value_2"], _relu(linear(layers["value_1"], b.context_2_, b.value_1_)), b.value_2_)
+        layers = self._layers
+        m = table_kernels.read_tables(rows, seen, b.balls_, b.group, b.first, b.pots_, b.context_, b.at, b.sides)
+        layers["ball_2"](_relu(layers["ball_1"](b.balls_[:m], b.ball_1_[:m])), b.ball_2_[:m])
+        table_kernels.sum_balls(b.ball_2_, b.group, b.first, b.context_, b.width)
+        layers["pot_2"](_relu(layers["pot_1"](b.pots_, b.pot_1_)), b.pot_2_)
+        table_kernels.sum_pots(b.pot_2_, b.pots_, b.context_, 3 * b.width)
+        _relu(layers["context_2"](_relu(layers["context_1"](b.context_, b.context_1_)), b.context_2_))
+        layers["shared"](b.context_2_, b.shared_)
+        layers["joint"](b.pot_2_, b.joint_)
+        table_kernels.join(b.joint_, b.shared_, b.pots_)
+        layers["scores"](b.joint_, b.scores_)
+        table_kernels.mask_scores(rows, masks, b.sides, b.scores_, b.by_table_)
+        layers["value_2"](_relu(layers["value_1"](b.context_2_, b.value_1_)), b.value_2_)
         torch.softmax(b.by_table, 1, out=b.likely)
         return m
 
@@ -190,7 +177,7 @@ class FusedTable:
 
 
 class _Layer:
-    """A linear layer's weights and their gradients, without autograd. Its results: ``by_kernel`` where one plays, ``by_torch`` to learn."""
+    """A linear layer, its weights and their gradients, without autograd."""
 
     def __init__(self, layer, d_weight, d_bias, columns=None):
         self.weight, self._bias, self.outputs = layer.weight.detach(), layer.bias.detach(), int(layer.out_features)
@@ -204,13 +191,8 @@ class _Layer:
         weight, bias = self._own
         weight[:, : self.outputs], bias[: self.outputs] = self.weight.numpy().T, self._bias.numpy()
 
-    def by_kernel(self, rows, out):
-        """Write the results for each row; returns them."""
-        linear(rows, *self._own, out)
-        return out
-
-    def by_torch(self, rows, out):
-        """The same on PyTorch's threads, a third faster on one; the last bits depend on the number of rows."""
+    def __call__(self, rows, out):
+        """Write the results for each row, on PyTorch's threads; returns them. The last bits depend on the number of rows."""
         torch.addmm(self._bias_turned, torch.from_numpy(rows), self._turned, out=torch.from_numpy(out))
         return out
 

@@ -1,89 +1,18 @@
-"""What do the passes of ``fused.FusedTable`` compute besides matrix products? Reading tables, sums over balls and pots, masks, the loss.
+"""What does a ``fused.FusedTable`` compute besides matrix products and what a playing policy does? Draws, the loss, gradients.
 
-Each kernel goes over n rows once. The layouts are those of ``networks.TableReader``; gradients are of the loss with respect to the name
-after ``d_``.
+Each kernel goes over n rows once; gradients are of the loss with respect to the name after ``d_``.
 """
 
 from math import exp, log
 
 import numpy as np
 
-from snooker_env.game import N_BALLS
 from snooker_env.kernels import entry, kernel
-from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, STROKES, TOPS
+from snooker_env.planning.learned.table_kernels import mirrored
+from snooker_env.tasks import POTS
 
-from ..features.pot_features import BALL_X, CUT, POT_ENTRIES, POT_X
-
-N_REDS = 15
-STATE = OBSERVATION_SIZE - 5 * N_BALLS
-BALL_INPUTS = 5 + 2
-_TOPS, _TURN = len(TOPS), (len(SIDES) - 1) * len(TOPS)
-_X1, _X2, _X3 = POT_X
-NEVER = np.float32(-1e8)
-"""The score of a choice that is not available, as in ``sb3_contrib``."""
 _LEAST = 1e-30  # smaller ones are too near to what float32 can hold
 _ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)  # literals are float64, and half as many of them fit into a register
-
-
-@entry
-def read_tables(rows, seen, balls, group, first, pots, context, at, sides):
-    """Write the inputs of the networks for the tables seen[rows]; returns the number of balls on these tables.
-
-    balls (m, BALL_INPUTS), group (m,): the balls on the tables; 0 for a red that is not on, 1 for a red on, 2 and 3 likewise for colours.
-    first (n + 1,): each table's first row of them. pots (n * POTS, POT_ENTRIES). context[:, at:]: state, cue ball, side. sides (n,): -1
-    where the table is mirrored, else 1.
-    """
-    m = 0
-    for j in range(rows.shape[0]):
-        row, first[j] = seen[rows[j]], m
-        side = -1.0 if row[BALL_X] < 0.0 else 1.0
-        sides[j] = side
-        cue_x, cue_y = row[BALL_X] * side, row[1]
-        for i in range(1, N_BALLS):
-            b = 5 * i
-            if row[b + 2] <= 0.0:
-                continue
-            ball = balls[m]
-            x = row[b] * side
-            ball[0], ball[1], ball[2], ball[3], ball[4], ball[5], ball[6] = (
-                x, row[b + 1], row[b + 2], row[b + 3], row[b + 4], x - cue_x, row[b + 1] - cue_y,
-            )  # fmt: skip
-            group[m] = (2 if i > N_REDS else 0) + (1 if row[b + 4] > 0.0 else 0)
-            m += 1
-        for p in range(POTS):
-            pot, b = pots[POTS * j + p], OBSERVATION_SIZE + POT_ENTRIES * p
-            for c in range(POT_ENTRIES):
-                pot[c] = row[b + c]
-            pot[_X1] *= side
-            pot[_X2] *= side
-            pot[_X3] *= side
-            pot[CUT] *= side
-        for c in range(STATE):
-            context[j, at + c] = row[5 * N_BALLS + c]
-        context[j, at + STATE], context[j, at + STATE + 1], context[j, at + STATE + 2] = cue_x, cue_y, side
-    first[rows.shape[0]] = m
-    return m
-
-
-@entry
-def sum_balls(codes, group, first, context, width):
-    """ReLU of the balls' codes (m, width), in place; their sums / 5 into context[:, : 3 * width]: of balls on, of reds, of colours."""
-    for j in range(first.shape[0] - 1):
-        sums = context[j]
-        for c in range(3 * width):
-            sums[c] = _ZERO
-        for b in range(first[j], first[j + 1]):
-            code, kind = codes[b], group[b]
-            own = sums[width : 2 * width] if kind < 2 else sums[2 * width : 3 * width]
-            for c in range(width):
-                x = max(code[c], _ZERO)
-                code[c] = x
-                own[c] += x
-            if kind & 1:
-                for c in range(width):
-                    sums[c] += code[c]
-        for c in range(3 * width):
-            sums[c] *= _FIFTH
 
 
 @entry
@@ -100,33 +29,6 @@ def spread_to_balls(d_context, group, first, codes, width, d_codes):
             else:
                 for c in range(width):
                     d_code[c] = own[c] * _FIFTH if code[c] > 0 else _ZERO
-
-
-@entry
-def sum_pots(codes, pots, context, at):
-    """ReLU of the pots' codes (n * POTS, width), in place, 0 where there is no pot; their sums into context[:, at : at + width]."""
-    width = codes.shape[1]
-    for j in range(context.shape[0]):
-        sums = context[j, at : at + width]
-        for c in range(width):
-            sums[c] = _ZERO
-        for p in range(POTS * j, POTS * (j + 1)):
-            code, there = codes[p], pots[p, 0]
-            for c in range(width):
-                code[c] = max(code[c], _ZERO) * there
-                sums[c] += code[c]
-
-
-@entry
-def join(joint, shared, pots):
-    """joint (n * POTS, width) = ReLU(joint + shared of the table), in place, 0 where there is no pot."""
-    width = joint.shape[1]
-    for j in range(shared.shape[0]):
-        common = shared[j]
-        for p in range(POTS * j, POTS * (j + 1)):
-            row, there = joint[p], pots[p, 0]
-            for c in range(width):
-                row[c] = max(row[c] + common[c], _ZERO) * there
 
 
 @entry
@@ -163,44 +65,6 @@ def cut_off(d, activation, n):
         d_row, row = d[j], activation[j]
         for c in range(row.shape[0]):
             d_row[c] = d_row[c] if row[c] > 0 else _ZERO
-
-
-@kernel
-def mirrored(choice):
-    """The choice with the other side spin."""
-    return choice + _TURN - 2 * _TOPS * (choice // _TOPS % (_TURN // _TOPS + 1))
-
-
-@entry
-def mask_scores(rows, masks, sides, scores, out):
-    """The scores (n, choices) of the choices that masks[rows] allows, ``NEVER`` for others; a mirrored table's are those in the mirror.
-
-    scores (n * POTS, STROKES or more): of each pot's strokes.
-    """
-    for j in range(rows.shape[0]):
-        own, row = masks[rows[j]], out[j]
-        for p in range(POTS):
-            of_pot, at = scores[POTS * j + p], STROKES * p
-            if sides[j] > 0.0:
-                for c in range(STROKES):
-                    row[at + c] = of_pot[c] if own[at + c] else NEVER
-            else:
-                for c in range(0, STROKES, _TOPS):
-                    other = mirrored(at + c)
-                    for t in range(_TOPS):
-                        row[at + c + t] = of_pot[c + t] if own[other + t] else NEVER
-
-
-@entry
-def as_seen(scores, sides):
-    """Exchange the sides of strokes in scores (n, choices), in place, where the table was read mirrored."""
-    for j in range(scores.shape[0]):
-        if sides[j] < 0.0:
-            row = scores[j]
-            for c in range(row.shape[0]):
-                other = mirrored(c)
-                if other > c:
-                    row[c], row[other] = row[other], row[c]
 
 
 @entry

@@ -7,9 +7,9 @@ import numpy as np
 import torch
 
 from snooker_env.planning import action_masks
+from snooker_env.planning.learned.pot_view import with_pots
 
 from ..cluster.job import Here
-from ..features.pot_features import with_pots
 from .imitation import fit_values, to_try
 from .self_play import judged
 

@@ -22,10 +22,10 @@ from torch import nn
 
 from snooker_env.game import N_BALLS
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
+from snooker_env.planning.learned import pot_view
+from snooker_env.planning.learned.pot_view import POT_ENTRIES, tolerance_of
 from snooker_env.tasks import OBSERVATION_SIZE, POTS
 
-from ..features import pot_features
-from ..features.pot_features import POT_ENTRIES, tolerance_of
 from .networks import CONTEXT, POT, TableReader, ValueHead
 
 LINE_ENTRIES = 6
@@ -40,7 +40,7 @@ the throw is learned from pots and misses alone."""
 
 
 def lines_of(seen):
-    """(n, SHOWN) of ``pot_features.with_pots`` -> (n, POTS, LINE_ENTRIES), as seen and not in the mirror.
+    """(n, SHOWN) of ``pot_view.with_pots`` -> (n, POTS, LINE_ENTRIES), as seen and not in the mirror.
 
     1 if there is such a pot, direction of its line / pi, sine and cosine of the cut (left positive), path cue ball -> ghost ball [m],
     tolerance [rad]. Without any pot the first line leads to the nearest ball on.
@@ -55,7 +55,7 @@ def lines_of(seen):
     first = torch.where(offered[:, :1] > 0.0, pots[:, 0, 1:3], nearest)
     direction = torch.cat([first[:, None], pots[:, 1:, 1:3]], 1)
     line = torch.atan2(direction[:, :, 1], direction[:, :, 0]) / pi
-    tolerance = tolerance_of(pots[:, :, pot_features.TOLERANCE]).clamp(min=LEAST_TOLERANCE)
+    tolerance = tolerance_of(pots[:, :, pot_view.TOLERANCE]).clamp(min=LEAST_TOLERANCE)
     return torch.stack([offered, line, pots[:, :, 3], pots[:, :, 4], (pots[:, :, 5] + 1.0) * HALF_LENGTH, tolerance], 2)
 
 
@@ -192,7 +192,7 @@ class StrokeMixture(Distribution):
 
 
 class AbsolutePolicy(ActorCriticPolicy):
-    """A policy for PPO on ``action="box", aim="absolute"``, shown ``pot_features.with_pots``."""
+    """A policy for PPO on ``action="box", aim="absolute"``, shown ``pot_view.with_pots``."""
 
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **(kwargs | {"features_extractor_class": LineReader, "net_arch": []}))

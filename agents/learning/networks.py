@@ -16,10 +16,10 @@ from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import nn
 
 from snooker_env.game import N_BALLS
+from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
 from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, SPEEDS, STROKES, TOPS
 
 from ..features.lookahead_features import CUE_X, ENTRIES, PICKS, POTS_SEEN, STROKES_SEEN
-from ..features.pot_features import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
 from .fused import FusedTable
 from .value_network import ValueNetwork
 

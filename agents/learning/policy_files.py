@@ -15,9 +15,9 @@ import numpy as np
 
 from commands.files import write_atomic
 from snooker_env.checks import choice, integer, number, refuse
+from snooker_env.planning.learned.dense_layers import ACTIVATIONS, Layers
 from snooker_env.tasks import CHOICES, OBSERVATION_SIZE
 
-from .dense_layers import ACTIVATIONS, Layers
 from .hyperparameters import SHOT_OPTIONS, TRAINING_OPTIONS
 from .model_files import Trained
 

@@ -12,8 +12,7 @@ import numpy as np
 
 from snooker_env import Options
 from snooker_env.planning import Planner, Positions, StrokeSearch
-
-from ..features.value_features import SIZE, value_features
+from snooker_env.planning.learned.value_features import SIZE, value_features
 
 SLICE = 64
 """Positions of a slice."""
@@ -141,16 +140,16 @@ def once(key, make):
 
 def _proposals(shared):
     """The proposals of the policy that came."""
-    from ..features.policy_proposals import PolicyProposals
+    from snooker_env.planning.learned.policy_proposals import PolicyProposals
 
     policy = shared["policy"]
     if not isinstance(policy, dict):
-        return PolicyProposals(policy)
+        return PolicyProposals(policy.fused)
     import torch
 
     network = once(("network", shared["run"]), lambda: _network(**{name: policy[name] for name in ("recipe", "env_options", "view")}))
     network.load_state_dict({name: torch.from_numpy(one.copy()) for name, one in policy["weights"].items()})
-    return PolicyProposals(network)
+    return PolicyProposals(network.fused)
 
 
 def _network(recipe, env_options, view):

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 import torch
 
-from ..features.value_features import SIZE
-from .value_network import Value
+from snooker_env.planning.learned.value_features import SIZE
+
+from .value_network import value_of
 
 LAMBDA = 0.7
 KEPT = 81_920
@@ -45,7 +46,7 @@ class ValueLearning:
 
     def value(self):
         """The value as it is now."""
-        return Value(self._network, self._spread)
+        return value_of(self._network, self._spread)
 
     def fit(self, remaining):
         """Gradient steps for one round; ``remaining``: share of the training that is left."""

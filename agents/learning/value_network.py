@@ -1,23 +1,20 @@
 """How is the value of a position computed? V = P x U: the chance that the next stroke scores, times what the visit then brings.
 
 One small network with two outputs (``ValueNetwork``). P starts from the likeliest pot's chance by its width; U is positive. It is trained
-with torch; ``Value`` plays the same weights by ``dense_layers``.
+with torch; ``snooker_env.planning.learned.LearnedValue`` plays the same weights.
 """
 
 from itertools import pairwise
 
-import numpy as np
 import torch
 from torch import nn
 
-from ..features.value_features import LOGIT, SIZE, in_parts, value_features
-from .dense_layers import Layers
+from snooker_env.planning.learned.learned_value import POINTS, LearnedValue
+from snooker_env.planning.learned.value_features import LOGIT, SIZE
 
 WIDTHS = (160, 96)
 MEMBERS = 4
 """Number of networks whose mean is the value: each starts and learns apart, and errors that they do not share cancel."""
-POINTS = 40.0
-"""Unit of U [points]."""
 
 
 class ValueNetwork(nn.Module):
@@ -44,36 +41,7 @@ class ValueNetwork(nn.Module):
         return seen[..., LOGIT] + p, POINTS * nn.functional.softplus(u)
 
 
-class Value:
-    """The value [points] of positions by a ``ValueNetwork``: called with n ``Positions``, it returns float32 (n,).
-
-    Parameters
-    ----------
-    network : ValueNetwork
-        Its present weights are copied.
-    spread : float
-        Standard deviation of the cue ball's direction [rad], of ``planning.spread_of``.
-    threads : int
-        Largest number of threads; fewer than ``WORTH_A_THREAD`` positions take one. Results do not depend on it.
-    """
-
-    def __init__(self, network, spread, threads=1):
-        layers = [(weight.detach().numpy(), bias.detach().numpy()) for weight, bias in zip(network.weights, network.biases, strict=True)]
-        self._members = [Layers([(weight[k].T, bias[k, 0]) for weight, bias in layers], "relu") for k in range(network.members)]
-        self.spread, self.threads = spread, threads
-
-    def __call__(self, at):
-        return self.of(value_features(at, self.spread, self.threads))
-
-    def of(self, seen):
-        """The values of features (n, SIZE)."""
-        values = np.empty(len(seen), np.float32)
-        in_parts(len(seen), self.threads, lambda rows: self._write(seen[rows], values[rows]))
-        return values
-
-    def _write(self, seen, values):
-        values[:] = 0.0
-        for member in self._members:
-            p, u = member(seen).T
-            values += POINTS * np.logaddexp(0.0, u) / (1.0 + np.exp(-(seen[:, LOGIT] + p)))
-        values /= len(self._members)
+def value_of(network, spread, threads=1):
+    """The ``LearnedValue`` with the present weights of a ``ValueNetwork``."""
+    layers = [(weight.detach().numpy(), bias.detach().numpy()) for weight, bias in zip(network.weights, network.biases, strict=True)]
+    return LearnedValue([[(weight[k].T, bias[k, 0]) for weight, bias in layers] for k in range(network.members)], spread, threads)

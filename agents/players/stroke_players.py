@@ -111,15 +111,16 @@ class StrokePlayer:
     def _new_search(self, tables):
         search = StrokeSearch(tables, self.budget, pots_only=self.kind == "best_pot")
         if self.kind.startswith("planner"):
-            from ..features.policy_proposals import PolicyProposals
-            from ..learning.value_network import Value
+            from snooker_env.planning.learned.policy_proposals import PolicyProposals
+
+            from ..learning.value_network import value_of
 
             model = self.model or model_for(search.noise)
             policy = _trained(model) if isinstance(model, str) else model
             if self.kind != "planner_policy":
-                search.value = Value(policy.position_value, search.spread, search.planner.threads)
+                search.value = value_of(policy.position_value, search.spread, search.planner.threads)
             if self.kind != "planner_value":
-                search.propose = PolicyProposals(policy)
+                search.propose = PolicyProposals(policy.fused)
         return search
 
 

@@ -13,8 +13,7 @@ from snooker_env.benchmark import FittingModel
 from snooker_env.checks import integer, number
 from snooker_env.tasks.saved_models import one_thread
 
-from ..features.pot_features import PlainView
-from ..features.views import view_of
+from ..features.views import PlainView, view_of
 from ..learning.hyperparameters import ACTION_OPTIONS
 from ..learning.model_files import Trained, read
 from ..learning.models import file_of, load_trained

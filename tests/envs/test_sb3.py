@@ -10,9 +10,9 @@ from stable_baselines3 import PPO, SAC
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.evaluation import evaluate_policy
 
-from agents.features import pot_features
 from agents.features.views import training_tables
 from snooker_env.envs.snooker import SnookerEnv
+from snooker_env.planning.learned import pot_view
 from snooker_env.sb3 import SnookerVecEnv
 from snooker_env.tasks.tables import COUNTS, REALS
 from tests.processes import ROOT, python
@@ -178,7 +178,7 @@ def test_ppo_and_sac_learn_on_it_without_a_warning(observation):
 
 def test_the_pots_are_shown_for_all_tables_as_for_one():
     def with_pots(observation):
-        return pot_features.with_pots(observation[None])[0]
+        return pot_view.with_pots(observation[None])[0]
 
     many, one = training_tables(5, aim="target", noise="club"), SnookerEnv(aim="target", noise="club")
     many.seed(11)

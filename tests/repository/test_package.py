@@ -351,7 +351,7 @@ def test_a_pickled_shot_and_physics_stay_what_they_are():
 
 def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(tmp_path):
     """A column number baked into a kernel of agents/ comes from another folder of agents/."""
-    code = "from agents.features.pot_features import _add_pots as k\nfrom snooker_env import _jit\n"
+    code = "from snooker_env.planning.learned.pot_view import _add_pots as k\nfrom snooker_env import _jit\n"
     code += "print(_jit.CACHE_FOLDER, k._cache.cache_path)"
     copy_of_package(tmp_path)
     shutil.copytree(ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip"))

@@ -214,7 +214,7 @@ def test_a_model_of_an_older_network_is_refused(run, monkeypatch):
             with pytest.raises(ValueError, match=said.format("agent")):
                 load_player(run)
     with monkeypatch.context() as patch:
-        patch.setattr("agents.features.pot_features.PotsView.space", spaces.Box(-1.0, 1.0, (7,), np.float32))
+        patch.setattr("agents.features.pot_view.PotsView.space", spaces.Box(-1.0, 1.0, (7,), np.float32))
         with pytest.raises(ValueError, match=said.format("start")):
             load_trained(run / "model.zip", "start")
     monkeypatch.setattr("agents.learning.model_files.Recipe.of", lambda name, **more: {}[name])

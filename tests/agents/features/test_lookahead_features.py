@@ -3,19 +3,20 @@
 import numpy as np
 from positions import tables
 
-from agents.features import lookahead_features, pot_features
+from agents.features import lookahead_features
 from agents.features.noise_samples import NOISE_SAMPLES, errors_of, find, unevenness
 from agents.players.built_in import DISCRETE, GhostBall
 from agents.players.by_name import player_of
 from snooker_env.benchmark import play_visits, summary
 from snooker_env.game.balls import BallOn
 from snooker_env.planning import Planner, Positions, prospects
+from snooker_env.planning.learned import pot_view
 from snooker_env.tasks.discrete_actions import SIZE
 from snooker_env.tasks.visit import BALL_ON
 
 
 def rows_of(seen):
-    return seen[:, pot_features.SHOWN :].reshape(len(seen), lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)
+    return seen[:, pot_view.SHOWN :].reshape(len(seen), lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)
 
 
 def test_foresight_shows_what_happens_without_errors():
@@ -24,7 +25,7 @@ def test_foresight_shows_what_happens_without_errors():
     observations = env.reset(seed=4)[0]
     seen = view(env, observations)
     assert seen.shape == (5, *lookahead_features.SPACE.shape) and lookahead_features.SPACE.contains(seen[0])
-    assert np.array_equal(seen[:, : pot_features.SHOWN], pot_features.with_pots(observations))
+    assert np.array_equal(seen[:, : pot_view.SHOWN], pot_view.with_pots(observations))
     rows, exact = rows_of(seen), tables(5, noise="none", **DISCRETE)
     assert np.array_equal(rows[:, :, lookahead_features.THERE] > 0, env.action_masks()[:, lookahead_features.PICKS])
     for stroke in (0, 8, 14):
@@ -35,7 +36,7 @@ def test_foresight_shows_what_happens_without_errors():
             row[:, lookahead_features.GOES_ON] > 0, ~ended
         )
         assert not row[:, lookahead_features.SPREAD].any() and np.array_equal(row[:, lookahead_features.SCORED] > 0, rewards > 0)
-        cue = exact.tables.positions[:, 0] / (pot_features.HALF_WIDTH, pot_features.HALF_LENGTH)
+        cue = exact.tables.positions[:, 0] / (pot_view.HALF_WIDTH, pot_view.HALF_LENGTH)
         assert np.allclose(row[~ended, lookahead_features.CUE_X : lookahead_features.CUE_Y + 1], cue[~ended], atol=1e-6)
         assert np.allclose(lookahead_features.worth_by_rule(rows)[ended, stroke], rewards[ended], atol=1e-5)
     part = view(env, observations[[1, 3]], np.array([False, True, False, True, False]))
@@ -68,7 +69,7 @@ def test_foresight_is_the_mean_over_noise_samples_with_the_errors_of_the_tables(
         )
         assert np.allclose(row[:, lookahead_features.FIRST : lookahead_features.THIRD + 1], next_best.sum(0) / goes_on[:, None])
         assert (next_best[..., 2] > 0).any()
-        assert np.allclose(row[:, lookahead_features.CUE_Y], cue.sum(0) / goes_on / pot_features.HALF_LENGTH, atol=1e-6)
+        assert np.allclose(row[:, lookahead_features.CUE_Y], cue.sum(0) / goes_on / pot_view.HALF_LENGTH, atol=1e-6)
 
 
 def test_foresight_says_which_stroke_it_is():

@@ -7,8 +7,6 @@ import pytest
 import torch
 from positions import tables
 
-from agents.features.policy_proposals import PolicyProposals
-from agents.features.value_features import value_features
 from agents.features.views import training_tables
 from agents.learning import expert_iteration
 from agents.learning.expert_iteration import FRESH, STARTS, ExpertIteration, Starts, judge_rewards
@@ -16,9 +14,12 @@ from agents.learning.hyperparameters import Recipe
 from agents.learning.model_files import packed, read
 from agents.learning.models import zipped
 from agents.learning.self_play import search_of
-from agents.learning.value_network import Value
+from agents.learning.value_network import value_of
 from agents.players.by_name import player_of
 from snooker_env.planning import Positions, spread_of
+from snooker_env.planning.learned.learned_value import LearnedValue
+from snooker_env.planning.learned.policy_proposals import PolicyProposals
+from snooker_env.planning.learned.value_features import value_features
 from snooker_env.tasks import LEVELS
 
 OPTIONS = {"action": "discrete", "noise": "professional", "layout": "opened", "fidelity": "fast"}
@@ -108,7 +109,7 @@ def test_the_rule_and_even_proposals_come_first():
     while run.done < 80:
         before = run.done
         run.round()
-        seen.append((before, isinstance(run._sent["value"], Value), run._sent["policy"] is not None, bool(run._value.losses)))
+        seen.append((before, isinstance(run._sent["value"], LearnedValue), run._sent["policy"] is not None, bool(run._value.losses)))
     assert seen == [(done, done > 40, done >= 64, done >= 40) for done in range(0, 80, N)]
 
 
@@ -214,7 +215,7 @@ def test_ppo_is_judged_by_the_models_own_value():
     assert venv.judge is None
     judge_rewards(venv, model.policy, 2)
     at = Positions.of(tables(10, layout="random:5"))
-    expected = Value(model.policy.position_value, spread_of(LEVELS["professional"]))(at)
+    expected = value_of(model.policy.position_value, spread_of(LEVELS["professional"]))(at)
     assert np.array_equal(venv.judge(at), expected) and venv.judge.threads == 2
 
 
@@ -236,16 +237,16 @@ def test_policy_and_value_are_saved_and_read_together(tmp_path):
             p.add_(0.05)
     model.imitated = STATES
     at = Positions.of(tables(30, layout="random:5"))
-    expected = Value(model.policy.position_value, 1e-3)(at)
-    scores = PolicyProposals(model.policy).scores(at)[0]
+    expected = value_of(model.policy.position_value, 1e-3)(at)
+    scores = PolicyProposals(model.policy.fused).scores(at)[0]
     (tmp_path / "model.zip").write_bytes(zipped(model))
     trained = read(tmp_path / "model.zip", "agent")
     (tmp_path / "plain.zip").write_bytes(packed(trained))
     again = read(tmp_path / "plain.zip", "agent")
     for one in (trained, again):
         assert one.recipe == "ppo_value" and one.imitated == STATES and one.gamma == 0.0
-        assert np.array_equal(Value(one.policy.position_value, 1e-3)(at), expected)
-        assert np.array_equal(PolicyProposals(one.policy).scores(at)[0], scores)
+        assert np.array_equal(value_of(one.policy.position_value, 1e-3)(at), expected)
+        assert np.array_equal(PolicyProposals(one.policy.fused).scores(at)[0], scores)
     assert packed(again) == packed(trained)
     env = tables(3, noise="professional", aim="absolute")
     played = [

@@ -7,12 +7,12 @@ import pytest
 import torch
 from positions import tables
 
-from agents.features.pot_features import with_pots
 from agents.features.views import training_tables
 from agents.learning import judged_choices
 from agents.learning.hyperparameters import Recipe
 from agents.learning.judged_choices import RATE, JudgedChoices
 from snooker_env.planning import Planner, Positions, action_masks
+from snooker_env.planning.learned.pot_view import with_pots
 
 OPTIONS = {"noise": "professional", "fidelity": "fast"}
 N = 64

@@ -11,7 +11,6 @@ from scipy.special import logsumexp
 from scipy.stats import norm
 from stable_baselines3 import PPO
 
-from agents.features import pot_features
 from agents.features.views import training_tables
 from agents.learning import hyperparameters, mixture_policy
 from agents.learning.mixture_policy import LINE, OFFERED, THROW_UNIT, TOLERANCE, AbsolutePolicy, nearest_image
@@ -20,6 +19,7 @@ from snooker_env.game.balls import N_BALLS, mask_of
 from snooker_env.game.pots import pots
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import Positions
+from snooker_env.planning.learned import pot_view
 from snooker_env.tasks.box_actions import line
 from snooker_env.tasks.discrete_actions import POTS
 from snooker_env.tasks.observations import SIZE
@@ -37,7 +37,7 @@ def tables(layout, n):
 
 def seen(envs):
     """What a policy sees of them, a tensor."""
-    return torch.as_tensor(pot_features.with_pots(np.concatenate([Positions.of(env).observations() for env in envs])))
+    return torch.as_tensor(pot_view.with_pots(np.concatenate([Positions.of(env).observations() for env in envs])))
 
 
 def one_red(cue, red):
@@ -50,7 +50,7 @@ def one_red(cue, red):
 def shown(positions, on_table):
     """What a policy sees of a table with a red on."""
     at = Positions(positions[None], on_table[None], [[1, 0, 0, 0, 0]])
-    return torch.as_tensor(pot_features.with_pots(at.observations()))
+    return torch.as_tensor(pot_view.with_pots(at.observations()))
 
 
 @pytest.fixture(scope="module")
@@ -241,7 +241,7 @@ def test_throw_sees_the_stroke_as_it_is_played(model, opened):
 def test_a_mirrored_table_gives_the_mirrored_action(model, opened):
     mirrored = opened[:, :SIZE].clone()
     mirrored[:, : 5 * N_BALLS : 5] *= -1.0
-    mirrored = torch.as_tensor(pot_features.with_pots(mirrored.numpy()))
+    mirrored = torch.as_tensor(pot_view.with_pots(mirrored.numpy()))
     first = model.policy.features_extractor.context[0].weight  # the reader also says which half it read, for the spots of yellow and green
     kept = first.clone()
     first[:, -1] = 0.0

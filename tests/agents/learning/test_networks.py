@@ -5,9 +5,9 @@ import pytest
 import torch
 
 from agents.features.lookahead_features import CUE_X, ENTRIES, PICKS, SPACE, STROKES_SEEN
-from agents.features.pot_features import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN, VIEW_SPACE, with_pots
 from agents.learning.networks import BALL, CONTEXT, POT, ForesightReader, OutcomeHead, StrokeHead, TableReader, ValueHead
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN, VIEW_SPACE, with_pots
 from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
 from snooker_env.tasks.observations import SIZE as SEEN
 

@@ -12,12 +12,12 @@ import train
 from agents.evaluation import protocol
 from agents.evaluation.entrants import Entrant
 from agents.learning import policy_files
-from agents.learning.dense_layers import Layers
 from agents.learning.models import POLICY
 from agents.learning.policy_files import packed_policy, read_policy, write_policy
 from agents.players.layers_player import LayersPlayer
 from agents.players.trained import load_any, load_player
 from snooker_env import SnookerVectorEnv
+from snooker_env.planning.learned.dense_layers import Layers
 
 ABOUT = {"trainer": "mine", "activation": "tanh", "shots": 12, "seed": 3, "gamma": 0.9, "env_options": {"noise": "club"}}
 RNG = np.random.default_rng(0)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import torch
 
-from agents.features.value_features import LOGIT, SIZE
 from agents.learning import value_learning
 from agents.learning.value_learning import FIRST_GUESS, LAMBDA, RATE, ValueLearning
 from agents.learning.value_network import ValueNetwork
+from snooker_env.planning.learned.value_features import LOGIT, SIZE
 
 SPREAD, SAMPLES = 1e-3, 3
 

@@ -5,9 +5,9 @@ import pytest
 import torch
 from positions import chances_by_width, tables
 
-from agents.features.value_features import LOGIT, SIZE, value_features
-from agents.learning.value_network import MEMBERS, POINTS, WIDTHS, Value, ValueNetwork
+from agents.learning.value_network import MEMBERS, POINTS, WIDTHS, ValueNetwork, value_of
 from snooker_env.planning import Positions, StrokeSearch, spread_of
+from snooker_env.planning.learned.value_features import LOGIT, SIZE, value_features
 from snooker_env.tasks import LEVELS
 
 SPREAD = spread_of(LEVELS["professional"])
@@ -37,7 +37,7 @@ def some(n=200, layout="random:5"):
 def test_the_value_is_that_of_the_network(scale):
     """On real positions and on random features, also with weights that saturate both outputs."""
     made = network(3, scale)
-    value = Value(made, SPREAD)
+    value = value_of(made, SPREAD)
     for seen in (value_features(some(), SPREAD), np.random.default_rng(0).normal(0, 1.5, (300, SIZE)).astype(np.float32)):
         p, u = by_torch(made, seen)
         assert value.of(seen) == pytest.approx((p * u).mean(axis=0), rel=1e-4, abs=1e-4) and value.of(seen).shape == (len(seen),)
@@ -83,31 +83,31 @@ def test_at_first_the_chance_is_the_likeliest_pots_and_what_follows_hardly_diffe
 
 def test_a_value_keeps_the_weights_that_it_was_made_of():
     made, seen = network(), value_features(some(20), SPREAD)
-    value = Value(made, SPREAD)
+    value = value_of(made, SPREAD)
     before = value.of(seen)
     with torch.no_grad():
         for p in made.parameters():
             p.add_(0.1)
-    assert np.array_equal(value.of(seen), before) and not np.allclose(Value(made, SPREAD).of(seen), before)
+    assert np.array_equal(value.of(seen), before) and not np.allclose(value_of(made, SPREAD).of(seen), before)
 
 
 def test_the_value_of_a_position_is_that_of_its_features_on_any_number_of_threads_beside_any_others():
     made, at = network(), some(300)
     seen = value_features(at, SPREAD)
     kept = seen.copy()
-    value = Value(made, SPREAD)
-    assert np.array_equal(value(at), value.of(seen)) and np.array_equal(value(at), Value(made, SPREAD, threads=2)(at))
+    value = value_of(made, SPREAD)
+    assert np.array_equal(value(at), value.of(seen)) and np.array_equal(value(at), value_of(made, SPREAD, threads=2)(at))
     assert np.array_equal(seen, kept) and value(at).dtype == np.float32
     alone = [value(at[k : k + 1])[0] for k in range(0, 300, 11)]
     assert np.array_equal(alone, value(at)[::11]) and np.array_equal(value(at[::-1]), value(at)[::-1])
-    assert not np.allclose(Value(made, 4e-3)(at), value(at), rtol=0.05)  # larger errors, a lower value
-    assert Value(made, 4e-3)(at).mean() < value(at).mean()
+    assert not np.allclose(value_of(made, 4e-3)(at), value(at), rtol=0.05)  # larger errors, a lower value
+    assert value_of(made, 4e-3)(at).mean() < value(at).mean()
 
 
 def test_a_search_takes_it_as_its_value():
     made, at = network(1, 2.0), some(3)
     options = {"noise": "professional", "fidelity": "fast"}
-    value = Value(made, SPREAD)
+    value = value_of(made, SPREAD)
     ranked = StrokeSearch(options, 30, value=value, threads=1).rank(at, [1, 2, 3])
     usual = StrokeSearch(options, 30, threads=1).rank(at, [1, 2, 3])
     assert np.isfinite(ranked.scores).all() and not np.allclose(ranked.scores, usual.scores)

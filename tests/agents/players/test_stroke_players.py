@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from positions import tables
 
-from agents.features.policy_proposals import PolicyProposals
 from agents.features.views import training_tables
 from agents.learning import models
 from agents.learning.hyperparameters import Recipe
-from agents.learning.value_network import Value
 from agents.players import stroke_players
 from agents.players.by_name import is_player, player_of
 from agents.players.stroke_players import BUDGET, NAMES, is_stroke_player, model_for, stroke_player
 from snooker_env.benchmark import play_visits, summary
 from snooker_env.planning import Planner, Positions, actions_of
+from snooker_env.planning.learned.learned_value import LearnedValue
+from snooker_env.planning.learned.policy_proposals import PolicyProposals
 from snooker_env.planning.stroke_search import evenly, schedule
 from snooker_env.tasks import LEVELS, Noise
 
@@ -117,7 +117,7 @@ def test_each_kind_has_its_value_and_its_proposals(model):
         player.act(env, None, GOING)
         search = player.search
         kinds[kind] = (
-            isinstance(search.value, Value),
+            isinstance(search.value, LearnedValue),
             isinstance(search.propose, PolicyProposals),
             search.propose is evenly,
             search.pots_only,

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from agents.learning.dense_layers import Layers
 from snooker_env import SnookerEnv
+from snooker_env.planning.learned.dense_layers import Layers
 from tests.trainers import needed
 
 ray = needed("ray")

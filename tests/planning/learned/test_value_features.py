@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from positions import chances_by_width, tables
 
-from agents.features.value_features import COLOUR_ENTRIES, LOGIT, POT_ENTRIES, POTS_SEEN, SHARED, SIZE, value_features
 from snooker_env.game import VALUES
 from snooker_env.planning import Position, Positions, pots, spread_of
+from snooker_env.planning.learned.value_features import COLOUR_ENTRIES, LOGIT, POT_ENTRIES, POTS_SEEN, SHARED, SIZE, value_features
 from snooker_env.tasks import LEVELS
 
 SPREAD = spread_of(LEVELS["professional"])

@@ -6,7 +6,7 @@ compute, and the last bits depend on the number of rows and of threads. Here a r
 
 import numpy as np
 
-from snooker_env.kernels import entry
+from ..._jit import entry
 
 
 @entry(what="the layers of networks", seconds=2)
@@ -68,7 +68,7 @@ class Layers:
     Examples
     --------
     >>> import numpy as np
-    >>> from agents.learning.dense_layers import Layers
+    >>> from snooker_env.planning.learned.dense_layers import Layers
     >>> Layers([(np.eye(2), np.zeros(2)), (np.ones((1, 2)), np.ones(1))], "relu")(np.array([[2.0, -3.0]])).tolist()
     [[3.0]]
     """
@@ -87,6 +87,6 @@ class Layers:
         for k, (weight, bias) in enumerate(self._layers):
             if k:
                 self._between(rows)
-            given, rows = np.ascontiguousarray(rows, np.float32), np.empty((len(rows), len(bias)), np.float32)
-            linear(given, weight, bias, rows)
+            inputs, rows = np.ascontiguousarray(rows, np.float32), np.empty((len(rows), len(bias)), np.float32)
+            linear(inputs, weight, bias, rows)
         return rows

@@ -8,9 +8,11 @@ from math import cos, erf, exp, log, log10, radians, sqrt
 
 import numpy as np
 
-from snooker_env.game import N_BALLS, VALUES
-from snooker_env.geometry import AIM_X, AIM_Y, AXIS_X, AXIS_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, IS_MIDDLE, POCKET_AIMS
-from snooker_env.kernels import balls_on, bits, entry, kernel, window
+from ..._jit import entry, kernel
+from ...game.balls import N_BALLS, VALUES, bits
+from ...game.balls import balls_on_kernel as balls_on
+from ...game.pots import window
+from ...geometry import AIM_X, AIM_Y, AXIS_X, AXIS_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, IS_MIDDLE, POCKET_AIMS
 
 POTS_SEEN = 6
 POT_ENTRIES = 13
@@ -40,17 +42,17 @@ def _logit(p):
 
 
 @kernel
-def _clear(there, many, ax, ay, bx, by, ball, reach):
-    """Whether the first ``many`` balls of ``there`` (id, x, y), except ``ball``, are ``reach`` or more away from a segment."""
+def _clear(balls, many, ax, ay, bx, by, ball, reach):
+    """Whether the first ``many`` balls of ``balls`` (id, x, y), except ``ball``, are ``reach`` or more away from a segment."""
     ux, uy = bx - ax, by - ay
     length = _length(ux, uy)
     if length > 0.0:
         ux, uy = ux / length, uy / length
     square = reach * reach
     for i in range(many):
-        px, py = there[i, 1] - ax, there[i, 2] - ay
+        px, py = balls[i, 1] - ax, balls[i, 2] - ay
         across = ux * py - uy * px
-        if across >= reach or across <= -reach or there[i, 0] == ball:
+        if across >= reach or across <= -reach or balls[i, 0] == ball:
             continue
         along = px * ux + py * uy
         beyond = max(0.0, -along, along - length)
@@ -60,11 +62,11 @@ def _clear(there, many, ax, ay, bx, by, ball, reach):
 
 
 @kernel
-def _open(there, many, open_to):
+def _open(balls, many, open_to):
     """How open each ball is for each pocket (22, 6): its window as an angle [rad], 0 if the way is blocked, wherever the cue ball lies."""
     d = 2.0 * BALL_RADIUS
     for i in range(many):
-        b, x, y = int(there[i, 0]), there[i, 1], there[i, 2]
+        b, x, y = int(balls[i, 0]), balls[i, 1], balls[i, 2]
         for k in range(6):
             open_to[b, k] = 0.0
             dx, dy = POCKET_AIMS[k, AIM_X] - x, POCKET_AIMS[k, AIM_Y] - y
@@ -78,13 +80,13 @@ def _open(there, many, open_to):
             width = window(cosine, POCKET_AIMS[k, IS_MIDDLE] > 0.0)
             if width <= 0.0 or abs(x - d * dx) > HALF_WIDTH - BALL_RADIUS + 1e-9 or abs(y - d * dy) > HALF_LENGTH - BALL_RADIUS + 1e-9:
                 continue
-            if _clear(there, many, x, y, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], b, d):
+            if _clear(balls, many, x, y, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], b, d):
                 open_to[b, k] = width / (2.0 * run)
 
 
 @kernel
-def _fill(positions, on_table, ball_on, spread, there, open_to, best, row):
-    """One row of features. Work space: there (22, 3), open_to (22, 6), best (POTS_SEEN,)."""
+def _fill(positions, on_table, ball_on, spread, balls, open_to, best, row):
+    """One row of features. Work space: balls (22, 3), open_to (22, 6), best (POTS_SEEN,)."""
     d = 2.0 * BALL_RADIUS
     for c in range(SIZE):
         row[c] = 0.0
@@ -94,9 +96,9 @@ def _fill(positions, on_table, ball_on, spread, there, open_to, best, row):
     many = 0
     for b in range(1, N_BALLS):
         if on_table[b]:
-            there[many, 0], there[many, 1], there[many, 2] = b, positions[b, 0], positions[b, 1]
+            balls[many, 0], balls[many, 1], balls[many, 2] = b, positions[b, 0], positions[b, 1]
             many += 1
-    _open(there, many, open_to)
+    _open(balls, many, open_to)
     shared = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES
     for j in range(POTS_SEEN):
         best[j] = 0.0
@@ -121,7 +123,7 @@ def _fill(positions, on_table, ball_on, spread, there, open_to, best, row):
             tolerance = open_to[b, k] * d * cut / path
             chance = erf(tolerance / (spread * sqrt(2.0))) * exp(-FAR * (path + run))
             worth = chance * (20.0 + VALUES[b])
-            if not _clear(there, many, cx, cy, gx, gy, b, d * (1.0 - 1e-9)):
+            if not _clear(balls, many, cx, cy, gx, gy, b, d * (1.0 - 1e-9)):
                 continue
             count += 1
             total += chance
@@ -169,8 +171,8 @@ def _fill(positions, on_table, ball_on, spread, there, open_to, best, row):
         near += abs(x) > HALF_WIDTH - _NEAR_CUSHION or abs(y) > HALF_LENGTH - _NEAR_CUSHION
         ends += y > 0.0
         for i in range(many):
-            dx, dy = there[i, 1] - x, there[i, 2] - y
-            if there[i, 0] != b and dx * dx + dy * dy < _CLUSTER * _CLUSTER:
+            dx, dy = balls[i, 1] - x, balls[i, 2] - y
+            if balls[i, 0] != b and dx * dx + dy * dy < _CLUSTER * _CLUSTER:
                 cluster += 1.0
                 break
     o = shared
@@ -193,9 +195,9 @@ def _fill(positions, on_table, ball_on, spread, there, open_to, best, row):
 
 @entry(what="the features of positions", seconds=3)
 def _features(positions, on_table, ball_on, spread, out):
-    there, open_to, best = np.empty((N_BALLS, 3)), np.empty((N_BALLS, 6)), np.empty(POTS_SEEN)
+    balls, open_to, best = np.empty((N_BALLS, 3)), np.empty((N_BALLS, 6)), np.empty(POTS_SEEN)
     for k in range(len(out)):
-        _fill(positions[k], on_table[k], ball_on[k], spread, there, open_to, best, out[k])
+        _fill(positions[k], on_table[k], ball_on[k], spread, balls, open_to, best, out[k])
 
 
 def in_parts(n, threads, fill):

@@ -1,15 +1,17 @@
-"""What does a learning agent observe? The flat observation, followed by features of the direct pots."""
+"""What does a learned policy see of a table? The flat observation, followed by features of the direct pots."""
 
 from math import hypot, log10
 
 import numpy as np
 from gymnasium import spaces
 
-from snooker_env.game import N_BALLS, VALUES
-from snooker_env.geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
-from snooker_env.kernels import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, entry, find_pots
-from snooker_env.kernels import TOLERANCE as POT_TOLERANCE
-from snooker_env.tasks import OBSERVATION_SIZE, POTS, observation_space, shaped_observations
+from ..._jit import entry
+from ...game.balls import N_BALLS, VALUES
+from ...game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
+from ...game.pots import TOLERANCE as POT_TOLERANCE
+from ...geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
+from ...tasks.discrete_actions import POTS
+from ...tasks.observations import SIZE as OBSERVATION_SIZE
 
 POT_ENTRIES = 13
 """Numbers shown of each of the ``tasks.POTS`` widest pots, see ``with_pots``."""
@@ -72,36 +74,3 @@ def with_pots(observations):
 
 VIEW_SPACE = spaces.Box(-1.0, 1.0, (SHOWN,), np.float32)
 """The observation space of the agent."""
-
-
-class PotsView:
-    """The view with the table and its pots: ``with_pots``."""
-
-    space = VIEW_SPACE
-
-    def __call__(self, tables, observations, rows=None):
-        """The view of the tables ``rows``, from their flat observations."""
-        return with_pots(observations)
-
-    def masks(self, tables):
-        """Which choices may be played."""
-        return tables.action_masks()
-
-
-class PlainView:
-    """The view of a model from elsewhere: the environment's own observation of that ``kind``."""
-
-    def __init__(self, kind):
-        self._kind = kind
-        self.space = observation_space(kind)
-
-    def __call__(self, tables, observations, rows=None):
-        """The view of the tables ``rows``, from their flat observations."""
-        masks = None
-        if self._kind == "masked":
-            masks = tables.action_masks() if rows is None else tables.action_masks()[rows]
-        return shaped_observations(self._kind, observations, masks)
-
-    def masks(self, tables):
-        """Which choices may be played."""
-        return tables.action_masks()

@@ -7,10 +7,12 @@ so that the grid does not limit the search.
 
 import numpy as np
 
-from snooker_env.planning import action_masks, sobol_points, strokes_at
-from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS
-
-from .pot_features import with_pots
+from ...tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
+from ...tasks.discrete_actions import SIZE as CHOICES
+from ..proposals import strokes_at
+from ..sobol import sobol_points
+from ..strokes import action_masks
+from .pot_view import with_pots
 
 TEMPERATURE = 4.0
 """Of the policy's scores: above 1, so that strokes which it likes less are tried too (``python -m benchmarks.temperature``)."""
@@ -25,8 +27,8 @@ class PolicyProposals:
 
     Parameters
     ----------
-    policy : TablePolicy
-        Its ``fused.scores`` are those of tables seen as ``with_pots`` shows them.
+    policy : StrokePolicy
+        Scores the choices on tables as ``with_pots`` shows them.
     """
 
     def __init__(self, policy):
@@ -35,7 +37,7 @@ class PolicyProposals:
     def scores(self, at):
         """Scores of all choices in n ``Positions``: float32 (n, CHOICES), and which are available."""
         masks = action_masks(at)
-        return self.policy.fused.scores(with_pots(at.observations()), masks), masks
+        return self.policy.scores(with_pots(at.observations()), masks), masks
 
     def __call__(self, search, at, m, seeds):
         """m strokes for each position, as ``StrokeSearch`` wants them."""
@@ -48,9 +50,9 @@ class PolicyProposals:
         picks = np.minimum(picks, CHOICES - 1)
         stroke = picks % STROKES
         speed, side, top = stroke // (len(SIDES) * len(TOPS)), stroke // len(TOPS) % len(SIDES), stroke % len(TOPS)
-        given = np.empty((*picks.shape, 3))
-        given[..., 0] = _SPEEDS[speed] * np.exp(_STEP[speed] * (points[..., 0] - 0.5))
+        tips = np.empty((*picks.shape, 3))
+        tips[..., 0] = _SPEEDS[speed] * np.exp(_STEP[speed] * (points[..., 0] - 0.5))
         plain = (side == SIDES.index(0.0)) & (points[..., 3] < 0.5)
-        given[..., 1] = np.where(plain, 0.0, _SIDES[side] + _SIDE_STEP * (points[..., 1] - 0.5))
-        given[..., 2] = _TOPS[top] + _TOP_STEP * (points[..., 2] - 0.5)
-        return strokes_at(at, picks // STROKES, given, seeds, search.spread, search.dynamics)
+        tips[..., 1] = np.where(plain, 0.0, _SIDES[side] + _SIDE_STEP * (points[..., 1] - 0.5))
+        tips[..., 2] = _TOPS[top] + _TOP_STEP * (points[..., 2] - 0.5)
+        return strokes_at(at, picks // STROKES, tips, seeds, search.spread, search.dynamics)

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from positions import tables
 
-from agents.features import pot_features
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, BallOn, mask_of
 from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from snooker_env.planning import Positions
+from snooker_env.planning.learned import pot_view
 from snooker_env.tasks.box_actions import line
 from snooker_env.tasks.discrete_actions import POTS
 from snooker_env.tasks.observations import SIZE
@@ -41,11 +41,11 @@ def test_every_pot_is_shown_entry_by_entry(ball_on):
     observations, _ = env.reset(options={"states": states})
     at, pockets = Positions.of(env), set()
     assert (at.game[:, BALL_ON] == int(ball_on)).all()
-    shown, balls = pot_features.with_pots(observations), range(1, 16) if ball_on == BallOn.RED else range(16, BLACK + 1)
-    assert np.array_equal(shown[:, :SIZE], observations) and shown.shape == (30, pot_features.SHOWN)
+    shown, balls = pot_view.with_pots(observations), range(1, 16) if ball_on == BallOn.RED else range(16, BLACK + 1)
+    assert np.array_equal(shown[:, :SIZE], observations) and shown.shape == (30, pot_view.SHOWN)
     for k in range(30):
         found = pots(at.positions[k], at.on_table[k], mask_of(i for i in balls if at.on_table[k, i]), most=POTS)
-        wanted = np.zeros((POTS, pot_features.POT_ENTRIES))
+        wanted = np.zeros((POTS, pot_view.POT_ENTRIES))
         for j, pot in enumerate(found):
             wanted[j] = pot_entries(at.positions[k], pot)
             pockets.add(int(pot[1]))
@@ -54,14 +54,14 @@ def test_every_pot_is_shown_entry_by_entry(ball_on):
 
 
 def test_the_tolerance_is_read_back():
-    assert pot_features.tolerance_of(1 + log10(4e-3) / 2) == pytest.approx(4e-3)
+    assert pot_view.tolerance_of(1 + log10(4e-3) / 2) == pytest.approx(4e-3)
 
 
 def test_pot_view_shows_the_line_that_the_aim_is_read_against():
     table = SnookerEnv(aim="target", layout="held_out")
     for seed in range(20):
-        observation = pot_features.with_pots(table.reset(seed=seed)[0][None])[0]
-        rows = observation[SIZE:].reshape(-1, pot_features.POT_ENTRIES)
+        observation = pot_view.with_pots(table.reset(seed=seed)[0][None])[0]
+        rows = observation[SIZE:].reshape(-1, pot_view.POT_ENTRIES)
         assert np.array_equal(observation[:SIZE], Positions.of(table).observations()[0])
         direction = line(table.positions, table.on_table, table.on)
         assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=5e-6)

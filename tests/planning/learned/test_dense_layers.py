@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from agents.learning.dense_layers import Layers, linear, relu
+from snooker_env.planning.learned.dense_layers import Layers, linear, relu
 
 
 def drawn(*sizes, seed=0):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from positions import chances_by_width, tables
 
-from agents.features.policy_proposals import TEMPERATURE, PolicyProposals
 from agents.learning.models import PRETRAINED, load_trained
 from snooker_env.planning import Position, Positions, StrokeSearch, action_masks, as_actions, pots
+from snooker_env.planning.learned.policy_proposals import TEMPERATURE, PolicyProposals
 from snooker_env.planning.proposals import AIM, MOST_POTS, RIM, SIDE, SPEED, TOP, spread_strokes
 from snooker_env.tasks import CHOICES, POTS, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
@@ -17,7 +17,7 @@ class Preferring:
     """A policy with given scores of all choices, the same in every position."""
 
     def __init__(self, scores):
-        self._scores, self.fused = np.asarray(scores, np.float32), self
+        self._scores = np.asarray(scores, np.float32)
 
     def scores(self, seen, masks):
         return np.where(masks, self._scores, np.float32(-1e8))
@@ -40,7 +40,7 @@ def some(n=6):
 
 @pytest.fixture(scope="module")
 def learned():
-    return PolicyProposals(load_trained(PRETRAINED / "ppo_mask.zip", "agent").policy)
+    return PolicyProposals(load_trained(PRETRAINED / "ppo_mask.zip", "agent").policy.fused)
 
 
 def test_a_policy_that_likes_one_choice_gets_strokes_within_its_cell():

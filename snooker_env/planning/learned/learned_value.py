@@ -1,0 +1,45 @@
+"""What is a position worth by a learned value? V = P x U: the chance that the next stroke scores, times what the visit then brings.
+
+The mean of several small networks with two outputs. P starts from the likeliest pot's chance by its width; U is positive.
+``agents.learning.value_network`` trains them.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..positions import Positions
+from .dense_layers import Layers
+from .value_features import LOGIT, in_parts, value_features
+
+POINTS = 40.0
+"""Unit of U [points]."""
+
+
+class LearnedValue:
+    """The value [points] of n ``Positions``: called with them, it returns float32 (n,).
+
+    ``members``: the layers of each network, (weight (out, in), bias (out,)). ``spread``: standard deviation of the cue ball's direction
+    [rad], of ``planning.spread_of``. ``threads``: at most; results do not depend on it.
+    """
+
+    def __init__(self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: float, threads: int = 1):
+        self._members = [Layers(member, "relu") for member in members]
+        self.spread, self.threads = spread, threads
+
+    def __call__(self, at: Positions) -> NDArray[np.float32]:
+        return self.of(value_features(at, self.spread, self.threads))
+
+    def of(self, seen: NDArray[np.float32]) -> NDArray[np.float32]:
+        """The values of features (n, SIZE)."""
+        values = np.empty(len(seen), np.float32)
+        in_parts(len(seen), self.threads, lambda rows: self._write(seen[rows], values[rows]))
+        return values
+
+    def _write(self, seen: NDArray[np.float32], values: NDArray[np.float32]) -> None:
+        values[:] = 0.0
+        for member in self._members:
+            p, u = member(seen).T
+            values += POINTS * np.logaddexp(0.0, u) / (1.0 + np.exp(-(seen[:, LOGIT] + p)))
+        values /= len(self._members)
