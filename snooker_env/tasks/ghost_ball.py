@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 _PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8))
 _BEHIND = 0.3
 """How far behind the ghost ball the cue ball is placed, where it may stand anywhere [m]."""
-_DRIVE = 4.0
+DRIVE = 4.0
 """How much farther than needed a plain stroke would roll where some ball must reach a cushion [m]. A ball struck full comes half as far.
 """
 
@@ -63,7 +63,7 @@ def _put_on_bed(positions, on_table, mask, found):
                 place_anywhere(positions, on_table, positions[ball, 0] + far * dx, positions[ball, 1] + far * dy)
                 worth = 0.0
                 if tries == 1:
-                    _, _, _, worth = soft(positions, on_table, 1 << ball, 0, _DRIVE, found)
+                    _, _, _, worth = soft(positions, on_table, 1 << ball, 0, DRIVE, found)
                 elif find_pots(positions, on_table, 1 << ball, BALL_RADIUS, found[:1]):
                     worth = found[0, TOLERANCE]
                 if worth > widest:
@@ -136,7 +136,7 @@ def named(positions, on_table, row, aim):
 @entry(what="the geometric opponent", seconds=3)
 def _ghost_ball(which, positions, on_table, game, rules, nominated, streams, options, noise, r, v, w, here, shots):
     """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike. ``rules``: the code of the rule set."""
-    found, drive = np.empty((LINE_ROWS, POT_COLUMNS)), _DRIVE if rules == SHOOT_OUT else 0.0
+    found, drive = np.empty((LINE_ROWS, POT_COLUMNS)), DRIVE if rules == SHOOT_OUT else 0.0
     for j in range(which.shape[0]):
         k = which[j]
         p, on, row, stream = positions[k], on_table[k], game[k], streams[k]

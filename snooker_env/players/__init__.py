@@ -1,0 +1,27 @@
+"""Players: functions of positions and a seed. The only place where a name becomes a player.
+
+>>> import snooker_env as sn
+>>> player = sn.player("search").at({"noise": "club"})
+>>> strokes = player.play(sn.Position(cue=(0.0, 0.9), reds=[(0.4, 1.3)], black=(0.0, 1.4605), on="red"), seeds=[7])
+>>> strokes.values.shape
+(1, 5)
+"""
+
+from .player import Player, Ranked, Strokes
+from .playing import FRAMES, VISITS, decided, decision_seeds
+from .resolver import player, players
+from .seen import Seen, SeenPlayer
+
+__all__ = [
+    "FRAMES",
+    "VISITS",
+    "Player",
+    "Ranked",
+    "Seen",
+    "SeenPlayer",
+    "Strokes",
+    "decided",
+    "decision_seeds",
+    "player",
+    "players",
+]

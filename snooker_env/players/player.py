@@ -1,0 +1,311 @@
+"""What is a player? A function of positions and a seed: it sees where the balls lie and says what it plays.
+
+A ``Player`` is bound once to where it plays (``at``) and then asked for any number of positions (``play``). It keeps
+nothing between two calls: the same position and seed give the same stroke, whether asked for one table or a thousand.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._check import refuse, refuse_what
+from .._types import Environment, Floats, Integers, Ints
+from ..game.balls import YELLOW
+from ..game.frame_columns import BALL_ON, PLAY, PLAY_AGAIN
+from ..game.ruling import AUTO
+from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
+from ..planning import Position, Positions
+from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
+from ..tasks.declarations import CLAIMS, COLOURS, SAYS_NOTHING
+from ..tasks.options import Options
+
+RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]
+"""What ``Player.at`` takes: an environment, an ``Options``, or a dict of its fields."""
+PositionsLike: TypeAlias = (
+    Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
+)
+"""What ``Player.play`` takes: anything that ``Positions.of`` accepts."""
+(SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
+"""Columns of a stroke."""
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """What players do in n positions: a stroke each, and what is said with it.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        float64 (n, 5). Cue speed [m/s], side and top (tip offsets over R), direction in which the cue ball leaves [rad,
+        anticlockwise from +x; squirt is compensated], elevation of the cue [rad].
+    place : numpy.ndarray, optional
+        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN where it is played from where it lies. Default: NaN.
+    nominate : numpy.ndarray, optional
+        int64 (n,). Id of the colour that is nominated after a red or as a free ball; 0: the free ball is declined; -1: the
+        colour first struck. Default: -1.
+    decision : numpy.ndarray, optional
+        int64 (n,). After a foul of the opponent, of ``game.frame_columns``: PLAY, PLAY_AGAIN, REPLACE or PLACE_ANYWHERE.
+        Default: PLAY.
+    declare : numpy.ndarray, optional
+        int64 (n,). Of ``tasks.declarations``: SAYS_NOTHING, CONCEDES, CLAIMS or OTHER_BEGINS. Default: SAYS_NOTHING.
+
+    Raises
+    ------
+    ValueError
+        If an array has another shape, or a stroke is not finite or out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.players import Strokes
+    >>> strokes = Strokes(np.array([[2.0, 0.0, 0.2, 1.5, 0.0]]))
+    >>> len(strokes), strokes.speed.tolist(), bool(np.isnan(strokes.place).all())
+    (1, [2.0], True)
+    """
+
+    values: Floats
+    place: Floats = None  # type: ignore[assignment]
+    nominate: Ints = None  # type: ignore[assignment]
+    decision: Ints = None  # type: ignore[assignment]
+    declare: Ints = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        values = np.asarray(self.values, np.float64)
+        if values.ndim != 2 or values.shape[1] != 5:
+            raise refuse_what(
+                "values", f"array of shape {values.shape}", "must be (n, 5): speed, side, top, aim, elevation"
+            )
+        n = len(values)
+        most = np.array([MAX_SPEED, 0.5, 0.5, np.inf, MAX_ELEVATION]) + 1e-9
+        least = np.array([MIN_SPEED, -0.5, -0.5, -np.inf, 0.0]) - 1e-9
+        fine = np.isfinite(values) & (values >= least) & (values <= most)
+        if not fine.all():
+            k, c = np.argwhere(~fine)[0].tolist()
+            name = ("speed", "side", "top", "aim", "elevation")[c]
+            raise refuse(
+                f"{name}[{k}]", float(values[k, c]), f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]"
+            )
+        usual: dict[str, Any] = {
+            "place": np.full((n, 2), np.nan),
+            "nominate": np.full(n, AUTO, np.int64),
+            "decision": np.full(n, PLAY, np.int64),
+            "declare": np.full(n, SAYS_NOTHING, np.int64),
+        }
+        object.__setattr__(self, "values", values)
+        for name, default in usual.items():
+            array = default if getattr(self, name) is None else np.asarray(getattr(self, name), default.dtype)
+            if array.shape != default.shape:
+                raise refuse_what(name, f"array of shape {array.shape}", f"must have shape {default.shape}")
+            object.__setattr__(self, name, array)
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def __getitem__(self, rows: Any) -> "Strokes":
+        """Some of the strokes: ``rows`` is a slice, a mask or an array of rows."""
+        return Strokes(
+            *(getattr(self, name)[rows] for name in ("values", "place", "nominate", "decision", "declare"))
+        )
+
+    @classmethod
+    def join(cls, parts: "Sequence[Strokes]") -> "Strokes":
+        """All strokes of several ``Strokes``, in their order."""
+        names = ("values", "place", "nominate", "decision", "declare")
+        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+    @property
+    def speed(self) -> Floats:
+        """Cue speeds [m/s], float64 (n,)."""
+        return self.values[:, SPEED]
+
+    @property
+    def side(self) -> Floats:
+        """Tip offsets to the right over R, float64 (n,)."""
+        return self.values[:, SIDE]
+
+    @property
+    def top(self) -> Floats:
+        """Tip offsets upwards over R, float64 (n,)."""
+        return self.values[:, TOP]
+
+    @property
+    def aim(self) -> Floats:
+        """Directions in which the cue ball leaves [rad], float64 (n,)."""
+        return self.values[:, AIM]
+
+    @property
+    def elevation(self) -> Floats:
+        """Elevations of the cue [rad], float64 (n,)."""
+        return self.values[:, ELEVATION]
+
+    def actions(self, options: Options, at: Positions) -> Floats:
+        """Convert to actions of an environment: the one encoder.
+
+        Parameters
+        ----------
+        options : Options
+            Of the environment, with ``action="box"`` and ``aim="absolute"``. What the action holds (elevation, placement,
+            nomination, decision, declaration) is written; what it does not hold must not be needed.
+        at : Positions
+            The n positions: a place means another action where the cue ball may stand anywhere, and a nomination another
+            one with a free ball.
+
+        Returns
+        -------
+        numpy.ndarray
+            float64 (n, k), in [-1, 1].
+
+        Raises
+        ------
+        ValueError
+            If the environment reads other actions, or a stroke has a part that its actions do not hold.
+        """
+        box = options.rules.actions
+        if not isinstance(box, Actions) or box.aim != "absolute":
+            raise refuse_what(
+                "options",
+                f"action={options.action!r}, aim={options.aim!r}",
+                'must be "box" and "absolute": strokes are continuous',
+            )
+        turns = self.aim / np.pi
+        parts = [
+            2.0 * (self.speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0, 2.0 * self.side, 2.0 * self.top,
+            turns - 2.0 * np.round(0.5 * turns),
+        ]  # fmt: skip
+        if box.elevation:
+            parts.append(2.0 * self.elevation / MAX_ELEVATION - 1.0)
+        elif (self.elevation > 0.0).any():
+            raise refuse(
+                "elevation",
+                float(self.elevation.max()),
+                "must be 0: the environment's actions hold no elevation",
+            )
+        if box.placement:
+            parts += self._placed(at)
+        if box.nominate:
+            parts.append(self._nominated(at))
+        if box.decision:
+            parts.append(
+                np.where(self.decision == PLAY, 0.0, np.where(self.decision == PLAY_AGAIN, -1.0, 1.0))
+            )
+        elif (self.decision != PLAY).any():
+            raise refuse(
+                "decision",
+                int(self.decision.max()),
+                "must be PLAY: the environment's actions hold no decision",
+            )
+        if box.declares:
+            parts.append(
+                np.where(self.declare == SAYS_NOTHING, 0.0, np.where(self.declare == CLAIMS, 1.0, -1.0))
+            )
+        elif (self.declare != SAYS_NOTHING).any():
+            raise refuse(
+                "declare",
+                int(self.declare.max()),
+                "must be SAYS_NOTHING: the environment's actions hold no declaration",
+            )
+        return np.clip(np.stack(parts, axis=1), -1.0, 1.0)  # removes rounding errors
+
+    def _placed(self, at: Positions) -> list[Floats]:
+        """The two components of the place."""
+        x, y = np.where(np.isnan(self.place), at.positions[:, 0], self.place).T
+        across = np.clip(x / D_RADIUS, -1.0, 1.0)
+        depth = D_RADIUS * np.sqrt(1.0 - across * across)
+        back = np.clip((BAULK_Y - y) / np.maximum(depth, 1e-9), 0.0, 1.0)
+        return [
+            np.where(at.anywhere, x / HALF_WIDTH, across),
+            np.where(at.anywhere, y / HALF_LENGTH, 2.0 * back - 1.0),
+        ]
+
+    def _nominated(self, at: Positions) -> Floats:
+        """The component of the nomination: one of six parts of the range after a red, of seven with a free ball."""
+        n = np.maximum(self.nominate - YELLOW + 1, 0)  # 0 none, 1 to 6 yellow to black
+        after_red = at.game[:, BALL_ON] == 0
+        return np.where(after_red, (np.maximum(n, 1) - 0.5) / COLOURS, (n + 0.5) / (1 + COLOURS)) * 2.0 - 1.0
+
+
+class Ranked(NamedTuple):
+    """The strokes that a player considers in one position, best first.
+
+    Attributes
+    ----------
+    strokes : Strokes
+        m strokes.
+    scores : numpy.ndarray or None
+        float64 (m,). The player's own scores, or None if it has none.
+    """
+
+    strokes: Strokes
+    scores: NDArray[np.float64] | None
+
+
+@runtime_checkable
+class Player(Protocol):
+    """A player: a function of positions and a seed.
+
+    A player may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position; the first stroke is the
+    one that ``play`` returns. Advice shows it.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> player = sn.player("ghost_ball").at({"noise": "club"})
+    >>> player.play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [7]).values.shape
+    (1, 5)
+    """
+
+    def at(self, rules: RulesLike) -> "Player":
+        """Return the player bound to where it plays.
+
+        Parameters
+        ----------
+        rules : Env, VectorEnv, AECEnv, Options or dict
+            Physics, table, fidelity, execution noise and, for frames, the game. How the actions of an environment are
+            read does not matter: strokes are the same everywhere.
+
+        Returns
+        -------
+        Player
+            A new player, which may be asked.
+
+        Raises
+        ------
+        ValueError
+            If the options are invalid, or the player cannot play under them.
+        """
+        ...
+
+    def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
+        """Return what the player does in each of n positions.
+
+        Parameters
+        ----------
+        positions : PositionsLike
+            The n positions, of visits or of frames as the striker sees them.
+        seeds : array_like
+            int (n,). Equal positions and seeds give equal strokes, however many are asked for at once.
+
+        Returns
+        -------
+        Strokes
+            n strokes and what is said with them.
+
+        Raises
+        ------
+        ValueError
+            If a position is invalid or ``seeds`` has the wrong shape.
+        """
+        ...
+
+
+def seeds_of(seeds: Integers, n: int) -> Ints:
+    """``seeds`` as int64 (n,) in [0, 2**32); ValueError unless they are n integers."""
+    a = np.asarray(seeds)
+    if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
+        raise refuse_what(
+            "seeds", f"{a.dtype} array of shape {a.shape}", f"must be {n} integers, one for each position"
+        )
+    return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)

@@ -1,0 +1,203 @@
+"""Which player does a name stand for? The only place that answers: built in, installed by others, your class, a model, a program."""
+
+import importlib
+import importlib.util
+import re
+import warnings
+from collections.abc import Callable
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from typing import Any
+
+from .._check import refuse, refuse_what, truth
+from .player import Player
+from .search import BUDGET, KINDS, SearchPlayer
+from .simple import GhostBall, Random
+
+GROUP = "snooker_env.players"
+"""Entry points of this group name players of other packages: NAME = MODULE:MAKER, called without arguments."""
+READERS = "snooker_env.models"
+"""Entry points of this group read files of models: MODULE:READER, called with the path; None if the file is not theirs."""
+BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner")
+"""The players in the package."""
+RENAMED = {"lookahead": "search"}
+"""Names of players of version 0.3 that are still understood."""
+OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
+"""MODULE:CLASS."""
+PROGRAM = "program:"
+_SEARCHING = re.compile(
+    r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d{1,7}))?(?:@(.+))?"
+)
+
+
+def players() -> list[str]:
+    """Return the names of players: those in the package, then those that installed packages bring.
+
+    Returns
+    -------
+    list of str
+        Names that ``player`` accepts. ``best_pot``, ``search`` and ``planner`` also take a number of simulated shots:
+        "search_2000".
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> sn.players()[:3]
+    ['random', 'ghost_ball', 'best_pot']
+    """
+    return [*BUILT_IN, *(name for name in _installed() if name not in BUILT_IN)]
+
+
+def player(name: Any, *, trust: bool = False) -> Player:
+    """Return the player with a name.
+
+    Parameters
+    ----------
+    name : str, Path or player
+        One of:
+
+        * a name of ``players()``, for players that search optionally with a number of simulated shots ("planner_500") and
+          for a planner with a model ("planner@runs/ppo_value-0");
+        * "MODULE:CLASS" of a player of your own, made without arguments; its module is imported;
+        * a model's ``.zip`` of Stable-Baselines3 or sb3-contrib, or a training run's folder or files of ``train.py``;
+        * "program:COMMAND", an external program (docs/play/protocol.md);
+        * a player, which is returned as it is; or an object with ``options`` and ``act(observations, masks, seeds)``.
+    trust : bool, optional
+        Whether code in a model's ``.zip`` may run; default False.
+
+    Returns
+    -------
+    Player
+        The player, not yet bound: ``player(name).at(options).play(positions, seeds)``.
+
+    Raises
+    ------
+    ValueError
+        If nothing has that name, the file holds no player, or it holds code and ``trust`` is False.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> strokes = sn.player("ghost_ball").at({}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [7])
+    >>> strokes.values.shape
+    (1, 5)
+    """
+    truth("trust", trust)
+    if not isinstance(name, str | Path):
+        return _of_object(name)
+    text = str(name)
+    if (built_in := _built_in(text)) is not None:
+        return built_in
+    if text.startswith(PROGRAM):
+        from .program import ProgramPlayer
+
+        return ProgramPlayer(text.removeprefix(PROGRAM))
+    if (entry := _installed().get(text)) is not None:
+        return _of_object(_made(text, entry.load))
+    if Path(text).exists():
+        return _of_file(Path(text), trust)
+    if OWN.fullmatch(text):
+        module, _, maker = text.partition(":")
+        return _of_object(_made(text, lambda: getattr(importlib.import_module(module), maker)))
+    known = ", ".join(map(repr, players()))
+    raise refuse(
+        "player",
+        text,
+        f"must be one of {known}, MODULE:CLASS, a model's file, a run's folder or program:COMMAND",
+    )
+
+
+def is_player(name: str) -> bool:
+    """Whether that is the name of a player, built in or installed."""
+    return _SEARCHING.fullmatch(name) is not None or name in players()
+
+
+def _built_in(name: str) -> Player | None:
+    """The player of the package with that name."""
+    if name == "random":
+        return Random()
+    if name == "ghost_ball":
+        return GhostBall()
+    form = _SEARCHING.fullmatch(name)
+    if form is None:
+        return None
+    kind, budget, model = form.groups()
+    if kind in RENAMED:
+        warnings.warn(
+            f"the player {kind!r} is called {RENAMED[kind]!r} now", DeprecationWarning, stacklevel=3
+        )
+        kind = RENAMED[kind]
+    if model is not None and not kind.startswith("planner"):
+        raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
+    learned = None if model is None else _learned(model)
+    return SearchPlayer(kind, int(budget) if budget else BUDGET, learned)
+
+
+def _installed() -> dict[str, EntryPoint]:
+    """The players of installed packages by name, as far as their modules are there."""
+    return {one.name: one for one in entry_points(group=GROUP) if _importable(one.module)}
+
+
+def _importable(module: str) -> bool:
+    """Whether there is a module: this repository's own ``agents`` are named by a wheel that does not hold them."""
+    try:
+        return importlib.util.find_spec(module) is not None
+    except ModuleNotFoundError:
+        return False
+
+
+def _made(name: str, maker: Callable[[], Any]) -> Any:
+    """An instance of what a name means; ValueError if the user's code raises."""
+    try:
+        return maker()()
+    except Exception as error:
+        raise refuse(
+            "player", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})"
+        ) from error
+
+
+def _of_object(thing: Any) -> Player:
+    """A player as it is, or what makes one of an object that acts on observations."""
+    if isinstance(thing, Player) and not isinstance(thing, type):
+        return thing
+    if callable(getattr(thing, "act", None)) and not isinstance(thing, type):
+        from .seen import SeenPlayer
+
+        return SeenPlayer(thing, dict(getattr(thing, "options", {})), type(thing).__name__)
+    allowed = "must be a player: at(rules) and play(positions, seeds), or options and act(observations, masks, seeds)"
+    raise refuse_what("player", f"a {type(thing).__name__}", allowed)
+
+
+def _read(path: Path) -> Any:
+    """What the readers of installed packages make of a file; None if it belongs to none of them."""
+    for one in entry_points(group=READERS):
+        if _importable(one.module) and (made := one.load()(path)) is not None:
+            return made
+    return None
+
+
+def _of_file(path: Path, trust: bool) -> Player:
+    """The player of a model's file or a run's folder."""
+    made = _read(path)
+    if made is not None:
+        return _of_object(made)
+    from .saved import saved_player
+
+    return saved_player(path, {}, trust)
+
+
+def _learned(model: str) -> Any:
+    """Policy and value of a planner's model: a level of the package's weights, a file or a run's folder."""
+    from .weights import learned_at, levels
+
+    if model in levels():
+        return learned_at(model)
+    made = _read(Path(model)) if Path(model).exists() else None
+    learned = getattr(made, "learned", None)
+    if learned is None:
+        raise refuse(
+            "player",
+            f"planner@{model}",
+            f"must name a model with policy and value: {', '.join(levels())} or its file",
+        )
+    return learned

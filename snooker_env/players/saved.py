@@ -1,0 +1,111 @@
+"""How does a model of Stable-Baselines3 or sb3-contrib play? Its ``.zip``, checked before any code in it runs, as a ``Seen``."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._check import refuse
+from .._types import Bools, Ints, Observation, ObservationKind
+from ..tasks.observations import OBSERVATIONS, space
+from ..tasks.options import Options
+from ..tasks.saved_models import SavedModel, by_train, entries, one_thread, outline
+from .seen import SeenPlayer
+
+_VIEW = "must be a model trained on the observation of a visit or a frame, flat, balls or masked, and nothing else"
+
+
+@dataclass(frozen=True)
+class FittingModel:
+    """A model's file whose spaces, as the file describes them, are those of an environment with these options.
+
+    ``saved``: the file, of which nothing was unpickled. ``options``: how it sees and acts, see ``Seen``.
+    """
+
+    saved: SavedModel
+    options: dict[str, Any]
+    observation: ObservationKind
+
+    @classmethod
+    def of(cls, path: str | Path, options: dict[str, Any], field: str = "player") -> "FittingModel":
+        """Read the description in a model's file; ValueError, naming ``field``, if its spaces are others."""
+        saved = SavedModel.of(path, field)
+        options = ({"action": "discrete"} if saved.action[0] == "Discrete" else {}) | options
+        for frame, replaced in ((False, False), (True, False), (True, True)):
+            for kind in OBSERVATIONS:
+                if outline(space(kind, frame=frame, replaced=replaced)) == saved.observation:
+                    task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
+                    model = cls(saved, options | task | {"observation": kind}, kind)
+                    if outline(model.actions) != saved.action:
+                        raise model.other_actions
+                    return model
+        raise saved.refused(_VIEW)
+
+    @property
+    def actions(self) -> Any:
+        """The space of its actions."""
+        task: Any = {"task": "frame"} if "decision" in self.options else {}
+        return Options(**task | self.options).rules.actions.space
+
+    @property
+    def other_actions(self) -> ValueError:
+        """The error for a model with another action space; not raised."""
+        return self.saved.refused(
+            f"must be a model whose actions are {self.actions}: give the options of its training, for example placement=True"
+        )
+
+    def network(self, trust: bool) -> Any:
+        """Load its policy: the code in its pickles runs. ValueError without ``trust``."""
+        network = self.saved.network(trust, "trust=True")
+        if (
+            outline(network.observation_space) != self.saved.observation
+            or network.action_space != self.actions
+        ):
+            raise self.saved.refused("must be a model whose spaces are those that its file describes")
+        return network
+
+
+class SavedNetwork:
+    """The policy of a saved model as a ``Seen``; its actions are deterministic. It is loaded again in another process."""
+
+    def __init__(self, model: FittingModel, trust: bool):
+        self.options, self._model, self._trust = model.options, model, trust
+        self._network: Any = model.network(trust)
+        self._masked = model.saved.algorithm[1] == "MaskablePPO"
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self.__dict__ | {"_network": None}
+
+    def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
+        """The greedy actions, one row at a time: the products of a batch round otherwise than those of one row."""
+        if self._network is None:
+            self._network = self._model.network(self._trust)
+        actions = []
+        with one_thread():
+            for k in range(len(seeds)):
+                row = (
+                    {name: part[k] for name, part in observations.items()}
+                    if isinstance(observations, dict)
+                    else observations[k]
+                )
+                masked = {"action_masks": masks[k]} if self._masked and masks is not None else {}
+                actions.append(self._network.predict(row, deterministic=True, **masked)[0])
+        space = self._network.action_space
+        answer = np.array(actions).reshape(len(seeds), *space.shape)
+        return np.clip(answer, -1.0, 1.0) if space.shape else answer
+
+
+def saved_player(path: Path, options: dict[str, Any], trust: bool) -> SeenPlayer:
+    """The player of a model's ``.zip``; ValueError if it is none, or for the files of ``train.py`` without their reader."""
+    try:
+        ours = path.is_dir() or by_train(entries(path))
+    except Exception as error:
+        raise refuse("player", str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
+    if ours:
+        raise refuse(
+            "player",
+            str(path),
+            "must be read in a clone of the repository: it is a model or a run of train.py",
+        )
+    return SeenPlayer(SavedNetwork(FittingModel.of(path, options), trust), name=str(path))

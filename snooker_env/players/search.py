@@ -1,0 +1,80 @@
+"""How do players search? By the rule of thumb, for the pot alone, or with a learned value and policy, by one ``StrokeSearch``.
+
+* ``search`` judges positions by the rule of thumb and looks at strokes spread evenly over the pots.
+* ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It has weights for
+  several levels of execution errors and takes those of the level that it plays under.
+* ``best_pot`` plays the likeliest pot without regard to what follows.
+
+A name may end in a number of simulated shots a decision: ``search_2000``.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from .._check import integer
+from ..planning import Positions, StrokeSearch
+from ..planning.learned.learned_value import LearnedValue
+from ..planning.learned.policy_proposals import PolicyProposals
+from ..tasks.options import Options
+from .player import Ranked, Strokes, seeds_of
+from .simple import BoundPlayer, placed
+from .weights import Learned, learned_at, level_for
+
+BUDGET = 120
+"""Simulated shots of a decision where the name does not say how many."""
+KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")
+"""``planner_value`` and ``planner_policy`` have one of the planner's two halves: what is each worth?"""
+
+
+class SearchPlayer(BoundPlayer):
+    """A player that plays the best stroke of a ``StrokeSearch``.
+
+    Parameters
+    ----------
+    kind : str
+        One of ``KINDS``.
+    budget : int, optional
+        Simulated shots a decision, at least 8; default 120.
+    learned : Learned, optional
+        Policy and value of a planner. Default: the package's, by the execution noise.
+    """
+
+    def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
+        self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
+        self.budget = integer("budget", budget, 8, 10**7)
+        self._learned = learned
+        self.search: Any = None
+        """The ``StrokeSearch`` where it is bound; None before."""
+
+    def _bind(self, options: Options) -> None:
+        self.search = search = StrokeSearch(options, self.budget, pots_only=self.kind == "best_pot")
+        if self.kind.startswith("planner"):
+            learned = self._learned or learned_at(level_for(search.noise))
+            if self.kind != "planner_policy":
+                search.value = LearnedValue(learned.value, search.spread, search.planner.threads)
+            if self.kind != "planner_value":
+                search.propose = PolicyProposals(learned.policy)
+
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """See ``Player.play``."""
+        at = Positions.of(positions)
+        ranked, places = self._ranked(at, seeds)
+        return Strokes(ranked.strokes[:, 0], places)
+
+    def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
+        """The strokes that met most noise samples in each position, at most ten, best first, with their scores [points]."""
+        at = Positions.of(positions)
+        ranked, places = self._ranked(at, seeds)
+        most = np.minimum((ranked.samples == ranked.samples.max(axis=1, keepdims=True)).sum(axis=1), 10)
+        return [
+            Ranked(Strokes(ranked.strokes[k, :m], np.repeat(places[k : k + 1], m, 0)), ranked.scores[k, :m])
+            for k, m in enumerate(most.tolist())
+        ]
+
+    def _ranked(self, at: Positions, seeds: Any) -> tuple[Any, np.ndarray]:
+        """The ranking of the search, and the places of cue balls in hand; NaN elsewhere."""
+        _ = self.options  # it must be bound
+        keys = seeds_of(seeds, len(at))
+        visits, places = placed(at, keys)
+        return self.search.rank(visits, keys), places

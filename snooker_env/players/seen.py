@@ -1,0 +1,144 @@
+"""How does a network play? It sees observations and answers with actions; one adapter makes a player of it."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._check import choice, refuse_what
+from .._types import Bools, Ints, Observation
+from ..planning import Positions
+from ..tasks.decoding import decoded
+from ..tasks.discrete_actions import Choices
+from ..tasks.frame import Frames
+from ..tasks.observations import shaped
+from ..tasks.options import Options
+from ..tasks.visit import Visits
+from .player import Strokes, seeds_of
+from .simple import BoundPlayer, placed
+
+SHARED = ("physics", "table", "fidelity", "noise")
+"""Options of where a player is bound that hold for what it sees, too."""
+OF_FRAMES = ("game", "miss", "time_to_play")
+"""Those of frames alone."""
+OPTIONS = (
+    "action", "aim", "observation", "elevation", "placement", "decision", "nominate", "concede", "claim", "lot",
+)  # fmt: skip
+"""Options that say how a network sees and acts."""
+
+
+@runtime_checkable
+class Seen(Protocol):
+    """What acts on observations: a network, or any model of another library.
+
+    It may have ``options``, a dict: how its observations look and its actions are read ("action", "aim", "observation",
+    "elevation", "placement", "decision", ... of ``Options``), and "task", "visit" (default) or "frame".
+    """
+
+    def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
+        """Return n actions.
+
+        Parameters
+        ----------
+        observations : numpy.ndarray or dict
+            The n observations, of the kind that ``options`` says.
+        masks : numpy.ndarray or None
+            bool (n, choices): the available choices of ``action="discrete"``; None for box actions.
+        seeds : numpy.ndarray
+            int64 (n,): of what it draws. Equal rows and seeds must give equal actions, however many are asked for.
+
+        Returns
+        -------
+        array_like
+            n actions of the action space that ``options`` says.
+        """
+        ...
+
+
+class SeenPlayer(BoundPlayer):
+    """A player that shows positions to a ``Seen`` as observations and reads its actions as strokes.
+
+    One that sees visits plays frames too: it sees the stroke to come as one of a visit, with a free ball as any colour; a
+    cue ball in hand that it does not place stands where ``ghost_ball`` puts it; after a foul it plays.
+
+    Parameters
+    ----------
+    seen : Seen
+        What acts.
+    options : mapping, optional
+        How it sees and acts, see ``Seen``; default: its own attribute ``options``, or none.
+    name : str, optional
+        What errors call it.
+    """
+
+    def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
+        given = dict(getattr(seen, "options", {}) if options is None else options)
+        self.seen, self.name = seen, name or type(seen).__name__
+        self.frames = (
+            choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
+        )
+        for key in given:
+            choice(f"key of the options of player {self.name}", key, OPTIONS)
+        if not self.frames:
+            given.pop("decision", None)  # there is none in a visit
+        self.sees = given
+        self._rules: Any = None
+        self._bound_sees(Options())
+
+    def _bind(self, options: Options) -> None:
+        self._bound_sees(options)
+
+    def _bound_sees(self, options: Options) -> None:
+        """Read its options with the physics of ``options``; ValueError if they are not those of an environment."""
+        same: dict[str, Any] = {name: getattr(options, name) for name in SHARED}
+        if self.frames:
+            same |= {"task": "frame"} | {name: getattr(options, name) for name in OF_FRAMES}
+        self._rules = Options(**same, **self.sees).rules
+
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """See ``Player.play``."""
+        _ = self.options  # it must be bound
+        at = Positions.of(positions)
+        keys = seeds_of(seeds, len(at))
+        shown, places = self._shown(at, keys)
+        actions = self._actions(shown, keys)
+        meaning = decoded(self._rules, actions, shown.positions, shown.on_table, shown.game)
+        place = np.where(np.isnan(meaning.place), places, meaning.place)
+        return Strokes(meaning.strokes, place, meaning.nominate, meaning.decision, meaning.declare)
+
+    def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, NDArray[np.float64]]:
+        """The positions as it sees them, and where cue balls in hand have been placed for it (n, 2), else NaN."""
+        none = np.full((len(at), 2), np.nan)
+        if self.frames:
+            return at, none
+        if not self._rules.actions.placement:
+            return placed(at, keys)
+        anywhere, visits = at.anywhere & at.in_hand, at.as_visits()
+        if anywhere.any():  # the places that it knows are those of the D
+            put, places = placed(at[anywhere], keys[anywhere])
+            visits.positions[anywhere], none[anywhere] = put.positions, places
+        return visits, none
+
+    def _actions(self, at: Positions, keys: Ints) -> NDArray[np.float64]:
+        """Its checked actions in n positions; errors name it."""
+        n, rules = len(at), self._rules
+        tables: Any = (Frames if self.frames else Visits)(rules, 0)
+        tables.n, tables.positions, tables.on_table, tables.game = n, at.positions, at.on_table, at.game
+        if self.frames:
+            tables._saved_positions, tables._saved_on_table = (
+                np.zeros_like(at.positions),
+                np.zeros_like(at.on_table),
+            )
+        rows = np.arange(n)
+        masks = tables.action_masks(rows) if isinstance(rules.actions, Choices) else None
+        answer = self.seen.act(shaped(rules.observation, tables.observe(rows), masks), masks, keys)
+        try:
+            actions = np.asarray(answer)
+            if actions.ndim == 0 or len(actions) != n:
+                raise refuse_what(
+                    "actions", f"array of shape {actions.shape}", f"must be {n}, one for each position"
+                )
+            return rules.actions.check_many(actions, n)
+        except ValueError as error:
+            raise ValueError(f"player {self.name}: {error}") from None

@@ -1,0 +1,129 @@
+"""How do the simplest players play? At random, or the widest pot by geometry alone."""
+
+import copy
+from typing import Any
+
+import numpy as np
+
+from .._check import refuse
+from ..game.frame_columns import IN_HAND
+from ..planning import Positions, action_masks, as_actions
+from ..planning.planner import options_in
+from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
+from ..tasks.geometric_strokes import geometric_strokes, put_in_hand
+from ..tasks.options import Options
+from .player import Ranked, RulesLike, Strokes, seeds_of
+
+
+class BoundPlayer:
+    """What built-in players share: ``at`` returns a copy bound to options, and ``play`` refuses before that."""
+
+    name: str = ""
+    _options: Options | None = None
+
+    def at(self, rules: RulesLike) -> Any:
+        """A copy bound to where it plays, see ``Player.at``."""
+        bound = copy.copy(self)
+        bound._options = options_in(rules)
+        bound._bind(bound._options)
+        return bound
+
+    def _bind(self, options: Options) -> None:
+        """What a player makes once for where it plays."""
+
+    @property
+    def options(self) -> Options:
+        """Where the player plays; ValueError before ``at``."""
+        if self._options is None:
+            raise refuse("player", self.name, "must be bound first: player.at(options)")
+        return self._options
+
+
+def streams_of(seeds: Any) -> np.ndarray:
+    """A random stream for each seed: uint64 (n, 2)."""
+    streams = np.zeros((len(seeds), 2), np.uint64)
+    streams[:, 0] = seeds
+    return streams
+
+
+def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
+    """Visits with each cue ball in hand placed where ``ghost_ball`` puts it, and these places (n, 2); NaN for others."""
+    places = np.full((len(at), 2), np.nan)
+    if not at.in_hand.any():
+        return at.as_visits(), places
+    moved = at.copy()
+    put_in_hand(moved.positions, moved.on_table, moved.game, streams_of(seeds), True)
+    hand = at.in_hand
+    places[hand] = moved.positions[hand, 0]
+    visits = moved.as_visits()
+    visits.game[hand, IN_HAND] = 1
+    return visits, places
+
+
+class GhostBall(BoundPlayer):
+    """The geometric player ``ghost_ball``: see ``tasks.ghost_ball``, whose kernels play it."""
+
+    name = "ghost_ball"
+
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """See ``Player.play``."""
+        at = Positions.of(positions)
+        n, code = len(at), self.options.rules.rule_set.code
+        moved, values = at.copy(), np.empty((n, 5))
+        nominate, decision = np.empty(n, np.int64), np.empty(n, np.int64)
+        streams = streams_of(seeds_of(seeds, n))
+        geometric_strokes(
+            moved.positions, moved.on_table, moved.game, code, streams, values, nominate, decision
+        )
+        hand = moved.in_hand
+        place = np.where(hand[:, None], moved.positions[:, 0], np.nan)
+        return Strokes(values, place, nominate, decision)
+
+
+class Random(BoundPlayer):
+    """Uniformly random choices of ``action="discrete"``, of those available."""
+
+    name = "random"
+
+    def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
+        """All available choices in a random order, without scores."""
+        at = Positions.of(positions)
+        keys = seeds_of(seeds, len(at))
+        visits, places = placed(at, keys)
+        masks, rules = action_masks(visits), self.options.rules
+        order = (
+            np.stack([np.random.default_rng(key).random(masks.shape[1]) for key in keys.tolist()])
+            if len(at)
+            else masks
+        )
+        out = []
+        for k, (row, mask) in enumerate(zip(order, masks, strict=True)):
+            choices = np.argsort(np.where(mask, row, 2.0), kind="stable")[: max(1, int(mask.sum()))]
+            values = values_of_choices(visits, np.full(len(choices), k), choices, rules)
+            out.append(Ranked(Strokes(values, np.repeat(places[k : k + 1], len(choices), 0)), None))
+        return out
+
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """See ``Player.play``."""
+        at = Positions.of(positions)
+        keys = seeds_of(seeds, len(at))
+        visits, places = placed(at, keys)
+        masks = action_masks(visits)
+        choices = np.empty(len(at), np.int64)
+        for k, key in enumerate(keys.tolist()):
+            choices[k] = np.argmax(
+                np.where(masks[k], np.random.default_rng(key).random(masks.shape[1]), -1.0)
+            )
+        return Strokes(values_of_choices(visits, np.arange(len(at)), choices, self.options.rules), places)
+
+
+def values_of_choices(at: Positions, rows: Any, choices: Any, rules: Any) -> np.ndarray:
+    """The strokes (m, 5) of choices of ``action="discrete"`` in ``at[rows]``; aims are solved."""
+    stroke, values = choices % STROKES, np.zeros((len(choices), 5))
+    values[:, 0] = np.array(SPEEDS)[stroke // (len(SIDES) * len(TOPS))]
+    values[:, 1], values[:, 2] = (
+        np.array(SIDES)[stroke // len(TOPS) % len(SIDES)],
+        np.array(TOPS)[stroke % len(TOPS)],
+    )
+    values[:, 3] = np.pi * as_actions(at, rows, choices, physics=rules.physics)[:, 3]
+    return values

@@ -1,0 +1,58 @@
+"""Which weights does the package hold? Value and policy of the planner, one file for each noise level, plain NumPy arrays.
+
+``python -m agents.export`` writes them from the models that ``train.py`` made. A file holds ``policy/LAYER/weight`` and
+``policy/LAYER/bias`` for each layer of a ``StrokePolicy``, and ``value/LAYER/weight`` (members, out, in) and
+``value/LAYER/bias`` (members, out) for each layer of a ``LearnedValue``. Reading them runs no code.
+"""
+
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..._check import refuse
+from ...planning.learned.stroke_policy import LAYERS, StrokePolicy
+from ...tasks.noise import LEVELS, Noise
+
+FOLDER = Path(__file__).parent
+VALUE_LAYERS = 3
+"""Layers of each network of a value."""
+
+
+class Learned(NamedTuple):
+    """What a planner has learned: a policy over strokes, and the layers of each network of its value."""
+
+    policy: StrokePolicy
+    value: list[list[tuple[NDArray[np.float32], NDArray[np.float32]]]]
+
+
+def learned_of(arrays: Mapping[str, NDArray[np.float32]]) -> Learned:
+    """The policy and the value in the arrays of a file."""
+    policy = {name: (arrays[f"policy/{name}/weight"], arrays[f"policy/{name}/bias"]) for name in LAYERS}
+    layers = [(arrays[f"value/{k}/weight"], arrays[f"value/{k}/bias"]) for k in range(VALUE_LAYERS)]
+    members = [[(weight[m], bias[m]) for weight, bias in layers] for m in range(len(layers[0][0]))]
+    return Learned(StrokePolicy(policy), members)
+
+
+@cache
+def learned_at(level: str) -> Learned:
+    """What was learned under the errors of a level; ValueError if there is no file for it."""
+    path = FOLDER / f"{level}.npz"
+    if not path.is_file():
+        raise refuse("level", level, f"must be one of {', '.join(levels())}")
+    with np.load(path, allow_pickle=False) as arrays:
+        return learned_of({name: arrays[name] for name in arrays.files})
+
+
+def levels() -> list[str]:
+    """The levels that there are weights for."""
+    return [level for level in LEVELS if (FOLDER / f"{level}.npz").is_file()]
+
+
+def level_for(noise: Noise) -> str:
+    """The level with weights whose error of direction is nearest to that of a noise, in the logarithm."""
+    wanted = np.log(noise.direction_deg() + 1e-3)
+    return min(levels(), key=lambda level: abs(np.log(LEVELS[level].direction_deg() + 1e-3) - wanted))
