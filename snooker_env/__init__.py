@@ -40,6 +40,7 @@ if _typing.TYPE_CHECKING:
     from .envs.snooker import SnookerEnv
     from .envs.vector import SnookerVectorEnv
     from .planning import Planner, Position, Positions
+    from .players import player, players
     from .replays import RecordReplay, Replay, replay
     from .tasks.options import Options
 
@@ -48,13 +49,13 @@ __version__ = "0.3.0.dev0"
 __all__ = [
     "POCKETS", "EventKind", "Options", "Physics", "Planner", "Pocket", "Position", "Positions", "RecordReplay", "Replay", "Shot",
     "ShotBatch", "SimulationError", "SnookerEnv", "SnookerVectorEnv", "Table", "advise", "collide_balls", "collide_cushion", "match_env",
-    "planning", "replay", "simulate", "simulate_batch", "strike", "warmup",
+    "planning", "player", "players", "replay", "simulate", "simulate_batch", "strike", "warmup",
 ]  # fmt: skip
 
 _LATER = {
     "Options": "tasks.options", "SnookerEnv": "envs.snooker", "SnookerVectorEnv": "envs.vector", "Planner": "planning",
     "Position": "planning", "Positions": "planning", "RecordReplay": "replays", "Replay": "replays", "replay": "replays",
-    "advise": "advice",
+    "advise": "advice", "player": "players",
 }  # fmt: skip
 """Modules of the names that are imported at their first use: simulating shots alone needs no environment."""
 
@@ -64,8 +65,8 @@ _register(_gymnasium)
 def __getattr__(name: str) -> _typing.Any:
     from importlib import import_module
 
-    if name == "planning":
-        return import_module(".planning", __name__)
+    if name in ("planning", "players"):  # the room of players is callable: players() returns their names
+        return import_module(f".{name}", __name__)
     if name not in _LATER:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     thing = globals()[name] = getattr(import_module(f".{_LATER[name]}", __name__), name)

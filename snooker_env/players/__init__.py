@@ -7,6 +7,9 @@
 (1, 5)
 """
 
+import sys as _sys
+from types import ModuleType as _ModuleType
+
 from .player import Player, Ranked, Strokes
 from .playing import FRAMES, VISITS, decided, decision_seeds
 from .resolver import player, players
@@ -25,3 +28,13 @@ __all__ = [
     "player",
     "players",
 ]
+
+
+class _Room(_ModuleType):
+    """This package as ``snooker_env.players``: called, it returns the names of players."""
+
+    def __call__(self) -> list[str]:
+        return players()
+
+
+_sys.modules[__name__].__class__ = _Room  # an import sets the attribute of snooker_env to this package, not to the function

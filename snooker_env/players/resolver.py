@@ -11,7 +11,7 @@ from typing import Any
 
 from .._check import refuse, refuse_what, truth
 from .player import Player
-from .search import BUDGET, KINDS, SearchPlayer
+from .search import BUDGET, SearchPlayer
 from .simple import GhostBall, Random
 
 GROUP = "snooker_env.players"

@@ -1,0 +1,174 @@
+"""Is every player a function of positions and a seed, in visits and in frames?"""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.planning import Position, Positions
+from snooker_env.players import FRAMES, VISITS, SeenPlayer, Strokes, decided, decision_seeds
+from snooker_env.players.resolver import BUILT_IN
+
+NAMES = ("random", "ghost_ball", "best_pot_30", "search_30", "planner_30", "planner_value_30", "planner_policy_30")
+
+
+def of_visits(n, layout="random:6", seed=5):
+    tables = sn.SnookerVectorEnv(n, layout=layout, threads=1)
+    tables.reset(seed=seed)
+    return Positions.of(tables)
+
+
+def of_frames(n, steps=6):
+    """Positions of frames in all phases: after fouls, with free balls, in hand."""
+    tables = sn.SnookerVectorEnv(n, task="frame", opponent="ghost_ball", noise="club", decision=True, threads=1)
+    tables.reset(seed=3)
+    rng = np.random.default_rng(0)
+    for _ in range(steps):
+        tables.step(rng.uniform(-1, 1, tables.action_space.shape).astype(np.float32))
+    return Positions.of(tables)
+
+
+def same(one, other):
+    return all(
+        np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True)
+        for name in ("values", "place", "nominate", "decision", "declare")
+    )
+
+
+def test_the_package_alone_has_its_players():
+    assert sn.players()[: len(BUILT_IN)] == list(BUILT_IN) and "planner" in BUILT_IN
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("where", ["visits", "break_off", "frames"])
+def test_equal_positions_and_seeds_give_equal_strokes_however_many_are_asked_for(name, where):
+    at = {"visits": lambda: of_visits(9), "break_off": lambda: of_visits(3, "break_off"), "frames": lambda: of_frames(9)}[where]()
+    at = at[~at.over]
+    rules = {"noise": "professional"} | ({"task": "frame"} if where == "frames" else {})
+    player, seeds = sn.player(name).at(rules), np.arange(len(at)) % 3
+    together = player.play(at, seeds)
+    order = np.random.default_rng(1).permutation(len(at))
+    assert same(player.play(at[order], seeds[order]), together[order])
+    one = sn.player(name).at(rules)
+    for k in range(len(at)):
+        assert same(one.play(at[k : k + 1], seeds[k : k + 1]), together[k : k + 1])
+    assert same(pickle.loads(pickle.dumps(player)).play(at, seeds), together)
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if n != "ghost_ball"])
+def test_another_seed_may_give_another_stroke_and_ranks_begin_with_what_is_played(name):
+    at, player = of_visits(8), sn.player(name).at({"noise": "club"})
+    seeds = np.arange(8)
+    strokes, ranked = player.play(at, seeds), player.rank(at, seeds)
+    assert all(same(one.strokes[:1], strokes[k : k + 1]) for k, one in enumerate(ranked))
+    assert not np.array_equal(player.play(at, seeds + 100).values, strokes.values)
+
+
+def test_a_player_is_bound_before_it_is_asked():
+    with pytest.raises(ValueError, match="must be bound first"):
+        sn.player("search").play(of_visits(1), [0])
+    player = sn.player("search_30").at({"noise": "none"})
+    with pytest.raises(ValueError, match="seeds"):
+        player.play(of_visits(2), [0])
+
+
+@pytest.mark.parametrize("options", [VISITS, {"aim": "absolute"}, {"aim": "absolute", "elevation": True}])
+def test_strokes_become_actions_that_mean_them(options):
+    """The encoder and the decoder: through an environment and back."""
+    options = sn.Options(**options)
+    rng, at = np.random.default_rng(2), of_visits(40, "break_off")
+    values = np.stack([rng.uniform(0.2, 7, 40), *rng.uniform(-0.3, 0.3, (2, 40)), rng.uniform(-3.1, 3.1, 40), rng.uniform(0, 0.5, 40)], 1)
+    values[:, 4] *= options.elevation
+    strokes = Strokes(values)
+    from snooker_env.tasks.decoding import decoded
+
+    meaning = decoded(options.rules, strokes.actions(options, at), at.positions, at.on_table, at.game)
+    assert np.allclose(meaning.strokes, values, rtol=0, atol=1e-14 * 100)
+    if options.placement:
+        assert np.allclose(meaning.place, at.positions[:, 0], atol=1e-12)
+
+
+def test_what_an_action_cannot_hold_is_refused():
+    at = of_visits(1)
+    raised = Strokes(np.array([[2.0, 0.0, 0.0, 0.0, 0.2]]))
+    with pytest.raises(ValueError, match="elevation"):
+        raised.actions(sn.Options(), at)
+    with pytest.raises(ValueError, match="absolute"):
+        raised.actions(sn.Options(aim="target"), at)
+    for wrong in ([[2.0, 0, 0, 0]], [[9.0, 0, 0, 0, 0]], [[2.0, 0, 0, np.nan, 0]], [[2.0, 0.6, 0, 0, 0]]):
+        with pytest.raises(ValueError):
+            Strokes(np.array(wrong))
+
+
+class Soft:
+    """Sees observations: aims by them, so that a wrong row shows."""
+
+    options = {"aim": "absolute", "observation": "flat"}
+
+    def act(self, observations, masks, seeds):
+        assert masks is None and len(observations) == len(seeds)
+        return np.stack([np.full(len(seeds), -0.5), *(0.1 * observations[:, :2].T), observations[:, 5]], 1)
+
+
+class First:
+    """Chooses the last available choice."""
+
+    options = {"action": "discrete"}
+
+    def act(self, observations, masks, seeds):
+        return np.array([np.flatnonzero(row)[-1] for row in masks])
+
+
+@pytest.mark.parametrize("seen", [Soft, First])
+def test_what_sees_observations_plays_as_in_the_environment(seen):
+    """The adapter's strokes and the environment's own reading of the same actions lead to the same balls."""
+    n = 6
+    tables = sn.SnookerVectorEnv(n, layout="random:6", threads=1, **seen.options)
+    observations, _ = tables.reset(seed=5)
+    at = Positions.of(tables)
+    masks = tables.action_masks() if seen is First else None
+    tables.step(seen().act(observations, masks, np.arange(n)))
+    strokes = SeenPlayer(seen()).at({}).play(at, np.arange(n))
+    other = sn.SnookerVectorEnv(n, layout="random:6", threads=1, **VISITS)
+    other.reset(seed=5)
+    other.step(strokes.actions(other.options, at))
+    assert np.allclose(other.tables.positions, tables.tables.positions, atol=1e-6)
+
+
+def test_a_player_plays_on_tables_with_a_seed_for_each_decision():
+    tables = sn.SnookerVectorEnv(5, task="frame", noise="professional", opponent="none", **FRAMES)
+    tables.reset(seed=1)
+    player, going = sn.player("ghost_ball").at(tables), np.array([True, False, True, True, False])
+    actions = decided(player, tables, going, decision_seeds(0, np.arange(5), 0))
+    assert not actions[~going].any() and actions[going].any(axis=1).all()
+    alone = decided(player, tables, np.arange(5) == 3, decision_seeds(0, np.arange(5), 0))
+    assert np.array_equal(alone[3], actions[3])
+
+
+def test_seeds_of_decisions_depend_on_the_table_and_the_decision_alone():
+    many = decision_seeds(7, np.arange(1000), 3)
+    assert np.array_equal(decision_seeds(7, np.arange(400, 500), 3), many[400:500]) and len(set(many.tolist())) == 1000
+    assert not np.array_equal(decision_seeds(7, np.arange(1000), 4), many) and many.min() >= 0 and many.max() < 2**32
+    assert np.array_equal(decision_seeds(7, np.arange(3), np.array([3, 4, 5]))[:1], many[:1])
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [("nobody", "must be one of 'random'"), ("search_7", "budget"), ("search@none", "has learned nothing"),
+     ("planner@nothing", "policy and value"), ("math:sqrt", "math:sqrt"), (7, "must be a player"), ("", "must be one of")],
+)  # fmt: skip
+def test_what_is_no_player_is_refused(name, why):
+    with pytest.raises(ValueError, match=why):
+        sn.player(name)
+
+
+def test_lookahead_is_an_old_name_of_search():
+    with pytest.warns(DeprecationWarning, match="search"):
+        assert sn.player("lookahead_60").name == "search_60"
+
+
+def test_positions_of_one_kind_are_enough():
+    position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    player = sn.player("search_30").at({"noise": "none"})
+    assert same(player.play(position, [1]), player.play([position.to_dict()], [1]))
