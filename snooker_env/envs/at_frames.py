@@ -14,24 +14,11 @@ from typing import Any
 import numpy as np
 
 from .._types import Bools, Ints
-from ..game.frame_columns import (
-    ANYWHERE,
-    BREAKER,
-    FIRST_BREAK,
-    FRAMES_0,
-    FRAMES_1,
-    IN_HAND,
-    PAID,
-    SCORE_0,
-    SCORE_1,
-    STEPS,
-    STRIKER,
-    VISIT_COLUMNS,
-    WINNER,
-)  # fmt: skip
+from ..game.frame_columns import ANYWHERE, IN_HAND, STEPS, VISIT_COLUMNS
+from ..game.sides import as_visits, swapped
 from ..geometry import HALF_LENGTH, HALF_WIDTH
 from ..tasks.frame import Frames
-from ..tasks.player_opponent import as_visits, put_in_hand
+from ..tasks.player_opponent import put_in_hand
 from .vector import SnookerVectorEnv
 
 PHYSICAL = ("noise", "physics", "table", "fidelity")
@@ -84,18 +71,6 @@ class Seat:
     def act(self, player: Any, going: Bools) -> Any:
         """The player's actions on these tables."""
         return player.act(self.tables, self.tables.tables.observe(np.arange(self.tables.num_envs)), going)
-
-
-def swapped(game: Ints) -> Ints:
-    """Rows of frames (m, COLUMNS) as if the players had changed sides: a new array."""
-    other = game.copy()
-    for a, b in ((SCORE_0, SCORE_1), (FRAMES_0, FRAMES_1)):
-        other[:, a], other[:, b] = game[:, b], game[:, a]
-    for column in (STRIKER, BREAKER, FIRST_BREAK):
-        other[:, column] = 1 - game[:, column]
-    other[:, WINNER] = np.where(game[:, WINNER] < 0, game[:, WINNER], 1 - game[:, WINNER])
-    other[:, PAID] = -game[:, PAID]
-    return other
 
 
 class AtFrames:

@@ -117,7 +117,7 @@ def pots(positions: PositionsLike, most: int = POTS) -> Pots:
     >>> found.ball[0].tolist(), found.pocket[0].tolist(), found.tolerance[0, 0].round(5).item()
     ([21, 21, -1, -1], [3, 4, -1, -1], 0.00023)
     """
-    at, most = Positions.of(positions), integer("most", most, 1, 6 * (N_BALLS - 1))
+    at, most = Positions.of(positions).as_visits(), integer("most", most, 1, 6 * (N_BALLS - 1))
     m = len(at)
     out = Pots(np.full((m, most), -1), np.full((m, most), -1), np.zeros((m, most, 2)), np.zeros((m, most)), np.zeros((m, most)))
     _pots(at.positions, at.on_table, at.game, *out)
@@ -221,7 +221,7 @@ def clear_paths(positions: PositionsLike) -> Paths:
     >>> bool(clear_paths(hidden).full_ball[0])
     False
     """
-    at = Positions.of(positions)
+    at = Positions.of(positions).as_visits()
     out = Paths(np.zeros(len(at), np.bool_), np.zeros(len(at), np.bool_))
     table = Table.preset("match")
     _clear_paths(at.positions, at.on_table, at.game, table.noses, table.jaws, *out)

@@ -9,21 +9,22 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import integer, refuse, refuse_what
-from .._types import Environment, Integers, Scalars, Vectors
+from .._check import array, integer, refuse, refuse_what
+from .._types import Environment, Floats, Integers, Scalars, Vectors
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..tasks.box_actions import Actions
-from ..tasks.noise import Noise, NoiseLike
+from ..tasks.noise import Noise, NoiseLike, errors_of
 from ..tasks.observations import OBSERVATIONS
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
 from ..tasks.tables import I_FIRST, I_PENALTY, StepOutput
 from ..tasks.threads import Threads, processors
-from ..tasks.visit import Visits
-from . import strokes
 from .positions import Positions, PositionsLike, bare, check_played, rows_of
 from .stops import Stops, WatchedVisits
+from .strokes import check_strokes, encoded, solved_aims, solved_choices
+from .trials import AIM, TrialVisits, decoded
+from .trials import COLUMNS as STROKE
 
 
 class Outcomes(NamedTuple):
@@ -60,6 +61,9 @@ class Planner:
     Each stroke is judged as a stroke of a *visit* (``task="visit"``): the visit ends with the first miss, foul or clearance. With an
     environment that plays whole frames, a planner therefore covers what the player scores and leaves within the current visit. It does
     not cover penalties, free balls, the foul-and-miss rule or the opponent.
+
+    A *stroke* is a row of five numbers in SI: cue speed [m/s], side and top (tip offset over R, to the right and up), the direction in
+    which the cue ball leaves [rad], elevation of the cue [rad]. The cue itself points aside from that direction by the squirt of the side.
 
     Parameters
     ----------
@@ -99,7 +103,7 @@ class Planner:
         errors = rules.noise if noise is None else Noise.of(noise)
         self._rules = replace(rules, noise=errors, reward=REWARDS[0], opponent=None, one_stroke=False, observation=OBSERVATIONS[0])
         self._threads = Threads(min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024))
-        self._visits, self._watched = Visits(self._rules, 0), WatchedVisits(self._rules, 0)
+        self._visits, self._watched = TrialVisits(self._rules, 0), WatchedVisits(self._rules, 0)
         self._lock = threading.Lock()
         self._shots = 0
 
@@ -144,7 +148,14 @@ class Planner:
         return self._rules.actions.size == 1
 
     def play(
-        self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers, keys: Integers | Sequence[Integers] | None = None
+        self,
+        positions: PositionsLike,
+        rows: Integers,
+        actions: Vectors | Integers | None = None,
+        keys: Integers | Sequence[Integers] | None = None,
+        *,
+        strokes: Vectors | None = None,
+        errors: Vectors | None = None,
     ) -> Outcomes:
         """Play n strokes, each on a copy of its position.
 
@@ -154,12 +165,16 @@ class Planner:
             The m positions: anything that ``Positions.of`` accepts. They are not changed.
         rows : array_like
             int (n,). Row of ``positions`` for each stroke, in [0, m).
-        actions : array_like
+        actions : array_like, optional
             float (n, k): actions of the box action space; or int (n,): choices, with ``action="discrete"``.
         keys : array_like, optional
             int (n,) or (n, 2), in [0, 2**64). The noise sample of each stroke: the key of its random stream, or key and counter as a saved
-            state holds them under "stream". Equal keys give equal execution errors for every stroke (common random numbers). Required
-            unless the planner has no noise.
+            state holds them under "stream". Equal keys give equal execution errors for every stroke (common random numbers). Keys or
+            ``errors`` are required unless the planner has no noise.
+        strokes : array_like, optional
+            float (n, 5), in place of ``actions``: strokes in SI, see above. A cue ball in hand is played from where it lies.
+        errors : array_like, optional
+            float (n, 5), in place of ``keys``: the errors of speed, side, top, aim and elevation, in standard deviations of the noise.
 
         Returns
         -------
@@ -169,8 +184,8 @@ class Planner:
         Raises
         ------
         ValueError
-            If a row is out of range, an action is not in the action space, an array has the wrong shape, or a position is invalid or has
-            no stroke left to play.
+            If a row is out of range, an action is not in the action space, a stroke is out of range, an array has the wrong shape, or a
+            position is invalid or has no stroke left to play.
         SimulationError
             If a shot cannot be computed.
 
@@ -186,12 +201,22 @@ class Planner:
         >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
         >>> planner.play(position, [0, 0, 0], [67, 67, 67], keys=[1, 2, 3]).points.shape
         (3,)
+        >>> stroke = [2.0, 0.0, 0.0, 0.785, 0.0]  # 2 m/s, in the middle of the ball
+        >>> planner.play(position, [0, 0], strokes=[stroke] * 2, errors=[[0, 0, 0, 0, 0], [0, 0, 0, 2.0, 0]]).points.tolist()
+        [7.0, 0.0]
         """
-        after, out = self._strokes(copy.copy(self._visits), positions, rows, actions, keys)
+        after, out = self._strokes(copy.copy(self._visits), positions, rows, actions, keys, strokes, errors)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
 
     def stops(
-        self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers, keys: Integers | Sequence[Integers] | None = None
+        self,
+        positions: PositionsLike,
+        rows: Integers,
+        actions: Vectors | Integers | None = None,
+        keys: Integers | Sequence[Integers] | None = None,
+        *,
+        strokes: Vectors | None = None,
+        errors: Vectors | None = None,
     ) -> Stops:
         """Play n strokes as ``play`` does, and return where each ball stopped.
 
@@ -201,10 +226,8 @@ class Planner:
             The m positions, see ``play``.
         rows : array_like
             int (n,). Row of ``positions`` for each stroke.
-        actions : array_like
-            float (n, k) or int (n,), see ``play``.
-        keys : array_like, optional
-            int (n,) or (n, 2), the noise samples, see ``play``.
+        actions, keys, strokes, errors
+            What is played and under which errors, see ``play``.
 
         Returns
         -------
@@ -227,28 +250,115 @@ class Planner:
         (21, 3)
         """
         visits = copy.copy(self._watched)
-        after, out = self._strokes(visits, positions, rows, actions, keys)
+        after, out = self._strokes(visits, positions, rows, actions, keys, strokes, errors)
         first, penalty = out.counts[:, I_FIRST].copy(), out.counts[:, I_PENALTY].copy()
         return Stops(visits.places, visits.potted, first, out.reals[:, 0].copy(), penalty, ~after.over, after)
 
     def _strokes(
-        self, visits: Visits, positions: PositionsLike, rows: Integers, actions: Vectors | Integers,
-        keys: Integers | Sequence[Integers] | None,
-    ) -> tuple[Positions, StepOutput]:  # fmt: skip
+        self, visits: TrialVisits, positions: Any, rows: Any, actions: Any, keys: Any, strokes: Any, errors: Any
+    ) -> tuple[Positions, StepOutput]:
         """Check the arguments and play the strokes on fresh ``visits``. Returns the afterstates and the output of the step."""
-        at = Positions.of(positions)
+        at = Positions.of(positions).as_visits()
         which = rows_of(at, rows)
         n = len(which)
-        rows_of_actions = self._rules.actions.check_many(actions, n)
-        streams = _streams(keys, n, self.noise.silent)
+        if (actions is None) == (strokes is None):
+            raise refuse_what("actions, strokes", "none" if actions is None else "both", "must be one of them: what is played")
+        played = self._rules.actions.check_many(actions, n) if strokes is None else check_strokes(strokes, n)
+        streams = _streams(keys, n, self.noise.silent or errors is not None)
+        wrong = None if errors is None else _errors(errors, keys, n)
         check_played(at, which, self.table, self.physics.R)
         after = at[which]  # a visit is played in place: each row becomes its afterstate
-        visits.n, visits.positions, visits.on_table, visits.game, visits.streams = n, after.positions, after.on_table, after.game, streams
+        if strokes is not None and wrong is None:
+            wrong = np.zeros((n, STROKE)) if self.noise.silent else errors_of(streams)
+        elif strokes is None and wrong is not None:
+            played, after = decoded(self._rules, at, which, played)
+        visits.lay(after, streams, wrong)
         out = visits.output()
-        visits.step(rows_of_actions, np.zeros(n, np.bool_), out, self._threads)
+        visits.step(played, np.zeros(n, np.bool_), out, self._threads)
         with self._lock:
             self._shots += n
         return after, out
+
+    def strokes_of(self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers) -> tuple[NDArray[np.float64], Positions]:
+        """Decode actions or choices of this planner's action space: which strokes do they mean?
+
+        Parameters
+        ----------
+        positions : PositionsLike
+            The m positions: anything that ``Positions.of`` accepts.
+        rows : array_like
+            int (n,). Row of ``positions`` for each action, in [0, m).
+        actions : array_like
+            float (n, k) or int (n,), see ``play``.
+
+        Returns
+        -------
+        strokes : numpy.ndarray
+            float64 (n, 5). Strokes in SI, without errors.
+        at : Positions
+            n rows: where they are played from, with a cue ball in hand on the place that the action names.
+
+        Raises
+        ------
+        ValueError
+            If a row is out of range or an action is not in the action space.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Planner, Position
+        >>> strokes, at = Planner({}).strokes_of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0], [[0.0, 0.0, 0.5, 0.25]])
+        >>> strokes[0].round(3).tolist(), len(at)
+        ([3.6, 0.0, 0.25, 0.785, 0.0], 1)
+        """
+        at = Positions.of(positions)
+        which = rows_of(at, rows)
+        return decoded(self._rules, at, which, self._rules.actions.check_many(actions, len(which)))
+
+    def actions_of(
+        self,
+        strokes: Vectors,
+        *,
+        positions: PositionsLike | None = None,
+        rows: Integers | None = None,
+        places: Vectors | None = None,
+    ) -> NDArray[np.float64]:
+        """Encode strokes as actions of this planner's action space.
+
+        Parameters
+        ----------
+        strokes : array_like
+            float (n, 5). Strokes in SI.
+        positions, rows : PositionsLike, array_like, optional
+            Where each stroke is played, see ``strokes_of``. Required with ``aim="target"``, which is measured from a line there.
+        places : array_like, optional
+            float (n, 2). With ``placement=True``: where in the D a cue ball in hand is placed [m]. Default: the middle of the baulk line.
+
+        Returns
+        -------
+        numpy.ndarray
+            float64 (n, k). Actions in [-1, 1]. What they say beside the stroke is 0: to play.
+
+        Raises
+        ------
+        ValueError
+            If a stroke is out of range or cannot be such an action.
+
+        Examples
+        --------
+        >>> from snooker_env.planning import Planner
+        >>> Planner({"elevation": True}).actions_of([[3.6, 0.0, 0.25, 0.0, 0.0]]).tolist()
+        [[0.0, 0.0, 0.5, 0.0, -1.0]]
+        """
+        told, form = check_strokes(strokes), self._rules.actions
+        if not isinstance(form, Actions):
+            raise refuse("action", "discrete", 'must be "box": choices hold a few strokes only')
+        where = None if places is None else array("places", places, (len(told), 2))
+        if form.aim == "absolute":
+            return encoded(form, told, where)
+        if positions is None or rows is None:
+            raise refuse("positions, rows", None, 'must be given with aim="target", which is measured from a line in each position')
+        lines, _ = self.strokes_of(positions, rows, encoded(form, told, where, told[:, AIM]))
+        return encoded(form, told, where, lines[:, AIM])
 
     def as_actions(self, positions: PositionsLike, rows: Integers, choices: Integers) -> NDArray[np.float32]:
         """Convert choices of ``action="discrete"`` to box actions, with this planner's physics and fidelity.
@@ -282,7 +392,7 @@ class Planner:
         """
         if isinstance(self._rules.actions, Actions) and self._rules.actions.aim != "absolute":
             raise refuse("aim", self._rules.actions.aim, 'must be "absolute": this planner would read the result differently')
-        return strokes.solved_choices(Positions.of(positions), rows, choices, (self.physics, self._rules.fidelity))
+        return solved_choices(self._rules, Positions.of(positions), rows, choices)
 
     def pot_aim(
         self, positions: PositionsLike, rows: Integers, balls: Integers, targets: Vectors, speeds: Scalars, *, side: Scalars = 0.0,
@@ -327,7 +437,7 @@ class Planner:
         0.785
         """
         dynamics = (self.physics, self._rules.fidelity)
-        return strokes.solved_aims(Positions.of(positions), rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics)
+        return solved_aims(Positions.of(positions), rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_lock"}
@@ -345,6 +455,13 @@ def options_in(source: Any) -> Options:
         allowed = "must be an environment of snooker_env, an Options, or a dict of its fields"
         raise refuse_what("env_or_options", f"a {type(source).__name__}", allowed)
     return options
+
+
+def _errors(errors: Vectors, keys: Any, n: int) -> Floats:
+    """Standard normal errors (n, 5), checked."""
+    if keys is not None:
+        raise refuse_what("keys, errors", "both", "must be one of them: the errors are drawn or given")
+    return array("errors", errors, (n, STROKE))
 
 
 def _streams(keys: Integers | Sequence[Integers] | None, n: int, silent: bool) -> NDArray[np.uint64]:

@@ -9,9 +9,31 @@ from numpy.typing import NDArray
 from .._check import array, refuse, refuse_what
 from .._jit import entry
 from .._types import Batches, Environment, FlagRows, Integers
-from ..game.balls import CUE, N_BALLS, BallOn, balls_on_kernel, bits, mask_of_present
+from ..game.balls import CUE, N_BALLS, BallOn, bits, mask_of_present
 from ..game.frame import MOST_BREAK
-from ..game.frame_columns import ANYWHERE, BALL_ON, FREE_BALL, IN_HAND, OVER, POINTS, STEPS, VISIT_COLUMNS
+from ..game.frame_columns import (
+    ANYWHERE,
+    BALL_ON,
+    CHOICE,
+    COLUMNS,
+    FRAMES_0,
+    FRAMES_1,
+    FREE_BALL,
+    IN_HAND,
+    LOT,
+    MISS_CALLED,
+    OVER,
+    PHASE,
+    POINTS,
+    RESPOTTED_BLACK,
+    SCORE_0,
+    SCORE_1,
+    STEPS,
+    VISIT_COLUMNS,
+    Layouts,
+    strikeable,
+)
+from ..game.sides import as_visits, strikers_own
 from ..physics.table import Table
 from ..tasks.observations import SIZE
 from ..tasks.tables import Tables
@@ -22,13 +44,16 @@ from .position import Position, check_playable
 @entry
 def _balls_on(on_table, game, out):
     for k in range(len(out)):
-        on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
+        on = strikeable(game[k], bits(on_table[k]))
         for i in range(N_BALLS):
             out[k, i] = (on >> i) & 1
 
 
 class Positions:
-    """m positions, each in the middle of a visit, as arrays.
+    """m positions, each with a stroke to play in a visit or in a frame, as arrays.
+
+    Positions of frames are seen by the striker, who is player 0 in them, and hold all that a player of frames may know. Planning plays
+    their strokes as those of visits, see ``as_visits``.
 
     ``positions[3]`` is one ``Position``. Any other NumPy index (a slice, a mask, a list of rows) gives ``Positions``: a view for a
     slice, else a copy.
@@ -40,7 +65,10 @@ class Positions:
     on_table : array_like
         bool (m, 22). Which balls are on the table.
     game : array_like
-        int (m, 5). The ball on (a ``BallOn``), whether the cue ball is in hand, points of the visit, whether it is over, strokes so far.
+        int (m, 5), of visits: the ball on (a ``BallOn``), whether the cue ball is in hand, points of the visit, whether it is over, strokes
+        so far. Or int (m, 33), of frames: the columns of ``snooker_env.game.frame_columns``, with the striker as player 0.
+    saved : Layouts, optional
+        Of frames: the balls before the last foul, which "replace" restores. Default None.
 
     Raises
     ------
@@ -55,18 +83,26 @@ class Positions:
     (2, [1, 5], (0.3, 0.3))
     """
 
-    __slots__ = ("game", "on_table", "positions")
+    __slots__ = ("game", "on_table", "positions", "saved")
 
-    def __init__(self, positions: Batches, on_table: FlagRows, game: Sequence[Integers] | NDArray[np.integer[Any]]):
+    def __init__(
+        self,
+        positions: Batches,
+        on_table: FlagRows,
+        game: Sequence[Integers] | NDArray[np.integer[Any]],
+        saved: Layouts | None = None,
+    ):
         self.positions: NDArray[np.float64] = _floats("positions", positions, (-1, N_BALLS, 2))
         m = len(self.positions)
         there, columns = np.asarray(on_table), np.asarray(game)
         if there.shape != (m, N_BALLS) or there.dtype != np.bool_:
             raise refuse_what("on_table", f"{there.dtype} array of shape {there.shape}", f"must be bool of shape {(m, N_BALLS)}")
-        if columns.shape != (m, VISIT_COLUMNS) or columns.dtype.kind not in "iu":
-            raise refuse_what("game", f"{columns.dtype} array of shape {columns.shape}", f"must be integers of shape {(m, VISIT_COLUMNS)}")
+        if columns.shape not in ((m, VISIT_COLUMNS), (m, COLUMNS)) or columns.dtype.kind not in "iu":
+            allowed = f"must be integers of shape {(m, VISIT_COLUMNS)}, or {(m, COLUMNS)} of frames"
+            raise refuse_what("game", f"{columns.dtype} array of shape {columns.shape}", allowed)
         self.on_table: NDArray[np.bool_] = np.ascontiguousarray(there)
         self.game: NDArray[np.int64] = np.ascontiguousarray(columns, np.int64)
+        self.saved: Layouts | None = saved
 
     @classmethod
     def of(cls, source: "PositionsLike") -> "Positions":
@@ -75,9 +111,9 @@ class Positions:
         Parameters
         ----------
         source : Env, VectorEnv, AECEnv, Positions, Position, dict, or sequence of Position and dict
-            An environment, of one table or many, wrapped or not, gives its current tables, also those whose visit has ended. In an
-            environment that plays whole frames or matches, the next stroke is treated as one of a visit. A dict is a state of a visit
-            from ``get_state()``, or the result of ``Position.to_dict()``.
+            An environment, of one table or many, wrapped or not, gives its current tables, also those whose visit has ended; those of
+            frames and matches as their strikers see them. A dict is a state of a visit from ``get_state()``, or the result of
+            ``Position.to_dict()``.
 
         Returns
         -------
@@ -87,7 +123,7 @@ class Positions:
         Raises
         ------
         ValueError
-            If the object holds no positions, or if the striker of a frame has a free ball, which visits do not have.
+            If the object holds no positions.
 
         Examples
         --------
@@ -126,10 +162,12 @@ class Positions:
 
     def __getitem__(self, rows: Any) -> "Position | Positions":
         if isinstance(rows, int | np.integer):
-            return Position.of_arrays(self.positions[rows], self.on_table[rows], self.game[rows])
+            one = self[[int(rows)]].as_visits()
+            return Position.of_arrays(one.positions[0], one.on_table[0], one.game[0])
         taken = object.__new__(Positions)
-        for name in self.__slots__:
+        for name in ("positions", "on_table", "game"):
             setattr(taken, name, np.ascontiguousarray(getattr(self, name)[rows]))  # the kernels are compiled for contiguous arrays
+        taken.saved = None if self.saved is None else Layouts(*(np.ascontiguousarray(each[rows]) for each in self.saved))
         return taken
 
     def __repr__(self) -> str:
@@ -150,11 +188,86 @@ class Positions:
         >>> at.copy().positions is at.positions
         False
         """
-        return Positions(self.positions.copy(), self.on_table.copy(), self.game.copy())
+        saved = None if self.saved is None else Layouts(*(each.copy() for each in self.saved))
+        return Positions(self.positions.copy(), self.on_table.copy(), self.game.copy(), saved)
+
+    def as_visits(self) -> "Positions":
+        """Return the positions as those of visits, with ``game`` (m, 5); positions of visits are returned as they are.
+
+        A stroke is then judged as one of a visit. With a free ball any colour is on, which is right in all but what it scores. A cue ball
+        that may stand anywhere is played from where it lies: visits have no ball in hand outside the D.
+
+        Returns
+        -------
+        Positions
+            They share the places of the balls with these.
+
+        Examples
+        --------
+        >>> import snooker_env as sn
+        >>> env = sn.SnookerVectorEnv(2, task="frame")
+        >>> _ = env.reset(seed=1)
+        >>> sn.Positions.of(env).game.shape, sn.Positions.of(env).as_visits().game.shape
+        ((2, 33), (2, 5))
+        """
+        if not self.of_frames:
+            return self
+        game = as_visits(self.game)[:, :VISIT_COLUMNS]
+        game[:, STEPS] = 0
+        return Positions(self.positions, self.on_table, game)
+
+    @property
+    def of_frames(self) -> bool:
+        """Whether these are positions of frames, not of visits, a bool."""
+        return self.game.shape[1] == COLUMNS
+
+    def _of_frame(self, *columns: int) -> NDArray[np.int64]:
+        """The columns of frames, int64 (m, k); of visits all 0."""
+        return self.game[:, columns] if self.of_frames else np.zeros((len(self), len(columns)), np.int64)
+
+    @property
+    def free_ball(self) -> NDArray[np.bool_]:
+        """Whether the striker has a free ball, bool (m,); in visits never."""
+        return self._of_frame(FREE_BALL)[:, 0] != 0
+
+    @property
+    def anywhere(self) -> NDArray[np.bool_]:
+        """Whether the cue ball in hand may be placed anywhere on the table, bool (m,); in visits never."""
+        return self._of_frame(ANYWHERE)[:, 0] != 0
+
+    @property
+    def choice(self) -> NDArray[np.bool_]:
+        """Whether the striker may choose what follows the opponent's foul, bool (m,); in visits never."""
+        return self._of_frame(PHASE)[:, 0] == CHOICE
+
+    @property
+    def lot(self) -> NDArray[np.bool_]:
+        """Whether the striker has won the lot and may choose who begins, bool (m,); in visits never."""
+        return self._of_frame(PHASE)[:, 0] == LOT
+
+    @property
+    def miss_called(self) -> NDArray[np.bool_]:
+        """Whether the opponent's foul was called a miss, bool (m,); in visits never."""
+        return self._of_frame(MISS_CALLED)[:, 0] != 0
+
+    @property
+    def respotted_black(self) -> NDArray[np.bool_]:
+        """Whether the frame is decided on the re-spotted black, bool (m,); in visits never."""
+        return self._of_frame(RESPOTTED_BLACK)[:, 0] != 0
+
+    @property
+    def scores(self) -> NDArray[np.int64]:
+        """Scores of the striker and of the opponent, int64 (m, 2); in visits 0."""
+        return self._of_frame(SCORE_0, SCORE_1)
+
+    @property
+    def frames_won(self) -> NDArray[np.int64]:
+        """Frames of the match that the striker and the opponent have won, int64 (m, 2); in visits 0."""
+        return self._of_frame(FRAMES_0, FRAMES_1)
 
     @property
     def ball_on(self) -> NDArray[np.int64]:
-        """What must be struck first, int64 (m,): a ``BallOn`` for each row; a view."""
+        """What must be struck first, int64 (m,): a ``BallOn`` for each row, without regard to a free ball; a view."""
         return self.game[:, BALL_ON]
 
     @property
@@ -174,7 +287,7 @@ class Positions:
 
     @property
     def balls_on(self) -> NDArray[np.bool_]:
-        """Which balls may be struck first, bool (m, 22)."""
+        """Which balls may be struck first, bool (m, 22); with a free ball all colours, too."""
         out = np.empty((len(self), N_BALLS), np.bool_)
         _balls_on(self.on_table, self.game, out)
         return out
@@ -195,8 +308,8 @@ class Positions:
         >>> bool((sn.Positions.of(env).observations()[0] == observation).all())
         True
         """
-        out = np.empty((len(self), SIZE), np.float32)
-        observe(np.arange(len(self)), self.positions, self.on_table, self.game, out)
+        out, game = np.empty((len(self), SIZE), np.float32), self.as_visits().game
+        observe(np.arange(len(self)), self.positions, self.on_table, game, out)
         return out
 
 
@@ -228,18 +341,13 @@ def bare(env: Any) -> Any:
 
 
 def _of_tables(tables: Tables) -> Positions:
-    """The positions of an environment's tables; in a frame the next stroke is treated as one of a visit.
-
-    A cue ball that may be placed anywhere on the table is played from where it lies: a visit has no ball in hand outside the D.
-    """
-    game = tables.game[:, :VISIT_COLUMNS].copy()
-    game[:, STEPS] = 0
-    if tables.game.shape[1] > FREE_BALL:
-        if (free := tables.game[:, FREE_BALL] != 0).any():
-            field = f"free ball on table {int(np.argmax(free))}"
-            raise refuse(field, True, "must be False: a planned stroke is judged as one of a visit, which has no free ball")
-        game[tables.game[:, ANYWHERE] != 0, IN_HAND] = 0
-    return Positions(tables.positions.copy(), tables.on_table.copy(), game)
+    """The positions of an environment's tables, those of frames as their strikers see them."""
+    game = tables.game.copy()
+    saved: Layouts | None = getattr(tables, "saved", None)
+    if saved is None:
+        game[:, STEPS] = 0
+        return Positions(tables.positions.copy(), tables.on_table.copy(), game)
+    return Positions(tables.positions.copy(), tables.on_table.copy(), strikers_own(game), Layouts(*(each.copy() for each in saved)))
 
 
 PositionsLike: TypeAlias = Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]

@@ -17,7 +17,7 @@ from ..game.balls import N_BALLS, VALUES, balls_on_kernel, bits
 from ..game.frame_columns import BALL_ON
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
-from ..physics.cloth import COLUMNS
+from ..physics import cloth
 from ..physics.impact.polynomial import WORK
 from ..tasks.box_actions import MAX_SPEED
 from ..tasks.pot_aim import solved_aim
@@ -25,6 +25,7 @@ from .positions import Positions
 from .prospects import FAR, FOLLOWS
 from .sobol import sobol
 from .strokes import Dynamics
+from .trials import AIM, COLUMNS, SIDE, SPEED, TOP
 
 SLOWEST, FASTEST = 0.8, 6.5
 """Cue speeds of the proposals at pots [m/s]."""
@@ -42,8 +43,6 @@ ANYWHERE, TRIES = 8, 16
 no other ball is in the way."""
 MOST_POTS = 16
 """Number of pots that strokes are shared among, the widest ones."""
-SPEED, SIDE, TOP, AIM = range(4)
-"""Columns of a stroke."""
 
 
 class Proposals(NamedTuple):
@@ -52,7 +51,7 @@ class Proposals(NamedTuple):
     Attributes
     ----------
     strokes : numpy.ndarray
-        float64 (n, m, 4). Cue speed [m/s], side and top (tip offset over R), direction of the cue ball [rad].
+        float64 (n, m, 5). Strokes in SI, see ``Planner``.
     chances : numpy.ndarray
         float64 (n, m). Chance of each stroke's pot by its width; 1 for a contact without a pot.
 
@@ -60,7 +59,7 @@ class Proposals(NamedTuple):
     --------
     >>> import numpy as np
     >>> from snooker_env.planning import Proposals
-    >>> Proposals(np.zeros((2, 5, 4)), np.ones((2, 5))).chances.shape
+    >>> Proposals(np.zeros((2, 5, 5)), np.ones((2, 5))).chances.shape
     (2, 5)
     """
 
@@ -125,7 +124,7 @@ def _towards(positions, on_table, on, which, turned):
 
 @kernel
 def _contacts(positions, on_table, on, seed, strokes, chances):
-    """Fill the strokes (m, 4) with contacts at the balls on that can be struck, from thin to full, and with strokes in any direction."""
+    """Fill the strokes (m, 5) with contacts at the balls on that can be struck, from thin to full, and with strokes in any direction."""
     count = 0
     for ball in range(1, N_BALLS):
         count += on_table[ball] and (on >> ball) & 1
@@ -157,12 +156,12 @@ def _aim(stroke, positions, found, phys, end_mass_ratio, fidelity, n_steps, moti
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
 def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_ratio, fidelity, n_steps, strokes, chances):
-    """Fill strokes (n, m, 4) and chances (n, m) of n positions.
+    """Fill strokes (n, m, 5) and chances (n, m) of n positions.
 
     ``which`` (n, m): at which pot each stroke is, widest first, its speed and tip being given; without rows, all are spread.
     """
     found, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
-    motion, phase, work = np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    motion, phase, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
     m = strokes.shape[1]
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
@@ -219,9 +218,9 @@ def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: 
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, spread_strokes
     >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
     >>> spread_strokes(at, 5, np.array([7]), search.spread, search.dynamics).strokes.shape
-    (1, 5, 4)
+    (1, 5, 5)
     """
-    return _proposed(at, np.empty((len(at), m, 4)), seeds, _NOT_GIVEN, spread, dynamics)
+    return _proposed(at, np.zeros((len(at), m, COLUMNS)), seeds, _NOT_GIVEN, spread, dynamics)
 
 
 def strokes_at(at: Positions, which: Ints, speeds_and_tips: Floats, seeds: Ints, spread: float, dynamics: Dynamics) -> Proposals:
@@ -255,13 +254,13 @@ def strokes_at(at: Positions, which: Ints, speeds_and_tips: Floats, seeds: Ints,
     [[2.0, 0.0, 0.2], [2.0, 0.0, -0.49]]
     """
     n, m = which.shape
-    strokes = np.empty((n, m, 4))
+    strokes = np.zeros((n, m, COLUMNS))
     strokes[..., :AIM] = speeds_and_tips
     return _proposed(at, strokes, seeds, np.ascontiguousarray(which, np.int64), spread, dynamics)
 
 
 def _proposed(at, strokes, seeds, which, spread, dynamics):
-    physics, (code, n_steps) = dynamics
+    at, (physics, (code, n_steps)) = at.as_visits(), dynamics
     chances = np.empty(strokes.shape[:2])
     keys = np.asarray(seeds, np.int64)
     _propose(

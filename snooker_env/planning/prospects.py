@@ -136,7 +136,7 @@ def prospects_of(
     >>> bool(values[0] > 0), chances.shape
     (True, (1, 4))
     """
-    n = len(at)
+    at, n = at.as_visits(), len(at)
     values, chances, ball_on = np.empty(n), np.empty((n, most)), at.ball_on.copy()
     threads = min(threads, n // WORTH_A_THREAD)
 

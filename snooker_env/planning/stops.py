@@ -10,8 +10,8 @@ from .._types import Floats, Ints
 from ..game.balls import N_BALLS
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import StepOutput
-from ..tasks.visit import Visits
 from .positions import Positions
+from .trials import TrialVisits
 
 
 class Stops(NamedTuple):
@@ -51,8 +51,8 @@ class Stops(NamedTuple):
     afterstates: Positions
 
 
-class WatchedVisits(Visits):
-    """Visits that record where the balls of each table's last stroke stopped: ``places`` (n, 22, 2) and ``potted`` (n, 22)."""
+class WatchedVisits(TrialVisits):
+    """Trial visits that record where the balls of each table's last stroke stopped: ``places`` (n, 22, 2) and ``potted`` (n, 22)."""
 
     places: Floats
     potted: Ints

@@ -9,25 +9,22 @@ Without execution errors the first look is the whole truth and takes the whole b
 """
 
 from collections.abc import Callable
-from math import hypot, pi, sqrt
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._check import integer, refuse_what
-from .._jit import entry
 from .._types import Environment, Floats, Integers, Ints
-from ..physics.cue import squirt
-from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
-from ..tasks.noise import N_AIM, N_ELEVATION, N_SPEED, N_SPEED_REL, N_TIP, Noise, NoiseLike
+from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options
 from .planner import Outcomes, Planner, options_in
 from .positions import Positions, PositionsLike, check_played
-from .proposals import AIM, SIDE, SPEED, TOP, Proposals, spread_strokes
+from .proposals import Proposals, spread_strokes
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
 from .strokes import Dynamics, actions_of
+from .trials import AIM, COLUMNS, SIDE, SPEED, TOP
 
 PRIOR = 1.0
 """Number of samples that the look without error counts as."""
@@ -56,7 +53,7 @@ class Ranked(NamedTuple):
     Attributes
     ----------
     strokes : numpy.ndarray
-        float64 (n, m, 4). Cue speed [m/s], side and top (tip offset over R), direction of the cue ball [rad].
+        float64 (n, m, 5). Strokes in SI, see ``Planner``.
     scores : numpy.ndarray
         float64 (n, m). Expected points of the stroke and of what follows.
     samples : numpy.ndarray
@@ -86,11 +83,11 @@ class Ranked(NamedTuple):
         --------
         >>> import numpy as np
         >>> from snooker_env.planning import Ranked
-        >>> strokes = np.array([[[3.6, 0.0, 0.25, 0.0]]])
+        >>> strokes = np.array([[[3.6, 0.0, 0.25, 0.0, 0.0]]])
         >>> Ranked(strokes, np.zeros((1, 1)), np.zeros((1, 1), int)).actions().tolist()
         [[[0.0, 0.0, 0.5, 0.0]]]
         """
-        flat = self.strokes.reshape(-1, 4)
+        flat = self.strokes.reshape(-1, COLUMNS)
         return actions_of(flat[:, SPEED], flat[:, AIM], flat[:, SIDE], flat[:, TOP]).reshape(*self.scores.shape, 4)
 
 
@@ -108,28 +105,6 @@ def schedule(budget: int) -> tuple[int, tuple[tuple[int, int], ...]]:
             grown = tuple((many, each * budget // least) for many, each in rounds)
             return looks * budget // least, grown
     return budget, ()
-
-
-@entry(what="the strokes under errors", seconds=1)
-def _under_errors(strokes, errors, noise, end_mass_ratio, max_offset, actions):
-    """Actions (n, 5) of strokes (n, 4) with standard normal errors (n, 5): speed, side, top, aim, elevation, as ``tasks.noise.executed``.
-
-    The speed is kept within the range of actions, which the table's own errors may leave by a little. The cue's direction has been
-    corrected for the squirt of the intended side. A tip error adds its own, so the direction that the action names, which is that of the
-    ball, is turned by the difference.
-    """
-    for i in range(len(strokes)):
-        speed, side, top, e = strokes[i, SPEED], strokes[i, SIDE], strokes[i, TOP], errors[i]
-        struck = speed + e[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)
-        b, t = side + e[1] * noise[N_TIP], top + e[2] * noise[N_TIP]
-        inside = min(1.0, max_offset / max(1e-12, hypot(b, t)))
-        b, t = b * inside, t * inside
-        turned = (strokes[i, AIM] - squirt(side, end_mass_ratio) + e[3] * noise[N_AIM] + squirt(b, end_mass_ratio)) / pi
-        raised = min(MAX_ELEVATION, max(0.0, e[4] * noise[N_ELEVATION]))
-        a = actions[i]
-        a[0] = min(1.0, max(-1.0, 2.0 * (struck - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0))
-        a[1], a[2], a[3] = 2.0 * b, 2.0 * t, turned - 2.0 * round(0.5 * turned)
-        a[4] = 2.0 * raised / MAX_ELEVATION - 1.0
 
 
 class StrokeSearch:
@@ -163,7 +138,7 @@ class StrokeSearch:
     >>> search = StrokeSearch({"noise": "club"}, budget=30)
     >>> ranked = search.rank(Position(cue=(0.0, 0.9), reds=[(0.4, 1.3)], black=(0.0, 1.4605), on="red"), seeds=[7])
     >>> ranked.strokes.shape, bool(ranked.scores[0, 0] >= ranked.scores[0, 1]), search.shots
-    ((1, 16, 4), True, 30)
+    ((1, 16, 5), True, 30)
     """
 
     def __init__(
@@ -172,17 +147,14 @@ class StrokeSearch:
     ):  # fmt: skip
         self.budget: int = integer("budget", budget, FEWEST, 10**7)
         options = options_in(env_or_options)
-        rules = Planner(options, noise=noise).rules
+        self.planner: Planner = Planner(options, noise=noise, threads=threads)
+        rules = self.planner.rules
         self.noise: Noise = rules.noise
-        # the errors are drawn here, not by the table: Sobol points instead of a random stream
-        where: Any = {name: getattr(options, name) for name in ("physics", "table", "fidelity")}
-        self.planner: Planner = Planner(Options(elevation=True, noise="none", **where), threads=threads)
         self.spread: float = spread_of(self.noise, rules.physics)
         self.dynamics: Dynamics = rules.physics, rules.fidelity
         self.value: Value = self._by_rule if value is None else value
         self.propose: Propose = evenly if propose is None else propose
         self.pots_only = pots_only
-        self._deviations = self.noise.pack(rules.physics.R)
 
     @property
     def shots(self) -> int:
@@ -225,7 +197,7 @@ class StrokeSearch:
         >>> float(ranked.scores[0, 0])
         7.0
         """
-        at = Positions.of(positions)
+        at = Positions.of(positions).as_visits()
         n, own = len(at), np.asarray(seeds)
         if own.shape != (n,) or own.dtype.kind not in "iu":
             raise refuse_what("seeds", f"{own.dtype} array of shape {own.shape}", f"must be {n} integers, one for each position")
@@ -233,7 +205,7 @@ class StrokeSearch:
         check_played(at, np.arange(n), self.planner.table, self.planner.physics.R)
         looks, rounds = self.strokes_tried, () if self.noise.silent else schedule(self.budget)[1]
         if not n:
-            return Ranked(np.zeros((0, looks, 4)), np.zeros((0, looks)), np.zeros((0, looks), np.int64))
+            return Ranked(np.zeros((0, looks, COLUMNS)), np.zeros((0, looks)), np.zeros((0, looks), np.int64))
         strokes, chances = self.propose(self, at, looks, keys)
         scores = self._gains(at, strokes[:, :, None], np.zeros((n, 1, DIMENSIONS)))[..., 0]
         if not self.noise.silent:
@@ -263,7 +235,7 @@ class StrokeSearch:
         rows : numpy.ndarray
             int64 (m,). Row of ``at`` for each stroke.
         strokes : numpy.ndarray
-            float64 (m, 4). As in ``Ranked``.
+            float64 (m, 5). As in ``Ranked``.
         errors : numpy.ndarray
             float64 (m, 5). Errors of speed, side, top, aim and elevation, in standard deviations of the search's noise.
 
@@ -286,16 +258,13 @@ class StrokeSearch:
         >>> search.outcomes(at, np.zeros(2, int), np.repeat(stroke, 2, 0), np.array([[0.0] * 5, [0, 0, 0, 9.0, 0]])).points.tolist()
         [7.0, 0.0]
         """
-        actions, physics = np.empty((len(strokes), 5)), self.dynamics[0]
-        given = [np.array(one, np.float64, order="C") for one in (strokes, errors)]  # of another layout, it would be compiled anew
-        _under_errors(*given, self._deviations, physics.end_mass_ratio, min(0.5, physics.max_offset), actions)
-        return self.planner.play(at, rows, actions)
+        return self.planner.play(at, rows, strokes=strokes, errors=errors)
 
     def _gains(self, at: Positions, strokes: Floats, errors: Floats) -> Floats:
-        """Points of strokes (n, m, s, 4) under the errors (n, s, 5) of each position, and the value of what they leave: (n, m, s)."""
+        """Points of strokes (n, m, s, 5) under the errors (n, s, 5) of each position, and the value of what they leave: (n, m, s)."""
         n, m, s = strokes.shape[:3]
         every = np.broadcast_to(errors[:, None], (n, m, s, DIMENSIONS)).reshape(-1, DIMENSIONS)
-        played = self.outcomes(at, np.repeat(np.arange(n), m * s), strokes.reshape(-1, 4), every)
+        played = self.outcomes(at, np.repeat(np.arange(n), m * s), strokes.reshape(-1, COLUMNS), every)
         if self.pots_only:
             return (played.points > 0).astype(np.float64).reshape(n, m, s)
         gains, on = played.points.copy(), np.flatnonzero(played.goes_on)

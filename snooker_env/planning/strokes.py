@@ -1,8 +1,10 @@
-"""How does a stroke become an action? Choices of ``action="discrete"`` and plain aims as rows of the box action space, and the aim solver.
+"""How does a stroke become an action? The one encoder of strokes, choices of ``action="discrete"`` as actions, and the aim solver.
 
-Each row has the four numbers of ``aim="absolute"`` without elevation and placement: cue speed, side, top, direction.
+A stroke is a row of five numbers in SI, in the columns of ``trials``: cue speed [m/s], side and top (tip offset over R), the direction in
+which the cue ball leaves [rad] (the cue itself points aside by the squirt of the side), elevation of the cue [rad].
 """
 
+from dataclasses import replace
 from math import pi
 from typing import Any
 
@@ -11,23 +13,23 @@ from numpy.typing import NDArray
 
 from .._check import array, integer, number, refuse, refuse_what
 from .._jit import entry
-from .._types import Fidelity, Integers, Scalars, Vector, Vectors
-from ..game.balls import N_BALLS, balls_on_kernel, bits
-from ..game.frame_columns import BALL_ON
-from ..game.pots import POT_COLUMNS
-from ..geometry import BALL_RADIUS
-from ..physics.cloth import COLUMNS
-from ..physics.cue import MAX_ELEVATION, squirt
+from .._types import Fidelity, Floats, Integers, Scalars, Vector, Vectors
+from ..game.balls import N_BALLS
+from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
+from ..physics import cloth, cue
 from ..physics.impact.contact import parse_fidelity
 from ..physics.impact.polynomial import WORK
 from ..physics.parameters import Physics, PhysicsLike
-from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
-from ..tasks.discrete_actions import SIZE, chosen, masks
-from ..tasks.lines import LINE_ROWS
+from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions
+from ..tasks.discrete_actions import SIZE, Choices, masks
+from ..tasks.options import Options, Rules
 from ..tasks.pot_aim import solved_aim
 from ..tasks.tables import STROKES_ONLY
 from .positions import Positions, PositionsLike, rows_of
+from .trials import AIM, COLUMNS, ELEVATION, SIDE, SPEED, TOP, decoded
 
+FARTHEST = 0.5
+"""Largest tip offset over R: the miscue limit, and the end of the scale of an action."""
 Dynamics = tuple[Physics, tuple[int, int]]
 """Physical constants, and a fidelity as ``parse_fidelity`` returns it."""
 
@@ -62,7 +64,7 @@ def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
     >>> int(action_masks(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))).sum())
     270
     """
-    at = Positions.of(positions)
+    at = Positions.of(positions).as_visits()
     out = np.empty((len(at), SIZE), np.bool_)
     masks(np.arange(len(at)), at.positions, at.on_table, at.game, STROKES_ONLY, out)
     return out
@@ -96,31 +98,64 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
     >>> actions_of([3.6], [0.0], top=0.25).tolist()
     [[0.0, 0.0, 0.5, 0.0]]
     """
-    fast, turns = array("speeds", speeds, (-1,)), array("aims", aims, (-1,)) / pi
+    fast, turns = array("speeds", speeds, (-1,)), array("aims", aims, (-1,))
     if len(fast) and not (fast.min() >= MIN_SPEED and fast.max() <= MAX_SPEED):
         number("speeds", float(fast.min() if fast.min() < MIN_SPEED else fast.max()), MIN_SPEED, MAX_SPEED)
-    actions = np.zeros((len(turns), 4), np.float32)
-    actions[:, 0] = 2.0 * (fast - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0
-    actions[:, 1], actions[:, 2] = 2.0 * np.asarray(side, np.float64), 2.0 * np.asarray(top, np.float64)
-    actions[:, 3] = turns - 2.0 * np.round(turns / 2.0)
-    if not (np.abs(actions) <= 1.0).all():
-        raise refuse("side, top", float(0.5 * np.abs(actions[:, 1:3]).max()), "must be finite and within 0.5")
-    return actions
+    strokes = np.zeros((len(turns), COLUMNS))
+    strokes[:, SPEED], strokes[:, SIDE], strokes[:, TOP], strokes[:, AIM] = fast, side, top, turns
+    if not (np.abs(strokes[:, [SIDE, TOP]]) <= FARTHEST).all():
+        raise refuse("side, top", float(np.abs(strokes[:, [SIDE, TOP]]).max()), "must be finite and within 0.5")
+    return encoded(_ABSOLUTE, strokes).astype(np.float32)
 
 
-@entry(what="the choices as actions", uses=(chosen,))
-def _as_actions(positions, on_table, game, rows, picks, phys, end_mass_ratio, fidelity, n_steps, out):
-    found, motion, phase, work = np.empty((LINE_ROWS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
-    for i in range(len(rows)):
-        k = rows[i]
-        on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
-        speed, side, top, aim, _ = chosen(
-            picks[i], positions[k], on_table[k], on, phys, end_mass_ratio, fidelity, n_steps, found, motion, phase, work
-        )
-        out[i, 0] = 2.0 * (speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0
-        out[i, 1], out[i, 2] = 2.0 * side, 2.0 * top
-        turned = (aim + squirt(side, end_mass_ratio)) / pi
-        out[i, 3] = turned - 2.0 * round(0.5 * turned)
+def check_strokes(strokes: Any, n: int | None = None) -> Floats:
+    """Strokes (n, 5) as float64; ValueError names the first one with a number that is not finite or out of range."""
+    a = np.asarray(strokes)
+    if a.dtype.kind not in "iuf" or a.ndim != 2 or a.shape[1] != COLUMNS or (n is not None and len(a) != n):
+        raise refuse_what("strokes", f"{a.dtype} array of shape {a.shape}", f"must be real numbers of shape ({'n' if n is None else n}, 5)")
+    a = np.ascontiguousarray(a, np.float64)
+    fair = (a[:, SPEED] >= MIN_SPEED) & (a[:, SPEED] <= MAX_SPEED) & np.isfinite(a[:, AIM])
+    fair &= (np.abs(a[:, SIDE]) <= FARTHEST) & (np.abs(a[:, TOP]) <= FARTHEST)
+    fair &= (a[:, ELEVATION] >= 0.0) & (a[:, ELEVATION] <= MAX_ELEVATION)
+    if not fair.all():
+        k = int(np.argmin(fair))
+        numbers = dict(zip(("speed", "side", "top", "aim", "elevation"), a[k].tolist(), strict=True))
+        high = {"speed": MAX_SPEED, "side": FARTHEST, "top": FARTHEST, "aim": np.inf, "elevation": MAX_ELEVATION}
+        for name, value in numbers.items():
+            low = MIN_SPEED if name == "speed" else 0.0 if name == "elevation" else -high[name]
+            number(f"strokes[{k}], {name}", value, low, high[name])
+    return a
+
+
+def encoded(actions: Actions, strokes: Floats, places: Vectors | None = None, lines: Vector | None = None) -> Floats:
+    """Checked strokes (n, 5) as actions (n, k) of a box action space, in double precision.
+
+    ``places`` (n, 2) [m]: of a cue ball in hand in the D, by default the middle of the baulk line. ``lines`` (n,) [rad]: with
+    ``aim="target"``, the direction that each aim is measured from. What else an action says is left at 0: play.
+    """
+    out, turned = np.zeros((len(strokes), actions.size)), strokes[:, AIM] if lines is None else strokes[:, AIM] - lines
+    turned = turned - 2.0 * pi * np.round(turned / (2.0 * pi))
+    out[:, 0] = 2.0 * (strokes[:, SPEED] - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0
+    out[:, 1], out[:, 2] = 2.0 * strokes[:, SIDE], 2.0 * strokes[:, TOP]
+    out[:, 3] = turned / (pi if lines is None else TARGET_SPAN)
+    if (np.abs(out[:, 3]) > 1.0 + 1e-9).any():
+        k = int(np.argmax(np.abs(out[:, 3])))
+        raise refuse(f"strokes[{k}], aim", float(strokes[k, AIM]), f"must be within 3 degrees of the target line, {lines[k]:.6g} rad")
+    if actions.elevation:
+        out[:, 4] = 2.0 * strokes[:, ELEVATION] / MAX_ELEVATION - 1.0
+    elif strokes[:, ELEVATION].any():
+        raise refuse("elevation", float(strokes[:, ELEVATION].max()), "must be 0: actions without elevation=True have a level cue")
+    if actions.placement:
+        x, y = (np.zeros(len(strokes)), np.full(len(strokes), BAULK_Y)) if places is None else np.asarray(places, np.float64).T
+        across = np.clip(x / D_RADIUS, -1.0, 1.0)
+        depth = D_RADIUS * np.sqrt(1.0 - across * across)
+        back = np.where(depth > 1e-9, np.clip((BAULK_Y - y) / np.maximum(depth, 1e-9), 0.0, 1.0), 0.0)
+        at = 4 + actions.elevation
+        out[:, at], out[:, at + 1] = across, 2.0 * back - 1.0
+    return np.clip(out, -1.0, 1.0)  # removes rounding errors
+
+
+_ABSOLUTE = Actions("absolute", False, False, Physics())
 
 
 def as_actions(
@@ -157,22 +192,22 @@ def as_actions(
     >>> as_actions(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), [0], [67]).shape
     (1, 4)
     """
-    return solved_choices(Positions.of(positions), rows, choices, dynamics_of(physics, fidelity))
+    given: Any = {"physics": Physics.of(physics), "fidelity": fidelity}
+    return solved_choices(Options(**given).rules, Positions.of(positions), rows, choices)
 
 
-def solved_choices(at: Positions, rows: Integers, choices: Integers, dynamics: Dynamics) -> NDArray[np.float32]:
-    """``as_actions`` with checked physics and fidelity."""
-    which = rows_of(at, rows)
+def solved_choices(rules: Rules, at: Positions, rows: Integers, choices: Integers) -> NDArray[np.float32]:
+    """``as_actions`` with the physics and the fidelity of ``rules``."""
+    at, which = at.as_visits(), rows_of(at, rows)
     picks = _integers("choices", choices, len(which), 0, SIZE - 1)
-    out = np.empty((len(which), 4), np.float32)
-    physics, (code, n_steps) = dynamics
-    _as_actions(at.positions, at.on_table, at.game, which, picks, physics.pack(), physics.end_mass_ratio, code, n_steps, out)
-    return out
+    discrete = replace(rules, actions=Choices(rules.physics))
+    strokes, _ = decoded(discrete, at, which, picks[:, None].astype(np.float64))
+    return encoded(_ABSOLUTE, strokes).astype(np.float32)
 
 
 @entry(what="the solving of aims", uses=(solved_aim,))
 def _pot_aim(positions, rows, balls, targets, ghosts, strokes, phys, end_mass_ratio, fidelity, n_steps, aims):
-    motion, state, work = np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    motion, state, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
     for i in range(len(rows)):
         p, (speed, side, top, elevation) = positions[rows[i]], (strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3])
         aims[i] = solved_aim(
@@ -265,7 +300,7 @@ def solved_aims(
     else:
         behind = array("ghosts", ghosts, (n, 2))
     strokes = np.empty((n, 4))
-    high = (np.inf, physics.max_offset, physics.max_offset, MAX_ELEVATION)
+    high = (np.inf, physics.max_offset, physics.max_offset, cue.MAX_ELEVATION)
     given: dict[str, Any] = {"speeds": speeds, "side": side, "top": top, "elevation": elevation}
     for c, (name, value) in enumerate(given.items()):
         strokes[:, c] = array(name, value, (n,) if np.ndim(value) else ())

@@ -8,12 +8,14 @@ from numpy.typing import NDArray
 
 from .._check import choice, refuse_what
 from .._types import Bools, Ints, Observation
+from ..game.frame_columns import ANYWHERE, IN_HAND, PLACE_ANYWHERE
 from ..planning import Positions
-from ..tasks.decoding import decoded
+from ..planning.trials import decoded
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.observations import shaped
 from ..tasks.options import Options
+from ..tasks.saying import said
 from ..tasks.visit import Visits
 from .player import Strokes, seeds_of
 from .simple import BoundPlayer, placed
@@ -103,9 +105,19 @@ class SeenPlayer(BoundPlayer):
         keys = seeds_of(seeds, len(at))
         shown, places = self._shown(at, keys)
         actions = self._actions(shown, keys)
-        meaning = decoded(self._rules, actions, shown.positions, shown.on_table, shown.game)
-        place = np.where(np.isnan(meaning.place), places, meaning.place)
-        return Strokes(meaning.strokes, place, meaning.nominate, meaning.decision, meaning.declare)
+        rows = np.arange(len(at))
+        if not self.frames:
+            values, start = decoded(self._rules, shown, rows, actions)
+            return Strokes(values, np.where(self._puts(shown), start.positions[:, 0], places))
+        nominate, decision, declare = said(self._rules, actions, shown.game)
+        shown = shown.copy()
+        shown.game[decision == PLACE_ANYWHERE, IN_HAND] = shown.game[decision == PLACE_ANYWHERE, ANYWHERE] = 1
+        values, start = decoded(self._rules, shown, rows, actions, nominate)
+        return Strokes(values, np.where(self._puts(shown), start.positions[:, 0], places), nominate, decision, declare)
+
+    def _puts(self, at: Positions) -> Bools:
+        """Where its action places the cue ball: bool (n, 1)."""
+        return (at.in_hand & bool(self._rules.actions.placement))[:, None]
 
     def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, NDArray[np.float64]]:
         """The positions as it sees them, and where cue balls in hand have been placed for it (n, 2), else NaN."""

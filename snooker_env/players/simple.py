@@ -6,10 +6,8 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse
-from ..game.frame_columns import IN_HAND
-from ..planning import Positions, action_masks, as_actions
+from ..planning import Planner, Positions, action_masks
 from ..planning.planner import options_in
-from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
 from ..tasks.geometric_strokes import geometric_strokes, put_in_hand
 from ..tasks.options import Options
 from .player import Ranked, RulesLike, Strokes, seeds_of
@@ -55,9 +53,7 @@ def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
     put_in_hand(moved.positions, moved.on_table, moved.game, streams_of(seeds), True)
     hand = at.in_hand
     places[hand] = moved.positions[hand, 0]
-    visits = moved.as_visits()
-    visits.game[hand, IN_HAND] = 1
-    return visits, places
+    return moved.as_visits(), places
 
 
 class GhostBall(BoundPlayer):
@@ -84,13 +80,23 @@ class Random(BoundPlayer):
     """Uniformly random choices of ``action="discrete"``, of those available."""
 
     name = "random"
+    _planner: Any = None
+
+    def _bind(self, options: Options) -> None:
+        same: Any = {name: getattr(options, name) for name in ("physics", "table", "fidelity")}
+        self._planner = Planner(Options(action="discrete", **same), threads=1)
+
+    def _strokes(self, at: Positions, rows: Any, choices: Any) -> np.ndarray:
+        """The strokes (m, 5) of choices in ``at[rows]``; aims are solved."""
+        return self._planner.strokes_of(at, rows, choices)[0]
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """All available choices in a random order, without scores."""
+        _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))
         visits, places = placed(at, keys)
-        masks, rules = action_masks(visits), self.options.rules
+        masks = action_masks(visits)
         order = (
             np.stack([np.random.default_rng(key).random(masks.shape[1]) for key in keys.tolist()])
             if len(at)
@@ -99,12 +105,13 @@ class Random(BoundPlayer):
         out = []
         for k, (row, mask) in enumerate(zip(order, masks, strict=True)):
             choices = np.argsort(np.where(mask, row, 2.0), kind="stable")[: max(1, int(mask.sum()))]
-            values = values_of_choices(visits, np.full(len(choices), k), choices, rules)
+            values = self._strokes(visits, np.full(len(choices), k), choices)
             out.append(Ranked(Strokes(values, np.repeat(places[k : k + 1], len(choices), 0)), None))
         return out
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
+        _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))
         visits, places = placed(at, keys)
@@ -114,16 +121,4 @@ class Random(BoundPlayer):
             choices[k] = np.argmax(
                 np.where(masks[k], np.random.default_rng(key).random(masks.shape[1]), -1.0)
             )
-        return Strokes(values_of_choices(visits, np.arange(len(at)), choices, self.options.rules), places)
-
-
-def values_of_choices(at: Positions, rows: Any, choices: Any, rules: Any) -> np.ndarray:
-    """The strokes (m, 5) of choices of ``action="discrete"`` in ``at[rows]``; aims are solved."""
-    stroke, values = choices % STROKES, np.zeros((len(choices), 5))
-    values[:, 0] = np.array(SPEEDS)[stroke // (len(SIDES) * len(TOPS))]
-    values[:, 1], values[:, 2] = (
-        np.array(SIDES)[stroke // len(TOPS) % len(SIDES)],
-        np.array(TOPS)[stroke % len(TOPS)],
-    )
-    values[:, 3] = np.pi * as_actions(at, rows, choices, physics=rules.physics)[:, 3]
-    return values
+        return Strokes(self._strokes(visits, np.arange(len(at)), choices), places)

@@ -50,14 +50,35 @@ from typing import TypeAlias
 import numpy as np
 
 from .._check import choice, number, refuse
-from .._jit import kernel
-from .._types import Floats, NoiseName
+from .._jit import entry, kernel
+from .._types import Floats, NoiseName, Words
 from ..game.philox import normals
 from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics, PhysicsLike
 
 # Columns of the packed deviations: 1 if there is no noise, then speed [m/s], speed (relative), tip offset over R, aim, elevation [rad].
 (N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION) = range(6)
+
+
+@kernel
+def with_errors(speed, side, top, aim, elevation, errors, noise):
+    """The shot under the standard normal ``errors`` (5,): speed, side, top, aim, elevation. The only law of errors; see ``executed``."""
+    return (
+        max(0.0, speed + errors[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
+        side + errors[1] * noise[N_TIP],
+        top + errors[2] * noise[N_TIP],
+        aim + errors[3] * noise[N_AIM],
+        min(MAX_ELEVATION, max(0.0, elevation + errors[4] * noise[N_ELEVATION])),
+    )
+
+
+@kernel
+def drawn_errors(stream):
+    """Five standard normal errors of a shot from a stream, as a tuple."""
+    a, b = normals(stream)
+    c, d = normals(stream)
+    e, _ = normals(stream)
+    return a, b, c, d, e
 
 
 @kernel
@@ -86,16 +107,20 @@ def executed(speed, side, top, aim, elevation, noise, stream):
     """
     if noise[N_SILENT]:
         return speed, side, top, aim, elevation
-    a, b = normals(stream)
-    c, d = normals(stream)
-    e, _ = normals(stream)
-    return (
-        max(0.0, speed + a * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
-        side + b * noise[N_TIP],
-        top + c * noise[N_TIP],
-        aim + d * noise[N_AIM],
-        min(MAX_ELEVATION, max(0.0, elevation + e * noise[N_ELEVATION])),
-    )
+    return with_errors(speed, side, top, aim, elevation, drawn_errors(stream), noise)
+
+
+@entry
+def _errors(streams, out):
+    for i in range(len(out)):
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3], out[i, 4] = drawn_errors(streams[i])
+
+
+def errors_of(streams: Words) -> Floats:
+    """The errors that shots would draw from ``streams`` (n, 2), which stay as they are: standard normal (n, 5), as of ``with_errors``."""
+    out = np.empty((len(streams), 5))
+    _errors(streams.copy(), out)
+    return out
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,9 +27,10 @@ from .._check import choice, refuse, refuse_what
 from .._jit import entry
 from .._types import Floats, Ints
 from ..game.balls import bits
-from ..game.frame_columns import ANYWHERE, BALL_ON, FREE_BALL, IN_HAND, strikeable
+from ..game.frame_columns import ANYWHERE, IN_HAND, strikeable
 from ..game.philox import pair
 from ..game.pots import POT_COLUMNS
+from ..game.sides import as_visits
 from ..physics.parameters import Physics
 from .box_actions import Actions
 from .discrete_actions import Choices
@@ -56,15 +57,6 @@ def put_in_hand(which, positions, on_table, game, streams, within_d):
         k = which[j]
         if game[k, IN_HAND] and (within_d or game[k, ANYWHERE]):
             put(positions[k], on_table[k], strikeable(game[k], bits(on_table[k]) & ~1), game[k, ANYWHERE], found, streams[k])
-
-
-def as_visits(game: Ints) -> Ints:
-    """Rows of frames as a player of visits sees them, copied: a free ball is any colour, what may stand anywhere is placed."""
-    seen = game.copy()
-    free, anywhere = game[:, FREE_BALL] != 0, game[:, ANYWHERE] != 0
-    seen[free, BALL_ON] = seen[free, FREE_BALL] = 0
-    seen[anywhere, IN_HAND] = seen[anywhere, ANYWHERE] = 0
-    return seen
 
 
 @entry

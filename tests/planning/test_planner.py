@@ -9,6 +9,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.planning import Planner, Position, Positions
+from snooker_env.tasks.noise import errors_of
 
 SILENT = Planner({})
 """Box actions without noise."""
@@ -86,6 +87,82 @@ def test_any_number_of_threads_and_any_order_of_strokes_give_the_same():
         many = list(pool.map(lambda _: shared.play(env, rows, strokes, keys), range(4)))
     assert all(same(first, other) for other in many) and shared.shots == 4 * 333
     assert same(first, pickle.loads(pickle.dumps(shared)).play(env, rows, strokes, keys))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"aim": "target", "noise": "club", "elevation": True},
+        {"noise": "olympiad", "placement": True, "layout": "break_off", "physics": {"max_offset": 0.3}},
+        {"action": "discrete", "noise": "professional", "layout": "random:6"},
+    ],
+)
+def test_a_stroke_decoded_is_played_as_its_action(options):
+    """By keys, by the errors that the keys draw, as a stroke or as an action: one law of errors, one decoder; equal but for rounding."""
+    env = sn.SnookerVectorEnv(5, threads=1, **options)
+    env.reset(seed=4)
+    planner, rows, keys = Planner(env, threads=1), np.arange(60) % 5, np.arange(100, 160)
+    chosen = np.arange(60) * 9 if planner.discrete else actions(60, env.single_action_space.shape[0], seed=1)
+    strokes, at = planner.strokes_of(env, rows, chosen)
+    assert strokes.shape == (60, 5) and len(at) == 60
+    whole, errors = planner.play(env, rows, chosen, keys), errors_of(np.stack([keys, 0 * keys], 1).astype(np.uint64))
+    for other in (
+        planner.play(at, np.arange(60), strokes=strokes, keys=keys),
+        planner.play(at, np.arange(60), strokes=strokes, errors=errors),
+        planner.play(env, rows, chosen, errors=errors),
+    ):
+        assert np.abs(other.afterstates.positions - whole.afterstates.positions).max() < 1e-3
+        apart = np.abs(other.afterstates.positions - whole.afterstates.positions).max(axis=(1, 2))
+        assert np.median(apart) < 1e-9 and (np.array_equal(other.points, whole.points))
+    exact = planner.play(at, np.arange(60), strokes=strokes, errors=np.zeros((60, 5))).afterstates.positions
+    assert (np.abs(exact - whole.afterstates.positions).max(axis=(1, 2)) > 1e-3).mean() > 0.5
+    stops = planner.stops(at, np.arange(60), strokes=strokes, errors=errors)
+    assert np.array_equal(stops.points, whole.points)
+    if not planner.discrete:
+        back = planner.actions_of(strokes, positions=at, rows=np.arange(60), places=at.positions[:, 0])
+        again, placed = planner.strokes_of(env, rows, back)
+        assert np.allclose(again[:, [0, 1, 2, 4]], strokes[:, [0, 1, 2, 4]], atol=1e-12)
+        assert np.allclose(np.exp(1j * again[:, 3]), np.exp(1j * strokes[:, 3]), atol=1e-9)
+        assert not at.in_hand.any() or np.allclose(placed.positions[:, 0], at.positions[:, 0], atol=1e-6)
+
+
+SOFT = [2.0, 0.0, 0.0, 0.3, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("given", "complaint"),
+    [
+        ({}, "actions, strokes = none: must be one of them"),
+        ({"actions": [[0, 0, 0, 0]], "strokes": [SOFT]}, "actions, strokes = both"),
+        ({"strokes": [SOFT]}, "keys = None: must be given with execution noise"),
+        ({"strokes": [SOFT], "keys": [1], "errors": [[0] * 5]}, "keys, errors = both"),
+        ({"strokes": [SOFT], "errors": [[0] * 4]}, "errors = array of shape"),
+        ({"strokes": [SOFT], "errors": [[np.nan] * 5]}, r"errors\[0, 0\] = nan"),
+        ({"strokes": [SOFT[:4]], "keys": [1]}, r"strokes = float64 array of shape \(1, 4\): must be real numbers of shape \(1, 5\)"),
+        ({"strokes": [[9.0, *SOFT[1:]]], "keys": [1]}, r"strokes\[0\], speed = 9.0: must be a finite number in \[0.2, 7\]"),
+        ({"strokes": [[2.0, 0.0, np.nan, 0.0, 0.0]], "keys": [1]}, r"strokes\[0\], top = nan"),
+        ({"strokes": [[2.0, 0.6, 0.0, 0.0, 0.0]], "keys": [1]}, r"strokes\[0\], side = 0.6"),
+        ({"strokes": [[2.0, 0.0, 0.0, np.inf, 0.0]], "keys": [1]}, r"strokes\[0\], aim = inf"),
+        ({"strokes": [[2.0, 0.0, 0.0, 0.0, -0.1]], "keys": [1]}, r"strokes\[0\], elevation = -0.1"),
+    ],
+)
+def test_strokes_and_errors_that_make_no_sense_are_refused(given, complaint):
+    planner = Planner({"noise": "club"}, threads=1)
+    with pytest.raises(ValueError, match=f"^{complaint}"):
+        planner.play(Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)]), [0], **given)
+    assert planner.shots == 0
+
+
+def test_what_an_action_space_cannot_say_is_refused():
+    with pytest.raises(ValueError, match=r"elevation = 0\.1: must be 0"):
+        Planner({}).actions_of([[2.0, 0.0, 0.0, 0.3, 0.1]])
+    with pytest.raises(ValueError, match="action = 'discrete'"):
+        Planner({"action": "discrete"}).actions_of([SOFT])
+    aimed, position = Planner({"aim": "target"}), Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)])
+    with pytest.raises(ValueError, match="positions, rows = None"):
+        aimed.actions_of([SOFT])
+    with pytest.raises(ValueError, match=r"strokes\[0\], aim = 0.3: must be within 3 degrees of the target line"):
+        aimed.actions_of([SOFT], positions=position, rows=[0])
 
 
 def test_the_key_alone_decides_the_errors():

@@ -8,8 +8,20 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game import SPOTS, BallOn
-from snooker_env.game.frame_columns import FREE_BALL
-from snooker_env.planning import Position, Positions
+from snooker_env.game.frame_columns import (
+    CHOICE,
+    FRAMES_0,
+    FRAMES_1,
+    FREE_BALL,
+    LOT,
+    MISS_CALLED,
+    PHASE,
+    RESPOTTED_BLACK,
+    SCORE_0,
+    SCORE_1,
+    STRIKER,
+)
+from snooker_env.planning import Planner, Position, Positions, action_masks, clear_paths, pots, prospects_of
 
 FULL = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (-0.3, 0.7)], "pink": (0.2, 0.1), "black": (0.0, 1.4605)}
 
@@ -132,13 +144,48 @@ def test_arrays_of_the_wrong_shape_or_type_are_refused(arrays, complaint):
         Positions(*arrays)
 
 
-def test_a_free_ball_is_refused():
-    env = sn.SnookerVectorEnv(3, task="frame")
+def test_positions_of_frames_hold_what_the_striker_may_know():
+    env = sn.SnookerVectorEnv(3, task="match", frames=5, miss="clear_path")
     env.reset(seed=0)
-    assert len(Positions.of(env)) == 3
+    game, saved = env.tables.game, env.tables.saved
+    game[:, [STRIKER, SCORE_0, SCORE_1, FRAMES_0, FRAMES_1]] = (0, 20, 7, 1, 2)
+    game[1, [STRIKER, FREE_BALL, PHASE, MISS_CALLED]] = (1, 1, CHOICE, 1)
+    game[2, [PHASE, RESPOTTED_BLACK]] = LOT, 1
+    saved.positions[1, 0] = (0.1, 0.2)
+    at = Positions.of(env)
+    assert at.of_frames and at.game.shape == (3, 33) and at.saved.positions[1, 0].tolist() == [0.1, 0.2]
+    assert at.scores.tolist() == [[20, 7], [7, 20], [20, 7]] and at.frames_won.tolist() == [[1, 2], [2, 1], [1, 2]]
+    assert [each.tolist() for each in (at.free_ball, at.choice, at.miss_called)] == [[False, True, False]] * 3
+    assert [each.tolist() for each in (at.lot, at.respotted_black)] == [[False, False, True]] * 2
+    assert at.balls_on.sum(axis=1).tolist() == [15, 21, 15] and not at.anywhere.any() and not at.game[:, STRIKER].any()
+    assert game[1, STRIKER] == 1  # the environment's own rows stay as they are
+    part = at[[1]]
+    assert part.free_ball.all() and part.saved.positions[0, 0].tolist() == [0.1, 0.2] and part.copy().saved.on_table.shape == (1, 22)
+    visits = at.as_visits()
+    assert visits.game.shape == (3, 5) and visits.ball_on.tolist() == [1, 0, 1] and visits.as_visits() is visits
+    assert not (visits.free_ball.any() or visits.choice.any() or visits.scores.any() or visits.of_frames)
+    assert at[1].on == "any_colour" and at[0].on == "red"
+
+
+def test_planning_plays_the_strokes_of_frames_as_those_of_visits():
+    env = sn.SnookerVectorEnv(2, task="frame", layout="random:4")
+    env.reset(seed=3)
     env.tables.game[1, FREE_BALL] = True
-    with pytest.raises(ValueError, match="free ball on table 1 = True: must be False: a planned stroke is judged as one of a visit"):
-        Positions.of(env)
+    at = Positions.of(env)
+    visits, strokes = at.as_visits(), np.array([[2.0, 0.1, 0.2, 1.3, 0.0]] * 2)
+    planner = Planner({}, threads=1)
+    for one, other in (
+        (
+            planner.play(at, [0, 1], strokes=strokes).afterstates.positions,
+            planner.play(visits, [0, 1], strokes=strokes).afterstates.positions,
+        ),
+        (pots(at).ball, pots(visits).ball),
+        (action_masks(at), action_masks(visits)),
+        (clear_paths(at).any_part, clear_paths(visits).any_part),
+        (at.observations(), visits.observations()),
+        (prospects_of(at, 1e-3)[0], prospects_of(visits, 1e-3)[0]),
+    ):
+        assert np.array_equal(one, other)
 
 
 def test_a_cue_ball_that_may_stand_anywhere_is_played_from_where_it_lies():

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from positions import tables
 
-from agents.features.noise_samples import errors_of
 from snooker_env.planning import RULE_OF_THUMB, SURE, Planner, Position, Positions, StrokeSearch, prospects_of
 from snooker_env.planning.proposals import Proposals, spread_strokes
 from snooker_env.planning.sobol import normal_points
 from snooker_env.planning.stroke_search import FEWEST, PRIOR, schedule
+from snooker_env.tasks.noise import errors_of
 
 OPTIONS = {"noise": "club", "fidelity": "fast"}
 LOUD = {"aim_deg": 0.3, "speed_rel": 0.05, "speed_abs": 0.05, "offset_mm": 5.0, "elevation_deg": 2.0}
@@ -38,8 +38,8 @@ def by_place(at):
 
 
 def random_strokes(m, rng):
-    """Strokes (m, 4) over the whole tip disc, in all directions: with side and draw, mirrored in pairs."""
-    strokes = np.empty((m, 4))
+    """Strokes (m, 5) over the whole tip disc, in all directions: with side and draw, mirrored in pairs."""
+    strokes = np.zeros((m, 5))
     far, way = 0.49 * np.sqrt(rng.random(m)), rng.uniform(-np.pi, np.pi, m)
     strokes[:, 0], strokes[:, 1], strokes[:, 2] = rng.uniform(0.8, 5.0, m), far * np.cos(way), far * np.sin(way)
     strokes[:, 3] = rng.uniform(-np.pi, np.pi, m)
@@ -73,7 +73,7 @@ def test_strokes_under_errors_are_those_of_the_table_under_the_same_errors(noise
     at, rng, m = some(20), np.random.default_rng(1), 300
     rows, keys, strokes = rng.integers(0, 20, m), np.arange(1000, 1000 + m), random_strokes(m, rng)
     options = {"noise": noise, "fidelity": "fast"}
-    errors = errors_of(keys)
+    errors = errors_of(np.stack([keys, np.zeros(m, int)], 1).astype(np.uint64))
     kept = strokes.copy(), errors.copy()
     played = search(options=options).outcomes(at, rows, strokes, errors)
     table = Planner(options, threads=1).play(at, rows, as_actions(strokes), keys)
@@ -91,7 +91,7 @@ def test_a_tip_error_beyond_the_disc_is_drawn_in_along_its_radius():
     at = Positions.of(Position(cue=(0.0, -1.2), black=(0.6, 1.6)))
     noise = {"offset_mm": 0.02625e3 * 0.2}  # a fifth of R
     tool = search(options={"noise": noise})
-    left = tool.outcomes(at, np.array([0, 0]), np.array([[0.9, 0.4, 0.0, 1.5]] * 2), np.array([[0, 2.0, 0, 0, 0], [0, 0.5, 0, 0, 0]]))
+    left = tool.outcomes(at, np.array([0, 0]), np.array([[0.9, 0.4, 0.0, 1.5, 0.0]] * 2), np.array([[0, 2.0, 0, 0, 0], [0, 0.5, 0, 0, 0]]))
     ratio = tool.dynamics[0].end_mass_ratio
     rim, meant = (atan(2.5 * b * sqrt(1 - b * b) / (1 + ratio + 2.5 * (1 - b * b))) for b in (0.5, 0.4))  # squirt [Alciatore, TP A.31]
     turned = rim - meant
@@ -103,7 +103,7 @@ def test_a_tip_error_beyond_the_disc_is_drawn_in_along_its_radius():
 
 def test_without_errors_a_stroke_leaves_along_its_aim_whatever_its_side():
     at = Positions.of(Position(cue=(0.0, -1.2), black=(0.6, 1.6)))
-    strokes = np.array([[0.9, side, top, 1.4] for side in (-0.35, 0.0, 0.35) for top in (-0.3, 0.0, 0.3)])
+    strokes = np.array([[0.9, side, top, 1.4, 0.0] for side in (-0.35, 0.0, 0.35) for top in (-0.3, 0.0, 0.3)])
     left = search().outcomes(at, np.zeros(9, int), strokes, np.zeros((9, 5))).afterstates.positions[:, 0] - at.positions[0, 0]
     assert np.arctan2(left[:, 1], left[:, 0]) == pytest.approx(np.full(9, 1.4), abs=1e-9)
     assert len(np.unique(np.hypot(*left.T).round(6))) == 3  # the height of the tip decides how far it runs
@@ -133,7 +133,7 @@ def test_as_many_strokes_are_played_as_the_schedule_says(budget, noise):
     total = looks + sum(many * each for many, each in rounds)
     if noise == "none":
         looks, rounds, total = budget, (), budget
-    assert tool.shots == 2 * total and ranked.strokes.shape == (2, looks, 4) and ranked.scores.shape == ranked.samples.shape == (2, looks)
+    assert tool.shots == 2 * total and ranked.strokes.shape == (2, looks, 5) and ranked.scores.shape == ranked.samples.shape == (2, looks)
     met = np.zeros(looks, int)
     for many, each in rounds:
         met[:many] += each
@@ -144,7 +144,7 @@ def test_as_many_strokes_are_played_as_the_schedule_says(budget, noise):
 
 
 def gains_by_hand(tool, at, strokes, errors, value):
-    """Points and value of what is left, for each of the strokes (m, 4) of one position under each of the errors (s, 5): (m, s)."""
+    """Points and value of what is left, for each of the strokes (m, 5) of one position under each of the errors (s, 5): (m, s)."""
     m, s = len(strokes), len(errors)
     out = tool.outcomes(at, np.zeros(m * s, int), np.repeat(strokes, s, axis=0), np.tile(errors, (m, 1)))
     gains = [
@@ -285,7 +285,7 @@ def test_the_tables_own_physics_and_fidelity_count():
 
 def test_no_position_is_no_decision():
     ranked = search(30).rank(some(2)[np.zeros(0, int)], np.zeros(0, int))
-    assert ranked.strokes.shape == (0, 16, 4) and ranked.scores.shape == ranked.samples.shape == (0, 16)
+    assert ranked.strokes.shape == (0, 16, 5) and ranked.scores.shape == ranked.samples.shape == (0, 16)
 
 
 # bad input -------------------------------------------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.planning import Position, Positions
+from snooker_env.planning import Planner, Position, Positions
 from snooker_env.players import FRAMES, VISITS, SeenPlayer, Strokes, decided, decision_seeds
 from snooker_env.players.resolver import BUILT_IN
 
@@ -81,12 +81,10 @@ def test_strokes_become_actions_that_mean_them(options):
     values = np.stack([rng.uniform(0.2, 7, 40), *rng.uniform(-0.3, 0.3, (2, 40)), rng.uniform(-3.1, 3.1, 40), rng.uniform(0, 0.5, 40)], 1)
     values[:, 4] *= options.elevation
     strokes = Strokes(values)
-    from snooker_env.tasks.decoding import decoded
-
-    meaning = decoded(options.rules, strokes.actions(options, at), at.positions, at.on_table, at.game)
-    assert np.allclose(meaning.strokes, values, rtol=0, atol=1e-14 * 100)
+    decoded, start = Planner(options).strokes_of(at, np.arange(len(at)), strokes.actions(options, at))
+    assert np.allclose(decoded, values, rtol=0, atol=1e-13)
     if options.placement:
-        assert np.allclose(meaning.place, at.positions[:, 0], atol=1e-12)
+        assert np.allclose(start.positions[:, 0], at.positions[:, 0], atol=1e-12)
 
 
 def test_what_an_action_cannot_hold_is_refused():

@@ -116,7 +116,8 @@ LONG = {
     "snooker_env.game.layouts": ["deal_tables"],
     "snooker_env.game.apply_ruling": ["settle_one"], "snooker_env.game.paths": ["best_paths"], "snooker_env.game.snookered": ["_snookered"],
     "snooker_env.planning.learned.pot_view": ["_add_pots"], "agents.features.indirect_pots": ["_indirect"],
-    "snooker_env.planning.strokes": ["_as_actions", "_pot_aim"], "snooker_env.planning.geometry": ["_pots", "_clear_paths"],
+    "snooker_env.planning.strokes": ["_pot_aim"], "snooker_env.planning.trials": ["_strike"],
+    "snooker_env.planning.geometry": ["_pots", "_clear_paths"],
 }  # fmt: skip
 """The kernels that were seen to take over a second, each compiled first in a fresh process."""
 
