@@ -1,6 +1,7 @@
 """Is every player a function of positions and a seed, in visits and in frames?"""
 
 import pickle
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -102,7 +103,7 @@ def test_what_an_action_cannot_hold_is_refused():
 class Soft:
     """Sees observations: aims by them, so that a wrong row shows."""
 
-    options = {"aim": "absolute", "observation": "flat"}
+    options: ClassVar = {"aim": "absolute", "observation": "flat"}
 
     def act(self, observations, masks, seeds):
         assert masks is None and len(observations) == len(seeds)
@@ -112,7 +113,7 @@ class Soft:
 class First:
     """Chooses the last available choice."""
 
-    options = {"action": "discrete"}
+    options: ClassVar = {"action": "discrete"}
 
     def act(self, observations, masks, seeds):
         return np.array([np.flatnonzero(row)[-1] for row in masks])
