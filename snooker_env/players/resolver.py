@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from .._check import refuse, refuse_what, truth
+from .choices import Random
 from .player import Player
 from .search import BUDGET, SearchPlayer
-from .simple import GhostBall, Random
+from .simple import GhostBall
 
 GROUP = "snooker_env.players"
 """Entry points of this group name players of other packages: NAME = MODULE:MAKER, called without arguments."""
@@ -94,7 +95,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
         return ProgramPlayer(text.removeprefix(PROGRAM))
     if (entry := _installed().get(text)) is not None:
         return _of_object(_made(text, entry.load))
-    if Path(text).exists():
+    if text and Path(text).exists():
         return _of_file(Path(text), trust)
     if OWN.fullmatch(text):
         module, _, maker = text.partition(":")
