@@ -24,11 +24,10 @@ with needs("agents.search"):
     from snooker_env.progress import Progress
     from snooker_env.tasks import Noise
 
-    from ..cluster.faults import ClusterError
-    from ..cluster.job import Job, digest_of
-    from ..cluster.options import add_ray, checked_ray, place
+    from ..cluster.job import ClusterError, ended, keys_of
+    from ..cluster.keep import Store, digest_of
+    from ..cluster.ray_cluster import add_ray, checked_ray, place
     from ..cluster.software import software
-    from ..cluster.store import store_of, unpacked
     from ..evaluation.entrants import Entrant
     from ..players.by_name import player_of
     from ..players.stroke_players import StrokePlayer
@@ -76,11 +75,11 @@ def checked(args):
 
 def read(url):
     """The data of a folder or URL: a dict of arrays as of ``agents.evaluation.searched.play``. Raises ValueError if they are incomplete."""
-    store = store_of(url, "out", only_read=True)
+    store = Store(url, "out", only_read=True)
     index = store.read(INDEX)
-    if index is None:
+    parts = [] if index is None else [store.part(key) for key in json.loads(index)["parts"]]
+    if not parts or None in parts:
         raise refuse("out", url, "must hold complete data: give the command that makes them again")
-    parts = [unpacked(store.read(f"parts/{key}.npz") or b"", f"{store}/parts/{key}.npz") for key in json.loads(index)["parts"]]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
@@ -91,40 +90,27 @@ def main(argv=None):
     args = p.parse_args(argv)
     try:
         agent, condition = checked(args)
-        store = store_of(args.out, "out")
+        about = {"command": "agents.search", "agent": digest_of(agent), "seed": args.seed, **condition, "budget": args.budget}
+        store = Store(args.out, "out")
+        store.join(about | software())
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
     each, why, code = TABLES * ROUNDS, "", 0
-    about = {"command": "agents.search", "agent": digest_of(agent), "seed": args.seed, **condition, "budget": args.budget} | software()
-    parts = parts_of(args.positions, args.seed, condition, args.budget)
+    parts, shared = parts_of(args.positions, args.seed, condition, args.budget), {"search": agent}
+    total = each * len(parts)
     try:
-        with place(args.ray) as where, Progress(f"search{where.says}", each * len(parts), "positions") as progress:
-
-            def tick(part, result):
+        with place(args.ray) as where, Progress(f"search{where.says}", total, "positions") as progress:
+            for _ in ended(parts, shared, where, store):
                 progress.at(progress.done + each)
-
-            try:
-                job = Job(parts, {"search": agent}, where, store, about, tick)
-            except ValueError as error:
-                p.error(str(error))
-            try:
-                job.finish()
-            except KeyboardInterrupt:
-                why, code = "interrupted", 130
-                job.keep_finished()
-            except ValueError as error:  # a part that was kept is damaged
-                why, code = str(error), 1
+    except KeyboardInterrupt:
+        why, code = "interrupted", 130
     except ClusterError as error:
         why, code = str(error), 1
     if code:
-        kept = len(store.names("parts")) * each
-        print(
-            f"agents.search: {why}; {kept:,} of {each * len(parts):,} positions are kept in {store}, the same command goes on",
-            file=sys.stderr,
-        )
+        kept = f"{each * len(store.names('parts')):,} of {total:,} positions are kept in {store}, the same command goes on"
+        print(f"agents.search: {why}; {kept}", file=sys.stderr)
         return code
-    keys = [job.key(part) for part in parts]
-    store.write(INDEX, (json.dumps({"positions": each * len(parts), "parts": keys}, indent=1) + "\n").encode())
-    print(f"{each * len(parts):,} positions: {store}")
+    store.write(INDEX, (json.dumps({"positions": total, "parts": keys_of(parts, shared)}, indent=1) + "\n").encode())
+    print(f"{total:,} positions: {store}")
     return 0

@@ -26,20 +26,7 @@ CHUNK = 100
 
 
 class TimedPlayer:
-    """A player whose decisions are timed.
-
-    Parameters
-    ----------
-    player : object
-        With ``options`` and ``act(tables, observations, going)``.
-
-    Attributes
-    ----------
-    decisions : int
-        How many it took.
-    seconds : float
-        What that took together [s].
-    """
+    """A player whose ``decisions`` are counted and timed: ``seconds`` together."""
 
     def __init__(self, player):
         self._player, self.options = player, player.options
@@ -59,18 +46,8 @@ class TimedPlayer:
 class Encounter:
     """Some matches of two players, and how far each table is. Side 0 is the agent, side 1 the opponent.
 
-    Attributes
-    ----------
-    pair : tuple of int
-        Indices of the players, for the rows.
-    exchanged : bool
-        Whether the second of the pair is the agent.
-    queue : list of (int, int)
-        Seed and opening side of the matches that no table has begun.
-    best_of : int
-        Frames of a match.
-    rows : list of list of int
-        One row for each frame that has ended, columns ``COLUMNS``.
+    ``pair``: indices of the players, ``exchanged`` if the second of them is the agent; ``queue``: seed and opening side of the matches that
+    no table has begun; ``rows``: one for each frame that has ended, columns ``COLUMNS``.
     """
 
     pair: tuple
@@ -169,29 +146,10 @@ class Encounter:
 
 
 def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
-    """Play two matches on each seed.
+    """Play two matches on each seed: a row for each frame, columns ``tournament_figures.COLUMNS``, by seeds, openers and frames.
 
-    Parameters
-    ----------
-    pair : (int, int)
-        Indices of the players, for the rows.
-    players : (object, object)
-        The players.
-    game : dict
-        Options of the frames: noise, physics and the like.
-    seeds : list of int
-        Seeds of the matches.
-    best_of : int
-        Frames of a match.
-    threads : int, optional
-        As in ``SnookerVectorEnv``. The rows do not depend on it.
-    tick : callable, optional
-        Called with the number of matches that have ended, whenever that changes.
-
-    Returns
-    -------
-    list of list of int
-        One row for each frame, columns ``tournament_figures.COLUMNS``, in the order of seeds, openers and frames.
+    ``players``: those of the ``pair`` of indices; ``game``: options of the frames; ``threads`` change nothing; ``tick`` is called with the
+    number of matches that have ended.
     """
     rows = []
     for exchanged in (False, True):

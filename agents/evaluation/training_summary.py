@@ -3,10 +3,8 @@
 from typing import Any
 
 import numpy as np
-import rich.box
-import rich.console
-import rich.table
 
+from snooker_env._tables import text_table
 from snooker_env.benchmark import play_visits, summary, tables_of
 
 from ..features.views import view_of
@@ -93,18 +91,14 @@ def _of_the_planner(figures):
 
 def show(figures):
     """Print them."""
-    title = f"Means of {figures['random']['visits']} held-out visits on the same tables (± standard error)"
-    table = rich.table.Table(title=title, box=rich.box.SIMPLE, pad_edge=False, collapse_padding=True)
-    table.add_column("agent", no_wrap=True)
-    for name in ("pots", "points", "fouls", "pot rate", "next pot", "best"):
-        table.add_column(name, justify="right", no_wrap=True)
+    rows = []
     for name, f in figures.items():
         cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")]
         cells += ["-" if f[key] is None else f"{100 * f[key]:.1f} %" for key in ("pot_rate", "next_pot_after_a_pot")]
-        cells.append(str(f["longest_break"]))
-        table.add_row(name, *cells)
-    console = rich.console.Console()
-    console.print(table)
-    console.print("ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots.")
+        rows.append([name, *cells, str(f["longest_break"])])
+    title = f"Means of {figures['random']['visits']} held-out visits on the same tables (± standard error)"
+    lines = [title, *text_table(["agent", "pots", "points", "fouls", "pot rate", "next pot", "best"], rows), ""]
+    lines.append("ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots.")
     if "planner" in figures:
-        console.print(f"planner: {BUDGET} simulated shots a decision, by what was learned; lookahead: the same by a rule of thumb.")
+        lines.append(f"planner: {BUDGET} simulated shots a decision, by what was learned; lookahead: the same by a rule of thumb.")
+    print("\n".join(["", *lines]))

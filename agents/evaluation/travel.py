@@ -10,7 +10,7 @@ from pathlib import Path
 
 from commands.files import write_atomic
 
-from ..cluster.faults import ClusterError
+from ..cluster.job import ClusterError
 from ..players.by_name import is_player, player_of
 from .entrants import Entrant
 

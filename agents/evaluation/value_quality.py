@@ -21,13 +21,14 @@ with needs("agents.value_quality"):
 
     import snooker_env
     from commands.files import writable, write_atomic
+    from commands.provenance import provenance
     from snooker_env.benchmark import play_visits, tables_of
     from snooker_env.checks import integer, refuse
     from snooker_env.planning import RULE_OF_THUMB, SURE, Positions, prospects_of
     from snooker_env.tasks import Noise
 
     from ..players.by_name import player_of
-    from .protocol import provenance
+    from .text_tables import TextTable, page, show
 
 GROUPS, LEAST = 10, 20
 """Number of groups of positions, fewer where a group would have fewer than ``LEAST``."""
@@ -73,21 +74,20 @@ def _standard_error(values, visit):
     return float(np.sqrt((sums[many > 0] ** 2).sum()) / len(values))
 
 
-def markdown(report):
+def parts(report):
     """The figures as tables."""
-    lines = ["# How good the value of " + report["agent"] + " is", "", "Made by", "", "```bash", report["command"], "```", ""]
-    lines += [f"with snooker_env {report['version']}, at commit {report['commit']} on {report['machine']}.", ""]
     for one in report["results"]:
-        value, rule = one["value"], one["rule"]
-        lines += [
-            f"**{one['layout']}, noise {one['noise']}: {one['visits']} visits, {one['positions']:,} positions**", "",
-            "| value | correlation with what followed | mean | really followed |", "|---|--:|--:|--:|",
-            f"| learned | {value['correlation']:.3f} | {value['mean']:.1f} | {one['followed']:.1f} |",
-            f"| rule of thumb | {rule['correlation']:.3f} | {rule['mean']:.1f} | {one['followed']:.1f} |", "",
-            "| group of positions, by the learned value | mean value | followed (± s. e.) |", "|---|--:|--:|",
-            *(f"| {k + 1} | {g['value']:.1f} | {g['followed']:.1f} ± {g['se']:.1f} |" for k, g in enumerate(one["groups"])), "",
-        ]  # fmt: skip
-    return "\n".join(lines)
+        where = f"{one['layout']}, noise {one['noise']}: {one['visits']} visits, {one['positions']:,} positions"
+        rows = [
+            [words, f"{one[name]['correlation']:.3f}", f"{one[name]['mean']:.1f}", f"{one['followed']:.1f}"]
+            for name, words in (("value", "learned"), ("rule", "rule of thumb"))
+        ]
+        yield TextTable(where, ["value", "correlation with what followed", "mean", "really followed"], rows, 1, 1)
+        rows = [
+            [str(k), f"{g['value']:.1f}", f"{g['followed']:.1f} ± {g['se']:.1f}"] for k, g in enumerate(one["groups"], 1)
+        ]
+        title = "Groups of positions, by the learned value"
+        yield TextTable(title, ["group", "mean value", "followed (± s. e.)"], rows, 1, 1)
 
 
 @command("agents.value_quality")
@@ -119,9 +119,9 @@ def main(argv=None):
     report = {"command": "python -m agents.value_quality " + shlex.join(argv), "agent": args.agent, **provenance()}
     report["results"] = [quality(player_of(args.agent), args.visits, layout, noise) for layout in args.layouts for noise in args.noise]
     if args.json:
-        write_atomic(args.json, (json.dumps(report, indent=1) + "\n").encode())
-    text = markdown(report)
+        write_atomic(args.json, json.dumps(report, indent=1) + "\n")
     if args.markdown:
-        write_atomic(args.markdown, text.encode())
-    print(text)
+        made = f"snooker_env {report['version']}, at commit {report['commit']} on {report['machine']}"
+        write_atomic(args.markdown, page(f"How good the value of {args.agent} is", report["command"], made, parts(report)))
+    show(parts(report))
     return 0

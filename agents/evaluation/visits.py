@@ -20,21 +20,22 @@ COLUMNS = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "to
 
 def parts_of(shared, k, condition, seeds, budget, rekey):
     """The parts of the run ``k`` of an agent, whose data are named ``shared``, under a condition."""
-    given = {"k": k, "condition": condition, "budget": budget, "rekey": rekey, "total": len(seeds)}
-    return [Part("visits", shared, given | {"first": n, "seeds": list(seeds[n : n + SIZE])}) for n in range(0, len(seeds), SIZE)]
+    same = {"k": k, "condition": condition, "budget": budget, "rekey": rekey, "total": len(seeds)}
+    return [Part(f"{__name__}:play", shared, same | {"first": n, "seeds": list(seeds[n : n + SIZE])}) for n in range(0, len(seeds), SIZE)]
 
 
-def play(shared, given, threads):
+def play(shared, args, threads):
     """The task: the strokes of some visits, a dict of arrays."""
-    condition, k, seeds, first = given["condition"], given["k"], given["seeds"], given["first"]
-    player = _of_all(arrived(shared, given["budget"], k), first, given["total"])
-    if given["rekey"]:
-        player = Rekeyed(player, k, first, given["total"])
-    options = {"layout": condition["layout"], "noise": condition["noise"], "fidelity": condition["fidelity"]}
-    physics = physics_option(condition["physics"])
-    strokes = play_visits(player, len(seeds), first_seed=seeds, physics=physics, threads=threads, **options)
-    found = {name: getattr(strokes, name) for name in COLUMNS}
-    return found | {"seconds": np.float64(strokes.decision_seconds), "simulated": np.int64(strokes.simulated)}
+    k, seeds, first = args["k"], args["seeds"], args["first"]
+    player = arrived(shared, args["budget"], k)
+    if hasattr(player, "tables_of"):  # it draws for all tables at once, and must know which of them it has
+        player.tables_of(first, args["total"])
+    if args["rekey"]:
+        player = Rekeyed(player, k, first, args["total"])
+    options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
+    strokes = play_visits(player, len(seeds), first_seed=seeds, threads=threads, **options)
+    columns = {name: getattr(strokes, name) for name in COLUMNS}
+    return columns | {"seconds": np.float64(strokes.decision_seconds), "simulated": np.int64(strokes.simulated)}
 
 
 def joined(results, total):
@@ -46,24 +47,10 @@ def joined(results, total):
     return Strokes(total, *(columns[name][order] for name in COLUMNS), decision_seconds=seconds, simulated=simulated)
 
 
-def _of_all(player, first, total):
-    """Tell a player that draws for all tables at once which of them it has. Others know nothing of tables beside their own."""
-    if hasattr(player, "tables_of"):
-        player.tables_of(first, total)
-    return player
-
-
 class Rekeyed:
     """A player whose tables get new random streams after each of its decisions: whoever saw its errors coming would lose by it.
 
-    Parameters
-    ----------
-    player : object
-        With ``options`` and ``act(tables, observations, going)``.
-    seed : int
-        Of the new streams.
-    first, total : int
-        Which of all tables these are.
+    ``seed``: of the new streams; ``first``, ``total``: which of all tables these are.
     """
 
     def __init__(self, player, seed, first, total):

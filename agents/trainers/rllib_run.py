@@ -39,7 +39,7 @@ with needs("agents.train_rllib"):
     from commands.lock import NAME as LOCK
     from commands.lock import Lock
     from snooker_env import Options
-    from snooker_env.benchmark import play_visits, summary, tables_of
+    from snooker_env.benchmark import play_visits, software, summary, tables_of
     from snooker_env.checks import integer, refuse
     from snooker_env.game import HELD_OUT
     from snooker_env.progress import Progress
@@ -213,7 +213,7 @@ def judge(out, settings, progress):
     }
     results = {
         "settings": asdict(settings), **asdict(progress), "shots_per_second": progress.shots / max(progress.seconds, 1e-9),
-        "versions": {"ray": ray.__version__, "torch": str(torch.__version__), "snooker-env": snooker_env.__version__},
+        "versions": {"ray": ray.__version__, **software()},
         "evaluation": figures,
     }  # fmt: skip
     write_atomic(out / RESULTS, (json.dumps(results, indent=1) + "\n").encode())

@@ -231,9 +231,9 @@ def _sound(files):
 def _table(args, given):
     results = _sound(args.files)
     if args.markdown:
-        from .._files import write_whole
+        from .._files import write_atomic
 
-        write_whole(args.markdown, lambda path: path.write_text(page(results, args.awaited), encoding="utf-8"))
+        write_atomic(args.markdown, page(results, args.awaited))
         print(args.markdown)
         return 0
     print("\n".join(lines(results)))

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from textwrap import wrap
 from typing import Any
 
+from .._tables import markdown_table, shown, text_table
 from .playing import COLUMNS
 from .tasks import TASKS, Task
 
@@ -11,44 +12,6 @@ WIDTH = 100
 CLASSES = {"model_free": "model-free", "planning": "planning", "undeclared": "undecl."}
 TRAINED = {"none": "0", "50k": "50 k", "1M": "1 M", "5M": "5 M", "open": "open", "unknown": "?"}
 """In the order of the table."""
-
-
-def text_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
-    """A table for a terminal: the first columns to the left, the others to the right.
-
-    Parameters
-    ----------
-    head : sequence of str
-    rows : sequence of sequences of str
-    left : int
-        How many columns stand to the left.
-
-    Returns
-    -------
-    list of str
-    """
-    widths = [max(len(row[c]) for row in [head, *rows]) for c in range(len(head))]
-    line = lambda row: "  ".join(  # noqa: E731
-        cell.ljust(width) if c < left else cell.rjust(width) for c, (cell, width) in enumerate(zip(row, widths, strict=True))
-    )
-    return [line(head).rstrip(), "-" * (sum(widths) + 2 * (len(widths) - 1)), *(line(row).rstrip() for row in rows)]
-
-
-def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
-    """The same in Markdown.
-
-    Parameters
-    ----------
-    head, rows, left
-        As of ``text_table``.
-
-    Returns
-    -------
-    list of str
-    """
-    marks = ["---" if c < left else "--:" for c in range(len(head))]
-    cells = lambda row: [cell.replace("\\", "\\\\").replace("|", "\\|") for cell in row]  # noqa: E731
-    return [f"| {' | '.join(cells(row))} |" for row in (head, marks, *rows)]
 
 
 def plain(text: str) -> str:
@@ -115,22 +78,6 @@ def _row(r, task):
 
 def _ms(value):
     return f"{value:.0f}" if value >= 100 else f"{value:.3g}" if value >= 0.01 else "<0.01"
-
-
-def shown(figure: dict[str, Any], scale: float = 1.0) -> str:
-    """A figure with its interval, as "65.8 [61.2, 70.1]".
-
-    Parameters
-    ----------
-    figure : dict
-    scale : float
-
-    Returns
-    -------
-    str
-    """
-    value = f"{scale * figure['value']:.1f}"
-    return value if figure["low"] is None else f"{value} [{scale * figure['low']:.1f}, {scale * figure['high']:.1f}]"
 
 
 def profile(results: Iterable[dict[str, Any]], task: Task) -> tuple[list[str], list[list[str]]]:

@@ -5,7 +5,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from .._files import write_whole
+from .._files import write_atomic
 from .agents import Agent
 from .figures import figures_of
 from .playing import COLUMNS, PlayedEpisodes
@@ -182,7 +182,7 @@ def write_result(path: str | Path, found: dict[str, Any]) -> None:
     rows = ",\n".join("  " + json.dumps(row, separators=(",", ":")) for row in found["rows"])
     text = json.dumps(found | {"rows": "@rows@"}, indent=1, allow_nan=False)
     text = text.replace('"@rows@"', f"[\n{rows}\n ]" if rows else "[]")
-    write_whole(path, lambda file: file.write_text(text + "\n", encoding="utf-8"))
+    write_atomic(path, text + "\n")
 
 
 def read_result(path: str | Path) -> Any:

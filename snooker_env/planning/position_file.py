@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .._check import choice, refuse, refuse_what
-from .._files import write_whole
+from .._files import write_atomic
 from ..physics.table import TableLike
 from .position import Position
 
@@ -37,7 +37,7 @@ def _places(value: Any) -> list[Any]:
 def write(position: Position, path: str | Path) -> None:
     """Write the file: after a crash it holds either the old position or the new one, whole."""
     text = json.dumps(position.to_dict()) + "\n"
-    write_whole(path, lambda file: file.write_text(text, encoding="utf-8"))
+    write_atomic(path, text)
 
 
 def read(path: str | Path, table: TableLike) -> Position:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import choice, refuse, refuse_what
-from .._files import write_whole
+from .._files import write_atomic
 from ..physics.table import Table, TableLike
 from ..render.scene import scene_data
 from ..simulation import Shot
@@ -241,7 +241,7 @@ class Replay:
         if film:
             raise refuse("path", str(path), f"must end in .mp4 or .gif with {', '.join(film)}")
         text = self.html() if suffix == ".html" else json.dumps(self.to_dict(), allow_nan=False)
-        write_whole(target, lambda temporary: temporary.write_text(text, "utf-8"))
+        write_atomic(target, text)
         return target
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import number, refuse
-from .._files import write_whole
+from .._files import write_atomic
 from .._install import missing
 from ..physics.table import Table
 from ..render.scene import Film, Scene, ScoreBar, scene
@@ -78,7 +78,7 @@ def write_film(
         raise refuse("size", size, "must be (width, height), both even, as video encoders require")
     width, height = sides
     pictures = replay.frames(fps=fps, speed=speed, size=(width, height))
-    write_whole(target, lambda path: _encode(pictures, path, fps, (width, height)))
+    write_atomic(target, lambda path: _encode(pictures, path, fps, (width, height)))
 
 
 def _rate(field: str, value: Any) -> float:

@@ -19,7 +19,7 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 NAMES = [path.relative_to(PACKAGE).as_posix() for path in FILES]
 
 # What a part may import of the package, besides itself; a dotted name means only that module of a part.
-BASE = {"_jit", "_lanes", "_check", "_files", "_install", "_shots", "_types", "geometry"}
+BASE = {"_jit", "_lanes", "_check", "_files", "_install", "_shots", "_tables", "_types", "geometry"}
 ALLOWED = {
     "_cache": set(),
     "_notices": {"_cache"},
@@ -31,6 +31,7 @@ ALLOWED = {
     "_autoregister": set(),
     "_types": set(),
     "_files": set(),
+    "_tables": set(),
     "_shots": set(),
     "_entry_points": set(),
     "_check": {"_types"},
