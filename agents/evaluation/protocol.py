@@ -4,14 +4,14 @@
     python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against ghost_ball "pots only" \\
         --json agents/results/main.json --markdown agents/results/main.md --picture
     python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/reference-*" --fidelity fast reference --noise professional
-    python -m agents.evaluate --agent search --visits 50 --layouts held_out --noise professional
+    python -m agents.evaluate --agent search_2000 --visits 50 --layouts held_out --noise professional
 
 Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that are never used in
 training, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every agent plays under every value of --noise,
 --fidelity and --physics, so agents that were trained under A and B make a table of A against B. (The aim of a discrete choice is solved
 with the physics that is played.) Results for the leaderboard are made by ``python -m snooker_env.benchmark`` instead.
 
-An agent is a ``NAME`` (a player of agents/players, a model of agents/pretrained), a model's .zip or run folder, LABEL=PATH,PATH,... with
+An agent is a ``NAME`` (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH,PATH,... with
 one PATH for each training seed (a PATH may be a pattern), or MODULE:CLASS for a player of your own, whose module is imported. Models of
 train.py and agents/pretrained are read as plain data. Any other model of Stable-Baselines3 or sb3-contrib that was trained on a visit
 with the environment's own observation holds pickled Python code, which runs when it is loaded: it needs --trust and, if its actions are
@@ -47,8 +47,6 @@ with needs("agents.evaluate"):
     from ..cluster.keep import Keep, digest_of
     from ..cluster.ray_cluster import add_ray, checked_ray, place
     from ..cluster.software import software
-    from ..learning.models import pretrained
-    from ..players.by_name import NAMES, player_of
     from .entrants import Entrant, options_of
     from .metrics import EntrantMetrics
     from .report import AXES, main_condition, markdown, parts
@@ -63,17 +61,17 @@ REFERENCE = "ghost_ball"
 PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
 
 
-def parts_of_agent(agent, condition, seeds, budget, rekey):
+def parts_of_agent(agent, condition, seeds, rekey):
     """The parts of an agent under a condition, a list for each of its runs."""
-    return [parts_of(_name(agent, k), k, condition, seeds, budget, rekey) for k in range(len(agent.runs))]
+    return [parts_of(_name(agent, k), k, condition, seeds, rekey) for k in range(len(agent.runs))]
 
 
-def play_agent(agent, condition, seeds, budget, resamples, rekey=False, results=None):
+def play_agent(agent, condition, seeds, resamples, rekey=False, results=None):
     """``EntrantMetrics`` by every run of the agent on the tables with these seeds.
 
     ``results``: those of its parts, the next of an iterator; by default they are played here.
     """
-    each = parts_of_agent(agent, condition, seeds, budget, rekey)
+    each = parts_of_agent(agent, condition, seeds, rekey)
     if results is None:
         results = in_order(ended([part for run in each for part in run], _shared([agent]), Here()))
     runs = [joined(list(islice(results, len(run))), len(seeds)) for run in each]
@@ -103,14 +101,14 @@ def all_parts(report, agents, seeds):
         part
         for condition in _conditions(report, seeds)
         for agent in agents
-        for run in parts_of_agent(agent, condition, seeds[condition["layout"]], p["search_budget"], p["rekey"])
+        for run in parts_of_agent(agent, condition, seeds[condition["layout"]], p["rekey"])
         for part in run
     ]
 
 
 def about(report, shared):
     """What is played, for a ``Keep``: two evaluations with the same share their parts."""
-    played = {name: report["protocol"][name] for name in ("layouts", "first_seed", *AXES, "search_budget", "rekey")}
+    played = {name: report["protocol"][name] for name in ("layouts", "first_seed", *AXES, "rekey")}
     return {"command": "agents.evaluate", **played, "agents": {name: digest_of(one) for name, one in shared.items()}} | software()
 
 
@@ -123,7 +121,7 @@ def parser():
         required=True,
         metavar="AGENT",
         help="NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... or MODULE:CLASS; NAME: "
-        + ", ".join((*NAMES, *pretrained())),
+        + ", ".join(snooker_env.players()),
     )
     p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
     p.add_argument(
@@ -136,7 +134,6 @@ def parser():
     p.add_argument("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
     p.add_argument("--fidelity", nargs="+", default=["standard"], help="fast, standard, reference or euler:N [standard]")
     p.add_argument("--physics", nargs="+", default=["paper"], help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
-    p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
     p.add_argument(
         "--rekey", action="store_true", help="new execution errors after every decision: a control that no agent has seen them beforehand"
     )
@@ -181,7 +178,6 @@ def checked(args):
         parse_fidelity(fidelity)
     for physics in args.physics:
         physics_option(physics)
-    player_of("search", budget=args.budget)  # checks the budget
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
@@ -204,7 +200,7 @@ def evaluate(report, agents, seeds, shown, results):
     for condition in _conditions(report, seeds):
         layout, metrics = condition["layout"], {}
         for agent in agents:
-            metrics[agent.label] = play_agent(agent, condition, seeds[layout], p["search_budget"], p["resamples"], p["rekey"], results)
+            metrics[agent.label] = play_agent(agent, condition, seeds[layout], p["resamples"], p["rekey"], results)
         others, rows = [metrics[label] for label in p["against"]], []
         for one in metrics.values():
             row = {"agent": one.agent.label, **condition, "visits": len(seeds[layout]), "runs": len(one.agent.runs)}
@@ -235,12 +231,12 @@ def main(argv=None):
         p.error(str(error))
     snooker_env.warmup()
     for agent in agents:  # compiled before the clock runs
-        play_visits(agent.player(0, args.budget), 2)
+        play_visits(agent.player(0), 2)
     report = {
         "command": "python -m agents.evaluate " + shlex.join(argv), **provenance(),
         "protocol": {
             "layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED, "against": references,
-            **{axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}, "resamples": args.resamples, "search_budget": args.budget,
+            **{axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}, "resamples": args.resamples,
             "rekey": args.rekey,
         },
         "agents": [

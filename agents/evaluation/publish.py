@@ -16,10 +16,10 @@ from commands.lifecycle import command, needs
 with needs("agents.publish"):
     from commands.files import write_atomic
     from snooker_env.checks import refuse
+    from snooker_env.players.resolver import is_name
 
     from ..learning.model_files import packed
-    from ..learning.models import PRETRAINED, load_trained
-    from ..players.by_name import NAMES
+    from ..learning.models import PRETRAINED, load_trained, pretrained
 
 AS_IT_STANDS = {"layout": "", "noise": "", "fidelity": "", "physics": "", "start": "", "set": []}
 """What these settings are in a run of its recipe as it stands. A fidelity that was given is also that of its final evaluation."""
@@ -58,8 +58,8 @@ def name_of(found, name):
     name = agent if name is None else name
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", name):
         raise refuse("name", name, "must be letters, digits and _ . -")
-    if name in NAMES:
-        raise refuse("name", name, f"must not be that of a player: {', '.join(NAMES)}")
+    if is_name(name) and name not in pretrained():
+        raise refuse("name", name, "must not be that of another player")
     return name
 
 

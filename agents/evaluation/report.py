@@ -10,6 +10,7 @@ which writes ``agents/results/*.md``; --show prints the tables instead.
 import argparse
 import json
 import os
+import re
 import shlex
 from functools import partial
 from pathlib import Path
@@ -22,7 +23,6 @@ with needs("agents.report"):
     from snooker_env.benchmark import CENTURY, MAXIMUM, most_points
     from snooker_env.checks import refuse
 
-    from ..players.stroke_players import by_noise
     from . import tournament_report
     from .metrics import bounded
     from .text_tables import TextTable, page, show
@@ -108,7 +108,8 @@ def agents_tables(report):
     for agent in report["agents"]:
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
-            trained.append([label, "pre-trained, by the noise played" if by_noise(runs[0]["from"]) else "not trained", "", "", "", ""])
+            by_noise = re.match(r"planner(_|$)", runs[0]["from"]) and "@" not in runs[0]["from"]
+            trained.append([label, "pre-trained, by the noise played" if by_noise else "not trained", "", "", "", ""])
             continue
         words = [", ".join(sorted({str(run[key]) for run in runs})) for key in ("recipe", "noise", "fidelity", "physics")]
         rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]

@@ -1,7 +1,7 @@
 """How are positions searched to learn from? The command ``python -m agents.search``.
 
     python -m agents.search --positions 10000 --out runs/searched
-    python -m agents.search --agent search --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
+    python -m agents.search --agent search_2000 --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
 
 A search plays visits, and what it thinks of each position is kept: the strokes that met most noise samples, best first, with their scores.
 Data are written in parts as they are played; after an interruption the same command goes on, and with other options it is refused. One
@@ -21,6 +21,7 @@ with needs("agents.search"):
     from commands.physics_option import physics_option
     from snooker_env.checks import integer, parse_fidelity, refuse
     from snooker_env.game import plan_of
+    from snooker_env.players.search import SearchPlayer
     from snooker_env.progress import Progress
     from snooker_env.tasks import Noise
 
@@ -29,8 +30,6 @@ with needs("agents.search"):
     from ..cluster.ray_cluster import add_ray, checked_ray, place
     from ..cluster.software import software
     from ..evaluation.entrants import Entrant
-    from ..players.by_name import player_of
-    from ..players.stroke_players import StrokePlayer
     from .searched import ROUNDS, TABLES, parts_of
     from .travel import sent
 
@@ -41,14 +40,13 @@ INDEX = "index.json"
 def parser():
     """The command line."""
     p = argparse.ArgumentParser("python -m agents.search", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--agent", default="search", help="who searches: search, lookahead_500, planner@runs/ppo_value-0 and the like [search]")
+    p.add_argument("--agent", default="search_2000", help="who searches: search_2000, planner_500, planner@MODEL [search_2000]")
     p.add_argument("--positions", type=int, required=True, metavar="N", help=f"rounded up to whole parts of {TABLES * ROUNDS}")
     p.add_argument("--out", required=True, metavar="URL", help="a folder or fsspec URL for these data alone")
     p.add_argument("--layout", default="opened", help="layout of the tables [opened]")
     p.add_argument("--noise", default="professional", help="level of execution noise [professional]")
     p.add_argument("--fidelity", default="standard", help="fast, standard, reference or euler:N [standard]")
     p.add_argument("--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
-    p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
     p.add_argument("--seed", type=int, default=0, help="seed of tables and search [0]")
     add_ray(p)
     return p
@@ -66,9 +64,9 @@ def checked(args):
     checked_ray(args.ray)
     agent = Entrant.of(args.agent)
     runs = list(agent.runs)
-    if len(runs) > 1 or not isinstance(player_of(runs[0], budget=args.budget), StrokePlayer):
+    if len(runs) > 1 or not isinstance(agent.player(0), SearchPlayer):
         raise refuse(
-            "agent", args.agent, "must be one player that searches: search, lookahead, planner, with _SHOTS and @MODEL if you wish"
+            "agent", args.agent, "must be one player that searches: search, planner, with _SHOTS and @MODEL if you wish"
         )
     return sent(agent, 0), {name: getattr(args, name) for name in ("layout", "noise", "fidelity", "physics")}
 
@@ -90,14 +88,14 @@ def main(argv=None):
     args = p.parse_args(argv)
     try:
         agent, condition = checked(args)
-        about = {"command": "agents.search", "agent": digest_of(agent), "seed": args.seed, **condition, "budget": args.budget}
+        about = {"command": "agents.search", "agent": digest_of(agent), "seed": args.seed, **condition}
         store = Store(args.out, "out")
         store.join(about | software())
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
     each, why, code = TABLES * ROUNDS, "", 0
-    parts, shared = parts_of(args.positions, args.seed, condition, args.budget), {"search": agent}
+    parts, shared = parts_of(args.positions, args.seed, condition), {"search": agent}
     total = each * len(parts)
     try:
         with place(args.ray) as where, Progress(f"search{where.says}", total, "positions") as progress:

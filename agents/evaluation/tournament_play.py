@@ -9,13 +9,14 @@ ends when one player has won more than N / 2, or after N frames. What a table dr
 A visit is all strokes of a player in succession: also over the lot at a re-spotted black.
 """
 
+import copy
 import time
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from snooker_env import Options, SnookerVectorEnv
-from snooker_env.benchmark import AtFrames
+from snooker_env.players import FRAMES, decided, decision_seeds
 
 from .tournament_figures import COUNTED
 
@@ -26,20 +27,35 @@ CHUNK = 100
 
 
 class TimedPlayer:
-    """A player whose ``decisions`` are counted and timed: ``seconds`` together."""
+    """A player whose ``decisions`` are counted and timed, ``seconds`` together; ``seed``: of what it draws."""
 
-    def __init__(self, player):
-        self._player, self.options = player, player.options
-        self.frames = getattr(player, "frames", False) is True
-        self.decisions, self.seconds = 0, 0.0
+    def __init__(self, player, seed=0):
+        self._player, self.seed = player, seed
+        self.count = {"decisions": 0, "seconds": 0.0}
 
-    def act(self, tables, observations, going):
-        """The player's actions."""
+    def at(self, rules):
+        """Bound; the count is shared."""
+        bound = copy.copy(self)
+        bound._player = self._player.at(rules)
+        return bound
+
+    def play(self, positions, seeds):
+        """The player's own strokes."""
         began = time.perf_counter()
-        actions = self._player.act(tables, observations, going)
-        self.seconds += time.perf_counter() - began
-        self.decisions += int(np.sum(going))
-        return actions
+        strokes = self._player.play(positions, np.asarray(seeds) ^ (self.seed & 0xFFFFFFFF))
+        self.count["seconds"] += time.perf_counter() - began
+        self.count["decisions"] += len(strokes)
+        return strokes
+
+    @property
+    def decisions(self):
+        """Decisions so far."""
+        return self.count["decisions"]
+
+    @property
+    def seconds(self):
+        """Their time [s]."""
+        return self.count["seconds"]
 
 
 @dataclass
@@ -167,27 +183,26 @@ def _after(tick, before):
 
 def _play(meeting, agent, opponent, game, threads, tick):
     """Play all matches of an encounter."""
-    options = Options(task="frame", **agent.options, **game, opponent=opponent)
-    agent = agent if agent.frames else AtFrames(agent)
+    options = Options(task="frame", **FRAMES, **game, opponent=opponent)
+    agent, decision = agent.at(options), 0
     matches, ended = len(meeting.queue) + meeting.n, 0
     tables = _tables(meeting.n, options, threads)
-    observations, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
+    _, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
     meeting.begun(meeting.going, info)
     moved = np.zeros(meeting.n, bool)  # since the reset: only then is a state sure to hold a stroke to play
     over = info["winner"] >= 0  # won by the opponent in his first visit: the next step plays nothing
     while (going := meeting.going).any():
         to_play = going & ~over
-        actions = (
-            agent.act(tables, observations, to_play) if to_play.any() else np.zeros(tables.action_space.shape, tables.action_space.dtype)
-        )
-        observations, _, terminated, truncated, info = tables.step(actions)
+        actions = decided(agent, tables, to_play, decision_seeds(0, meeting.unit[:, 0], decision))
+        decision += 1
+        _, _, terminated, truncated, info = tables.step(actions.astype(np.float32))
         meeting.stepped(going, info)
         done = terminated | truncated
         moved, over = ~done, np.zeros(meeting.n, bool)
         if done.any():
             before = meeting.unit.copy()
             meeting.ended(going & done, info)
-            observations, over = _renewed(tables, meeting, done, before)
+            over = _renewed(tables, meeting, done, before)
         now = matches - len(meeting.queue) - int(meeting.going.sum())
         if tick is not None and now != ended:
             tick(now)
@@ -197,7 +212,7 @@ def _play(meeting, agent, opponent, game, threads, tick):
             tables.close()
             meeting.keep(left)
             tables = _tables(meeting.n, options, threads)
-            observations, info = tables.reset(options={"states": states})
+            _, info = tables.reset(options={"states": states})
             over = np.zeros(meeting.n, bool)
     tables.close()
 
@@ -207,12 +222,12 @@ def _tables(n, options, threads):
 
 
 def _renewed(tables, meeting, done, before):
-    """Begin the next frames where frames have ended; the observations of all tables, and where the next frame is over at once.
+    """Begin the next frames where frames have ended. Returns where the next frame is over at once.
 
     A new match is dealt from its seed; in the next frame of a match the table's random numbers go on. Tables without a match: dealt, too.
     """
     anew = (meeting.unit != before).any(1) & meeting.going
     seeds = [int(seed) if new else None for seed, new in zip(meeting.unit[:, 0], anew, strict=True)]
-    seen, info = tables.reset(seed=seeds, options={"reset_mask": done, "breaker": meeting.breakers})
+    _, info = tables.reset(seed=seeds, options={"reset_mask": done, "breaker": meeting.breakers})
     meeting.begun(done & meeting.going, info)
-    return seen, done & (info["winner"] >= 0)
+    return done & (info["winner"] >= 0)

@@ -25,36 +25,41 @@ with needs("agents.value_quality"):
     from snooker_env.benchmark import play_visits, tables_of
     from snooker_env.checks import integer, refuse
     from snooker_env.planning import RULE_OF_THUMB, SURE, Positions, prospects_of
+    from snooker_env.players import BoundPlayer
     from snooker_env.tasks import Noise
 
-    from ..players.by_name import player_of
     from .text_tables import TextTable, page, show
 
 GROUPS, LEAST = 10, 20
 """Number of groups of positions, fewer where a group would have fewer than ``LEAST``."""
 
 
-class Recording:
+class Recording(BoundPlayer):
     """A planner that notes the values of the positions that it plays from."""
 
     def __init__(self, planner):
-        self._planner, self.options, self.rows = planner, planner.options, []
+        self._planner, self.name, self.rows = planner, planner.name, []
 
-    def act(self, tables, observations, going):
-        """The planner's own actions."""
-        actions = self._planner.act(tables, observations, going)
-        at, search = Positions.of(tables)[going], self._planner.search
+    def at(self, rules):
+        """Bound, with the same notes."""
+        bound = super().at(rules)
+        bound._planner = self._planner.at(rules)
+        return bound
+
+    def play(self, positions, seeds):
+        """The planner's own strokes."""
+        at, search = Positions.of(positions), self._planner.search
         rule = prospects_of(at, search.spread, SURE if search.noise.silent else RULE_OF_THUMB)[0]
-        self.rows.append(np.column_stack([np.flatnonzero(going), at.points, search.value(at), rule]))
-        return actions
+        self.rows.append(np.column_stack([at.points, search.value(at), rule]))
+        return self._planner.play(at, seeds)
 
 
 def quality(player, visits, layout, noise):
     """Figures of the value of ``player``, a planner, over so many visits."""
     recording = Recording(player)
     strokes = play_visits(recording, visits, layout=layout, noise=noise, first_seed=tables_of(layout, visits))
-    visit, so_far, value, rule = np.concatenate(recording.rows).T
-    visit = visit.astype(np.int64)
+    so_far, value, rule = np.concatenate(recording.rows).T
+    visit = strokes.visit  # in the order of play, as it was asked
     followed = strokes.a_visit(strokes.points)[visit] - so_far
     figures = {"layout": layout, "noise": noise, "visits": visits, "positions": len(visit), "followed": float(followed.mean())}
     for name, of in (("value", value), ("rule", rule)):
@@ -110,14 +115,15 @@ def main(argv=None):
             Noise.of(level)
         if not args.agent.startswith("planner"):
             raise refuse("agent", args.agent, "must be a planner: planner, planner@MODEL")
-        player_of(args.agent)
+        snooker_env.player(args.agent)
         for name in ("json", "markdown"):
             writable(name, getattr(args, name))
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
     report = {"command": "python -m agents.value_quality " + shlex.join(argv), "agent": args.agent, **provenance()}
-    report["results"] = [quality(player_of(args.agent), args.visits, layout, noise) for layout in args.layouts for noise in args.noise]
+    conditions = [(layout, noise) for layout in args.layouts for noise in args.noise]
+    report["results"] = [quality(snooker_env.player(args.agent), args.visits, *each) for each in conditions]
     if args.json:
         write_atomic(args.json, json.dumps(report, indent=1) + "\n")
     if args.markdown:

@@ -48,8 +48,7 @@ with needs("agents.train_rllib"):
     from ..learning.callback import Stop
     from ..learning.models import POLICY
     from ..learning.policy_files import read_policy, write_policy
-    from ..players.built_in import GhostBall, Random
-    from ..players.layers_player import LayersPlayer
+    from ..players.trained import player_of_model
     from .rllib_config import ACTIVATION, BATCH, GAMMA, PATIENCE, algorithm_of, layers_of, restore, started
 
 STATE, UNTRAINED, RESULTS = "state.json", "untrained.npz", "results.json"
@@ -205,8 +204,8 @@ def _train(out, settings, progress, algorithm, stop, said):
 def judge(out, settings, progress):
     """Held-out visits of the policy, of itself before the training, and of simple players, in ``results.json`` and as a table."""
     files = {"trained": POLICY, "untrained": UNTRAINED}
-    players = {name: LayersPlayer(read_policy(out / file, "out")) for name, file in files.items()}
-    players |= {"ghost_ball": GhostBall(), "random": Random()}
+    players = {name: player_of_model(read_policy(out / file, "out")) for name, file in files.items()}
+    players |= {name: snooker_env.player(name) for name in ("ghost_ball", "random")}
     seeds = tables_of("held_out", settings.eval_visits)
     figures = {
         name: summary(play_visits(player, settings.eval_visits, first_seed=seeds, noise=settings.noise)) for name, player in players.items()

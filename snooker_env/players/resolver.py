@@ -108,9 +108,11 @@ def player(name: Any, *, trust: bool = False) -> Player:
     )
 
 
-def is_player(name: str) -> bool:
-    """Whether that is the name of a player, built in or installed."""
-    return _SEARCHING.fullmatch(name) is not None or name in players()
+def is_name(text: str) -> bool:
+    """Whether that is the name of a player, MODULE:CLASS or a program, and not a file."""
+    if _SEARCHING.fullmatch(text) is not None or text.startswith(PROGRAM) or text in players():
+        return True
+    return OWN.fullmatch(text) is not None and not Path(text).exists()
 
 
 def _built_in(name: str) -> Player | None:
