@@ -5,19 +5,15 @@ an action for each table of a ``SnookerVectorEnv`` with flat observations. It ma
 returns a pair (actions, scores) for each table: the actions that it considered, best first, and its own scores of them.
 """
 
-from math import atan2
 from typing import Any
 
 import numpy as np
 
 from .._check import refuse_what
 from .._types import Bools
-from ..game.balls import balls_on, mask_of_present
-from ..physics.cue import strike
-from ..planning import Positions, as_actions
-from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS, Choices
+from ..planning import Planner, Positions
 from .advisor import Advisor, Ranked
-from .practice import PHYSICAL_OPTIONS, Practice, starts
+from .practice import PHYSICAL_OPTIONS, Practice, starts, stroke_of_row
 from .strokes import CueStroke
 
 
@@ -72,32 +68,7 @@ class Borrowed(Advisor):
 
     def _stroke(self, tables: Any, start: Positions, in_hand: bool, action: Any) -> CueStroke:
         """The stroke that an action of the player means in the position ``start``."""
-        rules = tables.options.rules
-        place = tuple(start.positions[0, 0].tolist()) if in_hand else None
-        if isinstance(rules.actions, Choices):
-            choice = int(np.asarray(action).item())
-            row = as_actions(start, [0], [choice], physics=rules.physics, fidelity=tables.options.fidelity)[0].astype(np.float64)
-            stroke = choice % STROKES
-            speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
-            side, top = SIDES[stroke // len(TOPS) % len(SIDES)], TOPS[stroke % len(TOPS)]
-            return CueStroke(speed=speed, side=side, top=top, aim=float(np.pi * row[3]), place=place)
-        actions = rules.actions
-        a = np.asarray(actions.check(action))
-        if in_hand and actions.placement:
-            start, place = self._put(actions, a, start)
-        on = balls_on(int(start.ball_on[0]), mask_of_present(start.on_table[0]))
-        speed, side, top, cue, elevation = actions.shot(a, start.positions[0], start.on_table[0], on)
-        (vx, vy, _), _ = strike(speed, cue, side, top, elevation, rules.physics)  # with squirt: the direction in which the ball leaves
-        return CueStroke(speed=speed, side=side, top=top, aim=atan2(vy, vx), elevation=elevation, place=place)
-
-    @staticmethod
-    def _put(actions: Any, a: Any, start: Positions) -> tuple[Positions, tuple[float, float]]:
-        """The position with the cue ball where the action puts it, and that place."""
-        from ..geometry import BAULK_Y, D_RADIUS
-        from .practice import placed
-
-        x, back = a[5 if actions.elevation else 4], 0.5 * (a[6 if actions.elevation else 5] + 1.0)
-        wish = (D_RADIUS * x, BAULK_Y - D_RADIUS * np.sqrt(max(0.0, 1.0 - x * x)) * back)
-        there = placed(start, [wish])
-        px, py = there.positions[0, 0].tolist()
-        return there, (px, py)
+        planner = Planner(tables.options, noise="none", threads=1)
+        chosen = [int(np.asarray(action).item())] if planner.discrete else [action]
+        strokes, there = planner.strokes_of(start, [0], chosen)
+        return stroke_of_row(strokes[0], there, in_hand)

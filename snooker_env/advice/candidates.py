@@ -45,7 +45,7 @@ def at_pots(practice: Practice, at: Positions) -> tuple[NDArray[np.int64], NDArr
         masks &= np.tile(FEW, masks.shape[1] // STROKES)
     rows, choices = np.nonzero(masks)
     _, chances = practice.prospects(at)
-    return rows, rows_of_choices(practice, at, rows, choices), chances[rows, choices // STROKES]
+    return rows, practice.chosen(at, rows, choices), chances[rows, choices // STROKES]
 
 
 def at_balls(at: Positions, row: int) -> NDArray[np.float64]:

@@ -17,7 +17,7 @@ from ..planning.positions import bare
 from ..planning.prospects import RULE_OF_THUMB, SURE
 from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options
-from .strokes import CueStroke, actions_of_strokes
+from .strokes import CueStroke
 
 PHYSICAL_OPTIONS = ("physics", "table", "fidelity")
 """The options that say where strokes are played. All others belong to a game."""
@@ -32,6 +32,8 @@ class Practice:
         self.options = options
         self.noisy: Planner = Planner(options)
         self.exact: Planner = Planner(options, noise="none")
+        physical: Any = {name: getattr(options, name) for name in PHYSICAL_OPTIONS}
+        self._choices = Planner(Options(action="discrete", **physical))
         self.spread: float = spread_of(self.noise, options.rules.physics)
         self.sure: bool = self.noise.silent
         self._thumb = SURE if self.sure else RULE_OF_THUMB
@@ -44,7 +46,11 @@ class Practice:
     def play(self, at: Positions, rows: Any, strokes: NDArray[np.float64], keys: NDArray[np.uint64] | None = None) -> Stops:
         """Play strokes (n, 5) on copies of ``at[rows]``: with execution errors if ``keys`` are given, else as intended."""
         planner = self.exact if keys is None else self.noisy
-        return planner.stops(at, rows, actions_of_strokes(strokes), None if self.sure else keys)
+        return planner.stops(at, rows, strokes=strokes, keys=None if self.sure else keys)
+
+    def chosen(self, at: Positions, rows: Any, choices: NDArray[np.int64]) -> NDArray[np.float64]:
+        """The strokes (n, 5) that choices of ``action="discrete"`` mean on ``at[rows]``."""
+        return self._choices.strokes_of(at, rows, choices)[0]
 
     def prospects(self, at: Positions) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Values of positions for this player by the rule of thumb, and the chances of their four widest pots."""
@@ -77,7 +83,7 @@ def _practice(options: Options) -> Practice:
 
 def one_position(source: Any) -> Positions:
     """The one position in a source of positions, with the points of its visit set to 0; ValueError if there are several."""
-    at = Positions.of(source)
+    at = Positions.of(source).as_visits()
     if len(at) != 1:
         raise refuse_what("position", f"{len(at)} positions", "must be one position")
     if at.over[0]:

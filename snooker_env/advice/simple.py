@@ -6,7 +6,6 @@ from ..planning import Positions, action_masks, pots
 from ..tasks.discrete_actions import SIDES, SPEEDS, TOPS, choice_of
 from . import seeds
 from .advisor import Advisor, Ranked
-from .candidates import rows_of_choices
 from .practice import Practice, starts, stroke_of_row
 
 USUAL = 2.3
@@ -27,7 +26,7 @@ class GhostBallAdvisor(Advisor):
         found = pots(there)
         many = max(1, int((found.ball[0] >= 0).sum()))
         choices = np.array([choice_of(pot, SPEEDS.index(USUAL), SIDES.index(0.0), TOPS.index(0.0)) for pot in range(many)])
-        strokes = rows_of_choices(practice, there, np.zeros(many, np.int64), choices)
+        strokes = practice.chosen(there, np.zeros(many, np.int64), choices)
         in_hand, wide = bool(at.in_hand[0]), (1e3 * found.tolerance[0]).tolist()
         return [(stroke_of_row(row, there, in_hand), wide[k]) for k, row in enumerate(strokes)]
 
@@ -43,5 +42,5 @@ class RandomAdvisor(Advisor):
         there = starts(practice, at, 100)
         rows, choices = np.nonzero(action_masks(there))
         some = rng.permutation(len(rows))[: max(1, n)]
-        strokes, in_hand = rows_of_choices(practice, there, rows[some], choices[some]), bool(at.in_hand[0])
+        strokes, in_hand = practice.chosen(there, rows[some], choices[some]), bool(at.in_hand[0])
         return [(stroke_of_row(row, there[k : k + 1], in_hand), None) for k, row in zip(rows[some].tolist(), strokes, strict=True)]

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from ..planning import Positions, action_masks
 from ..tasks.discrete_actions import SIDES, STROKES, choice_of
 from . import seeds
-from .candidates import rows_of_choices
 from .practice import Practice
 
 PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(2) for s in (1, 3, 5) for t in (1, 3)])
@@ -50,7 +49,7 @@ def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
     rows, places = np.nonzero(action_masks(at)[:, PICKS])
     choices = PICKS[places]
     strokes, worth = np.zeros((n, len(PICKS), 5)), np.full((n, len(PICKS)), -1.0)
-    strokes[rows, places] = rows_of_choices(practice, at, rows, choices)
+    strokes[rows, places] = practice.chosen(at, rows, choices)
     _, chances = practice.prospects(at)
     worth[rows, places] = chances[rows, choices // STROKES] * _led_to(practice, at, rows, strokes[rows, places], None)
     best = np.argsort(-worth, axis=1, kind="stable")[:, : 1 if practice.sure else BEST]  # each position has at least six

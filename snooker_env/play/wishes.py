@@ -3,19 +3,22 @@
 Nothing is corrected: a tip beyond the miscue limit or a speed out of range is refused, and the message says what is allowed.
 """
 
-from math import sqrt
 from typing import Any
 
 import numpy as np
 
 from .._check import choice, number, refuse
 from .._types import Floats
-from ..advice.strokes import CueStroke, actions_of_strokes
+from ..advice.strokes import CueStroke
 from ..game.balls import COLOUR_NAMES, NAMES, colour
-from ..geometry import BAULK_Y, D_RADIUS, POCKETS
+from ..geometry import POCKETS
+from ..physics.parameters import Physics
+from ..planning.strokes import encoded
+from ..tasks.box_actions import Actions
 
 DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0}
 """Last component of an action for each choice after a foul."""
+_ACTIONS = Actions("absolute", True, True, Physics(), True)
 
 
 def action_of(stroke: CueStroke, place: tuple[float, float]) -> Floats:
@@ -23,10 +26,7 @@ def action_of(stroke: CueStroke, place: tuple[float, float]) -> Floats:
 
     ``place``: where a cue ball in hand is placed in the D [m].
     """
-    across = min(1.0, max(-1.0, place[0] / D_RADIUS))
-    depth = D_RADIUS * sqrt(max(0.0, 1.0 - across * across))
-    back = min(1.0, max(0.0, (BAULK_Y - place[1]) / depth)) if depth > 1e-9 else 0.0
-    return np.concatenate([actions_of_strokes(stroke.numbers()[None])[0], (across, 2.0 * back - 1.0, DECISIONS["play"])])
+    return encoded(_ACTIONS, stroke.numbers()[None], np.array([place]))[0]
 
 
 def stroke_in(given: dict[str, Any], aim: float | None = None) -> CueStroke:
