@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from .keep import digest_of, packed
 
+
 class ClusterError(Exception):
     """A cluster cannot play on: its text is one line that says why and what to do. What was played is kept."""
 
