@@ -30,5 +30,6 @@ def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], objec
     except BaseException as error:
         temporary.unlink(missing_ok=True)
         if isinstance(error, OSError) and error.filename in (None, str(temporary)):
-            error.filename, error.filename2 = str(path), None  # the file that the caller named
+            error.filename = str(path)  # the file that the caller named
+            del error.filename2
         raise

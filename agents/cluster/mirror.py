@@ -92,6 +92,7 @@ def copied(out, data, name=CHECKPOINT):
         count = mirror._json(SAVES).get("count", 0) + 1
         saves = json.dumps({"count": count, "digest": hashlib.sha256(data).hexdigest()})
         mirror.save(saves.encode(), SAVES)
+        out.mkdir(parents=True, exist_ok=True)
         write_atomic(out / SAVES, saves)
 
 

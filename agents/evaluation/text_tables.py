@@ -51,7 +51,7 @@ class TextTable:
         for k in range(len(lines) - 1, 0, -1):
             if self.grouped and self.rows[k][0] != self.rows[k - 1][0]:
                 lines.insert(k, "")
-        return "\n".join([self.title, head, rule, *lines])
+        return "\n".join([fill(self.title, WIDTH), head, rule, *lines])
 
     def markdown(self):
         """The same in Markdown."""

@@ -258,9 +258,11 @@ def _play(tournament, args):
 
     total, units = sum(2 * len(part.args["seeds"]) for part in tournament.parts), "frames" if args.match == 1 else "matches"
     try:
-        with place(args.ray) as where:
-            with Progress(f"tournament{where.says}", total, units, done=tournament.ended, quiet=args.quiet) as progress:
-                tournament.play(where, args.threads, progress.at, saved)
+        with (
+            place(args.ray) as where,
+            Progress(f"tournament{where.says}", total, units, done=tournament.ended, quiet=args.quiet) as progress,
+        ):
+            tournament.play(where, args.threads, progress.at, saved)
     except (KeyboardInterrupt, ClusterError) as error:
         stopped, number = isinstance(error, KeyboardInterrupt), tournament.ended
         kept = "these are kept" if number else "nothing is kept"

@@ -88,9 +88,7 @@ def parts(report):
             for name, words in (("value", "learned"), ("rule", "rule of thumb"))
         ]
         yield TextTable(where, ["value", "correlation with what followed", "mean", "really followed"], rows, 1, 1)
-        rows = [
-            [str(k), f"{g['value']:.1f}", f"{g['followed']:.1f} ± {g['se']:.1f}"] for k, g in enumerate(one["groups"], 1)
-        ]
+        rows = [[str(k), f"{g['value']:.1f}", f"{g['followed']:.1f} ± {g['se']:.1f}"] for k, g in enumerate(one["groups"], 1)]
         title = "Groups of positions, by the learned value"
         yield TextTable(title, ["group", "mean value", "followed (± s. e.)"], rows, 1, 1)
 
