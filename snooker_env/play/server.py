@@ -15,23 +15,19 @@ import threading
 import time
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
 from ..simulation import SimulationError
+from ..web import WEB, table_js
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
-WEB = Path(__file__).resolve().parent.parent / "web"
-FILES = {
-    "": ("play.html", "text/html"), "play.css": ("play.css", "text/css"),
-    **{
-        name: (name, "text/javascript")
-        for name in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js")
-    },
-}  # fmt: skip
-"""Files that are served besides the protocol: path -> file in ``WEB`` and its type. No other file is ever read."""
+FILES = {"": ("play.html", "text/html"), "play.css": ("play.css", "text/css")}
+for _script in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js"):
+    FILES[_script] = (_script, "text/javascript")
+"""Files that are served besides the protocol: path -> file in ``WEB`` and its type. No other file is ever
+read, but for the parts of ``table.js``."""
 MOST_HEAD = 16_384
 MOST_BODY = 65_536
 """Largest head and body of a request [bytes]; a saved game has about 3,000."""
@@ -250,7 +246,8 @@ class PlayHandler(BaseHTTPRequestHandler):
 
     def _file(self, name):
         file, kind = FILES[name]
-        self._send(200, (WEB / file).read_bytes(), f"{kind}; charset=utf-8")
+        content = table_js().encode() if file == "table.js" else (WEB / file).read_bytes()
+        self._send(200, content, f"{kind}; charset=utf-8")
 
     def _refuse(self, refused: RefusedError) -> None:
         body = json.dumps({"error": refused.body}, allow_nan=False, default=str).encode()

@@ -16,10 +16,9 @@ from ..physics.table import Table, TableLike
 from ..render.scene import scene_data
 from ..simulation import Shot
 from ..tasks.played import Played
+from ..web import WEB, table_js
 from .encode import encoded_stroke
 
-WEB = Path(__file__).resolve().parent.parent / "web"
-"""Folder of the JavaScript that draws in a browser."""
 FORMAT, VERSION = "snooker-replay", 1
 SUFFIXES = (".html", ".json", ".mp4", ".gif")
 
@@ -158,7 +157,7 @@ class Replay:
         '<!DOCTYPE html>'
         """
         data = json.dumps(self.to_dict(), separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-        parts = {"title": html.escape(self.title or "Snooker replay"), "module": (WEB / "table.js").read_text("utf-8"), "data": data}
+        parts = {"title": html.escape(self.title or "Snooker replay"), "module": table_js(), "data": data}
         page = (WEB / "replay.html").read_text("utf-8")
         return re.sub(r"\{\{(title|module|data)\}\}", lambda place: parts[place[1]], page)
 
@@ -193,9 +192,9 @@ class Replay:
         ImportError
             Without pygame.
         """
-        from .film import frames
+        from .film import frames, shown
 
-        return frames(self, fps, speed, size)
+        return frames(shown(self.strokes, self.table, self.players, self.title), fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay to a file in the format of its suffix.
@@ -236,7 +235,7 @@ class Replay:
         if suffix in (".mp4", ".gif"):
             from .film import write_film
 
-            write_film(self, target, **film)
+            write_film(self.frames, target, **film)
             return target
         if film:
             raise refuse("path", str(path), f"must end in .mp4 or .gif with {', '.join(film)}")

@@ -287,7 +287,7 @@ def test_the_score_bar_stands_still(open_page, width):
     for on, run, pots in (("red", 0, []), ("any colour", 1, [1]), ("black", 147, [1, 21] * 15)):
         p("Object.assign(p.strokes[1], {ball_on: argument, player: 0})", on)
         p("Object.assign(p.strokes[0], {break: argument[0], pots: argument[1], points: 1})", [run, pots])
-        p("(p.said = null, p.seek(1, 0.5))")
+        p("(p.written = null, p.seek(1, 0.5))")
         assert f"break {run}" in p.page.locator(".sn-now").inner_text()
         assert p.page.locator(".sn-now span").last.locator("i").count() == (6 if on == "any colour" else 1)
         seen.append(p(places))
