@@ -17,7 +17,7 @@ from snooker_env.physics import cloth
 from snooker_env.physics.cloth import AX, AY, COLUMNS, FALLING, GONE, REST, T0, T_END, VX, VY, X, Y
 from snooker_env.physics.engine import EventKind, Status
 from snooker_env.physics.parameters import P_G, P_MU_BB_EXTRA, P_MU_BB_LEAST, P_MU_S, P_R, P_SPIN
-from snooker_env.simulation import MAX_EVENTS, _run
+from snooker_env.simulation import MAX_EVENTS, _run, log_space
 
 FINITE, CLOCK, JUMP, ENERGY, PHASE, ALL, MOMENTUM, PARTING, OVERLAP, CUSHION, OUTSIDE, REST_TIME, ACCOUNT = range(13)
 NAMES = (
@@ -300,7 +300,7 @@ def play(positions, velocities, spins, on_table, physics, table, fidelity, max_e
     """Play b shots and check each; positions (b, n, 2) and so on as in ``simulate_batch``; fidelity as ``parse_fidelity`` gives it."""
     b, n = positions.shape[:2]
     state = [np.array(a) for a in (positions, velocities, spins, on_table)]
-    out = _run(state, physics, table, fidelity, max_events, log_size, 2 * log_size + n + 2)
+    out = _run(state, physics, table, fidelity, max_events, log_space(b, log_size, 2 * log_size + n + 2))
     worst = np.full((b, len(NAMES)), -inf)
     args = physics.pack(), table.noses, table.jaws, table.falls, worst
     _check_all(out.segments, out.n_segments, out.event_what, out.n_events, out.status, n, out.duration, *args)

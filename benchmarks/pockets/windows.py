@@ -97,7 +97,7 @@ def played(pocket, start, physics, engine, log=0):
     here = np.ones((len(r), 1), bool)
     here[pocket.table.unfit(r, physics.R)] = False
     threads = os.cpu_count() or 1
-    out = engine.run([r, v, w, here.copy()], physics, pocket.table, (engine.code, 0), 10_000, log, 0, threads)
+    out = engine.run([r, v, w, here.copy()], physics, pocket.table, (engine.code, 0), 10_000, simulation.log_space(len(r), log, 0), threads)
     if out.status[here[:, 0]].any():
         raise RuntimeError(f"shots {np.flatnonzero(out.status)} did not come to rest")
     return (out.potted[:, 0] >= 0) & here[:, 0], ~here[:, 0], out

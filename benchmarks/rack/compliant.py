@@ -169,5 +169,5 @@ def compliant(r, v, w, physics, law=LAWS["Hertz"], dt=STEP, span=SPAN, stiffer=1
     """Balls after ``span`` seconds of micro-steps: r (n, 2), v (n, 3), w (n, 3), energy lost (4,) [J], greatest overlap [m]."""
     r, v, w = r.copy(), np.column_stack([v, np.zeros(len(v))]), w.copy()
     law = ContactLaw(law.p, law.q, law.k * stiffer)
-    constants = law.p, law.q, law.k, damping(law, physics.e_b), physics.g, physics.mu_s, coulomb.Law(*physics.friction_law)
+    constants = law.p, law.q, law.k, damping(law, physics.e_b), physics.g, physics.mu_s, coulomb.Friction(*physics.friction_law)
     return r, v, w, *micro_steps(r, v, w, *constants, dt, round(span / dt))
