@@ -26,14 +26,15 @@ _ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)  # literals are float64, and ha
 
 
 @entry
-def read_tables(rows, seen, balls, group, first, pots, context, at, sides):
+def read_tables(rows, seen, inputs, at):
     """Write the inputs of the networks for the tables seen[rows]; returns the number of balls on these tables.
 
+    inputs: (balls, group, first, pots, context, sides).
     balls (m, BALL_INPUTS), group (m,): the balls on the tables; 0 for a red that is not on, 1 for a red on, 2 and 3 likewise for colours.
     first (n + 1,): each table's first row of them. pots (n * POTS, POT_ENTRIES). context[:, at:]: state, cue ball, side. sides (n,): -1
     where the table is mirrored, else 1.
     """
-    m = 0
+    (balls, group, first, pots, context, sides), m = inputs, 0
     for j in range(rows.shape[0]):
         row, first[j] = seen[rows[j]], m
         side = -1.0 if row[BALL_X] < 0.0 else 1.0
@@ -237,14 +238,17 @@ def log_probabilities(scores, likely, sides, choices, out):
 
 
 @entry
-def ppo_gradient(rows, scores, likely, mean, sides, values, actions, before, advantages, returns, clip, entropy_weight, value_weight, batch,
-                 d_scores, d_values, sums):  # fmt: skip
-    """The gradient of PPO's loss, a mean over ``batch`` rows of which these are some.
+def ppo_gradient(rows, passed, played, loss, batch, gradients, sums):
+    """The gradients (d_scores, d_values) of PPO's loss, a mean over ``batch`` rows of which these are some.
 
-    scores, likely: as in ``log_probabilities``; values (n, 1); mean: sums of likely * scores.
-    actions, before (logarithms of the old probabilities), advantages, returns: of the whole rollout, read at ``rows``. The sums of the
-    rows' policy losses, squared errors of the values, entropies, clipped ratios and approximate KL divergences are added to ``sums``.
+    passed: (scores, likely, mean, sides, values), with scores and likely as in ``log_probabilities``, mean: sums of likely * scores, and
+    values (n, 1). played: (actions, before, advantages, returns) of a ``fused.Rollout``, read at ``rows``. loss: as ``fused.Loss``. The
+    sums of the rows' policy losses, squared errors of the values, entropies, clipped ratios and approximate KL divergences are added to
+    ``sums``.
     """
+    scores, likely, mean, sides, values = passed
+    actions, before, advantages, returns = played
+    (clip, entropy_weight, value_weight), (d_scores, d_values) = loss, gradients
     for j in range(rows.shape[0]):
         at = rows[j]
         action, own, likelihood = actions[at], scores[j], likely[j]

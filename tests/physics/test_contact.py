@@ -54,7 +54,7 @@ def test_balls_held_at_the_boundary_keep_every_law(name):
         physics = sn.Physics.preset("match", **{"R": 0.02625} | table.ball)
         p = fuzz.layouts(rng, "held", 1 + k % 2, table, R=physics.R)
         v, w = fuzz.motions(rng, "held", p, physics.R)
-        found = invariants.play(p, v, w, np.ones(p.shape[:2], bool), physics, table, contact.parse_fidelity("standard"))
+        found = invariants.play((p, v, w, np.ones(p.shape[:2], bool)), physics, table, contact.parse_fidelity("standard"))
         assert (found.status == Status.OK).all()
         assert (found.worst <= fuzz.allowed("standard")).all()
 

@@ -85,7 +85,7 @@ def test_what_a_ball_is_given_in_the_air_counts_as_no_gain():
     assert kinds.index(EventKind.DROP) < kinds.index(EventKind.BALL_BALL) < kinds.index(EventKind.RETURN)
     p, v, w = (np.array([a]) for a in IN_THE_AIR)
     table, fidelity = sn.Table.preset("match"), contact.parse_fidelity("standard")
-    found = invariants.play(p, v, w, np.ones((1, 2), bool), physics, table, fidelity)
+    found = invariants.play((p, v, w, np.ones((1, 2), bool)), physics, table, fidelity)
     assert found.worst[0, invariants.ENERGY] < 1e-12
 
 
@@ -99,7 +99,8 @@ FROM_NOTHING = (
 
 def test_two_balls_at_an_edge_keep_the_energy_of_their_shot():
     p, v, w = (np.array([a]) for a in FROM_NOTHING)
-    found = invariants.play(p, v, w, np.ones((1, 2), bool), sn.Physics(), sn.Table.preset("match"), contact.parse_fidelity("standard"))
+    start, table = (p, v, w, np.ones((1, 2), bool)), sn.Table.preset("match")
+    found = invariants.play(start, sn.Physics(), table, contact.parse_fidelity("standard"))
     assert found.worst[0, invariants.ALL] < 1e-12
 
 
