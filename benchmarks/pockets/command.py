@@ -19,7 +19,7 @@ import snooker_env as sn
 from .._common import variants
 from .._common.command import Command, save_json
 from . import openings, picture, pool_tables, rail_paths
-from .windows import CORNER, MIDDLE, Engine, alone, windows
+from .windows import CORNER, MIDDLE, Engine, Paths, alone, windows
 
 SPEEDS, DISTANCES = (0.5, 1.0, 2.0, 4.0, 6.0, 9.0), (0.3, 1.0, 1.7)
 """1.7 m: the farthest that a path straight into a middle pocket has room for."""
@@ -45,7 +45,7 @@ def all_windows(physics, engines, speeds, distances):
         here = alone(sn.Table.preset(table), INDEX[pocket])
         angles = ANGLES[pocket]
         a, d, v, rolling, turned = np.meshgrid(np.radians(angles), distances, speeds, (True, False), (False, True), indexing="ij")
-        found = {rule: windows(here, a, d, v, rolling, turned, physics, engine) for rule, engine in engines.items()}
+        found = {rule: windows(here, Paths(a, d, v, rolling, turned), physics, engine) for rule, engine in engines.items()}
         for m, (measure, scale) in enumerate(MEASURES.items()):
             for i, angle in enumerate(angles):
                 for j, distance in enumerate(distances):
@@ -170,7 +170,7 @@ def sensitivity(physics, engine):
         found[name] = {}
         for pocket, index in INDEX.items():
             angles = np.radians(ANGLES[pocket])[:, None]
-            w = windows(alone(table, index), angles, 0.3, np.array([1.0, 6.0]), True, False, constants, engine)
+            w = windows(alone(table, index), Paths(angles, 0.3, np.array([1.0, 6.0]), True, False), constants, engine)
             found[name] |= {f"{pocket} {a}": 1e3 * w.width[k] for k, a in enumerate(ANGLES[pocket])}
     return found
 

@@ -7,7 +7,7 @@ language, are in ``outline``; colours are in ``palette``.
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,20 +134,26 @@ class Scene:
         return tuple(LETTERS[i] for i in self.ids)
 
 
+class _Overlays(NamedTuple):
+    """What ``scene`` draws over the table and the balls."""
+
+    paths: Mapping[int, Vectors] | None = None
+    aim: Vectors | None = None
+    ghost: Vector | None = None
+    ghosts: Mapping[int, Vectors] | None = None
+    turns: Mapping[int, Vector] | None = None
+
+
 def scene(
     table: TableLike,
     positions: Vectors,
     on_table: Flags | None = None,
     *,
     ball_radius: float | None = None,
-    paths: Mapping[int, Vectors] | None = None,
-    aim: Vectors | None = None,
-    ghost: Vector | None = None,
-    ghosts: Mapping[int, Vectors] | None = None,
-    turns: Mapping[int, Vector] | None = None,
     text: str = "",
     bar: ScoreBar | None = None,
     lettered: bool = False,
+    **overlays: Any,
 ) -> Scene:
     """Describe one picture: n <= 22 balls with the ids 0 to n-1, and overlays. Arrays are copied.
 
@@ -161,22 +167,16 @@ def scene(
         False for the balls to leave out; None: all are on the table.
     ball_radius : float, optional
         Radius of the balls [m]; None: that of the table, or snooker's.
-    paths : dict, optional
-        {ball id: (m, 2) points [m]}, for instance of ``ball_paths``.
-    aim : array_like, float (m, 2), optional
-        Points of a line of aim [m].
-    ghost : array_like, float (2,), optional
-        Centre of a ball drawn as an outline [m].
-    ghosts : dict, optional
-        {ball id: (m, 2) places [m]} at which that ball is drawn faded, for instance {0: contacts(shot)}.
-    turns : dict, optional
-        {ball id: (4,) quaternion}, as in ``Scene``.
     text : str
         One line of status.
     bar : ScoreBar, optional
         Score bar, shown instead of the text.
     lettered : bool
         Whether balls carry their letters.
+    **overlays
+        ``paths``: {ball id: (m, 2) points [m]}, for instance of ``ball_paths``. ``aim``: (m, 2) points of a line of aim [m].
+        ``ghost``: (2,) centre of a ball drawn as an outline [m]. ``ghosts``: {ball id: (m, 2) places [m]} at which that ball is
+        drawn faded, for instance {0: contacts(shot)}. ``turns``: {ball id: (4,) quaternion}, as in ``Scene``.
 
     Returns
     -------
@@ -198,18 +198,18 @@ def scene(
         raise refuse("bar", bar, "must be None or a ScoreBar")
     ids, table = np.flatnonzero(here), Table.of(table)
     radius = (table.ball_radius or BALL_RADIUS) if ball_radius is None else number("ball_radius", ball_radius, 1e-3, 1)
-    return Scene(
-        table, ids, r[ids], radius, _by_ball("paths", paths, (-1, 2)), None if aim is None else array("aim", aim, (-1, 2)),
-        None if ghost is None else array("ghost", ghost, (2,)), _by_ball("ghosts", ghosts, (-1, 2)), _by_ball("turns", turns, (4,)),
-        str(text), bar, bool(lettered),
-    )  # fmt: skip
+    paths, aim, ghost, ghosts, turns = _Overlays(**overlays)
+    aim = None if aim is None else array("aim", aim, (-1, 2))
+    ghost = None if ghost is None else array("ghost", ghost, (2,))
+    drawn = _by_ball("paths", paths, (-1, 2)), aim, ghost, _by_ball("ghosts", ghosts, (-1, 2)), _by_ball("turns", turns, (4,))
+    return Scene(table, ids, r[ids], radius, *drawn, str(text), bar, bool(lettered))
 
 
-def _by_ball(field, given, shape):
-    for ball in given or {}:
+def _by_ball(field, values, shape):
+    for ball in values or {}:
         if ball not in range(N_BALLS):
             raise refuse(field, ball, f"must have ball ids 0 to {N_BALLS - 1} as keys")
-    return {int(ball): array(f"{field}[{ball}]", value, shape) for ball, value in (given or {}).items()}
+    return {int(ball): array(f"{field}[{ball}]", value, shape) for ball, value in (values or {}).items()}
 
 
 def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), until: float | None = None, step: float = 0.02) -> dict[int, Floats]:

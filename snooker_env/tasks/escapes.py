@@ -17,6 +17,7 @@ from .._jit import kernel
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics import cloth, cue, events
+from ..physics.arrays import Boundaries, Law
 from ..physics.columns import AXIS_X, AXIS_Y
 from ..physics.detection import boundary_event, pair_time
 from ..physics.impact.contact import FAST, collide_cushion, cushion_restitution
@@ -176,11 +177,12 @@ def _played(aim, speed, side, top, positions, on_table, phys, end_mass_ratio, mo
     motion (2, cloth.COLUMNS), state (2,), work: work space. Cushion impacts are of the fidelity "fast".
     """
     R = phys[P_R]
-    (vx, vy, _), (wx, wy, wz) = cue.struck(speed, aim - cue.squirt(side, end_mass_ratio), side, top, 0.0, R, end_mass_ratio)
-    cloth.begin(motion, state, 0, 0.0, positions[0, 0], positions[0, 1], vx, vy, wx, wy, wz, phys)
+    (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, end_mass_ratio), side, top, 0.0, R, end_mass_ratio)
+    boundaries, law = Boundaries(_BED, _NO_JAWS, _NO_FALLS, R), Law(phys, FAST, 0)
+    cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
     legs, now = 1, 0.0
     while state[0] > cloth.REST:
-        wall, kind, nose = boundary_event(motion, state, 0, _BED, _NO_JAWS, _NO_FALLS, _CLEAR, R)
+        wall, kind, nose = boundary_event(motion, state, 0, boundaries, _CLEAR)
         ball, until = 0, min(wall, motion[0, cloth.T_END])
         for i in range(1, N_BALLS):
             x, y, d = positions[i, 0], positions[i, 1], 2.0 * R
@@ -189,7 +191,7 @@ def _played(aim, speed, side, top, positions, on_table, phys, end_mass_ratio, mo
                 or y + d < motion[0, cloth.LO_Y] or y - d > motion[0, cloth.HI_Y]
             ):  # fmt: skip
                 continue
-            cloth.begin(motion, state, 1, 0.0, x, y, 0.0, 0.0, 0.0, 0.0, 0.0, phys)
+            cloth.begin(motion, state, 1, 0.0, (x, y), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
             t = pair_time(motion, state, 0, 1, now, d)
             if t <= until:
                 ball, until = i, t
@@ -203,10 +205,10 @@ def _played(aim, speed, side, top, positions, on_table, phys, end_mass_ratio, mo
                 return 0
             nx, ny = (0.0, _BED[nose, 1]) if end else (_BED[nose, 1], 0.0)
             e = cushion_restitution(v[0] * nx + v[1] * ny, phys)
-            v3, w, solved = collide_cushion((v[0], v[1], 0.0), w, nx, ny, phys, e, FAST, 0, work)
+            v3, w, solved = collide_cushion((v[0], v[1], 0.0), w, (nx, ny), law, e, work)
             if not solved:
                 return 0
-            cloth.begin(motion, state, 0, wall, x, y, v3[0], v3[1], w[0], w[1], w[2], phys)
+            cloth.begin(motion, state, 0, wall, (x, y), (v3[0], v3[1]), w, phys)
             legs += 1
         else:
             cloth.next_phase(motion, state, 0, phys)

@@ -10,6 +10,7 @@ from math import atan2, hypot, pi
 
 from .._jit import kernel
 from ..physics import cloth, cue
+from ..physics.arrays import Law
 from ..physics.detection import pair_time
 from ..physics.impact.contact import collide_balls
 from ..physics.parameters import P_E_B, P_R
@@ -26,9 +27,9 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
     motion (2, cloth.COLUMNS), state (2,), work: work space.
     """
     R = phys[P_R]
-    (vx, vy, _), (wx, wy, wz) = cue.struck(speed, aim - cue.squirt(side, end_mass_ratio), side, top, elevation, R, end_mass_ratio)
-    cloth.begin(motion, state, 0, 0.0, cx, cy, vx, vy, wx, wy, wz, phys)
-    cloth.begin(motion, state, 1, 0.0, bx, by, 0.0, 0.0, 0.0, 0.0, 0.0, phys)
+    (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, end_mass_ratio), side, top, elevation, R, end_mass_ratio)
+    cloth.begin(motion, state, 0, 0.0, (cx, cy), (vx, vy), w, phys)
+    cloth.begin(motion, state, 1, 0.0, (bx, by), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
     t, now = 1e300, 0.0
     while state[0] > cloth.REST:
         t = pair_time(motion, state, 0, 1, now, 2.0 * R)
@@ -41,12 +42,11 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
     (x, y), v, w = cloth.evaluate(motion, state, 0, t, phys)
     nx, ny = bx - x, by - y
     d = hypot(nx, ny)
-    _v1, _w1, v2, w2, solved = collide_balls(
-        (v[0], v[1], 0.0), w, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), nx / d, ny / d, phys, phys[P_E_B], fidelity, n_steps, work
-    )
+    law, still = Law(phys, fidelity, n_steps), (0.0, 0.0, 0.0)
+    _v1, _w1, v2, w2, solved = collide_balls((v[0], v[1], 0.0), w, still, still, (nx / d, ny / d), law, phys[P_E_B], work)
     if not solved:
         return 9.0
-    cloth.begin(motion, state, 1, t, bx, by, v2[0], v2[1], w2[0], w2[1], w2[2], phys)
+    cloth.begin(motion, state, 1, t, (bx, by), (v2[0], v2[1]), w2, phys)
     if state[1] == cloth.SLIDE:  # the curve ends where it rolls, or at the pocket
         cloth.next_phase(motion, state, 1, phys)
     if state[1] <= cloth.REST:

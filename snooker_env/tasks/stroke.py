@@ -273,13 +273,13 @@ def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
 
 def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
     """The same without counting them."""
-    table, (fidelity, n_steps) = rules.table, rules.fidelity
+    table = rules.table
     buffers.enlarged = {}
-    engine.run_batch(
-        buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted, phys, table.noses, table.jaws, table.falls,
-        table._reach(rules.physics.R), fidelity, n_steps, MAX_EVENTS, buffers.event_time, buffers.event_what, buffers.segments,
-        buffers.status, buffers.n_events, buffers.n_segments, buffers.duration, 0, m,
-    )  # fmt: skip
+    balls = buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted
+    setup = phys, table.noses, table.jaws, table.falls, table._reach(rules.physics.R), *rules.fidelity
+    log = buffers.event_time, buffers.event_what, buffers.segments
+    ends = buffers.status, buffers.n_events, buffers.n_segments, buffers.duration
+    engine.run_batch(balls, setup, MAX_EVENTS, log, ends, 0, m)
 
 
 def run_again(buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats) -> ShotBuffers:

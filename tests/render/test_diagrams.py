@@ -9,7 +9,7 @@ import snooker_env as sn
 from snooker_env.render import palette, shot_paths
 from snooker_env.render.density_diagram import bandwidth_of, density_of, level_of
 from snooker_env.render.diagrams import compare, density, fan, plot
-from snooker_env.render.fan_diagram import fan_options, shade
+from snooker_env.render.fan_diagram import Strokes, fan_options, shade
 from tests.refusals import refused
 from tests.render.test_shot_paths import R, played
 
@@ -28,7 +28,7 @@ def screw():
     """A red is cut into the top right pocket with screw and right side; another lies about."""
     balls = [(0.45, 0.85), (0.62, 1.45), (-0.5, 0.2)]
     match, paper = sn.Table.preset("match"), sn.Physics.of(None)
-    (option,) = fan_options(np.array(balls), np.ones(3, bool), 1, 3, 2.2, [-0.35], [0.2], 0.0, None, match, paper)
+    (option,) = fan_options(np.array(balls), np.ones(3, bool), 1, 3, Strokes(2.2, [-0.35], [0.2]), match, paper)
     return played(balls, speed=2.2, aim=option.aim, top=-0.35, side=0.2)
 
 
@@ -222,9 +222,8 @@ def test_options_side_by_side_show_the_same_part_of_the_table():
 def test_a_fan_pots_every_time_and_ends_where_the_cue_ball_stops():
     places, tops, sides = [(0.45, 0.85), (0.62, 1.45)], (-0.3, 0.0, 0.3), (-0.2, 0.2)
     ax = fan(places, tops=tops, sides=sides)
-    options = fan_options(
-        np.array(places), np.ones(2, bool), None, None, 2.0, tops, sides, 0.0, None, sn.Table.preset("match"), sn.Physics.of(None)
-    )
+    strokes, match = Strokes(2.0, tops, sides), sn.Table.preset("match")
+    options = fan_options(np.array(places), np.ones(2, bool), None, None, strokes, match, sn.Physics.of(None))
     assert all(option.shot.potted[1] == 3 for option in options) and len({option.aim for option in options}) > 1
     paths = lines(ax, "fan")
     assert len(paths) == 6
