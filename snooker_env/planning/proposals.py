@@ -17,9 +17,9 @@ from ..game.balls import N_BALLS, VALUES, balls_on_kernel, bits
 from ..game.frame_columns import BALL_ON
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
-from ..physics.cloth import COLUMNS
-from ..physics.impact.polynomial import WORK
+from ..tasks.arrays import Law
 from ..tasks.box_actions import MAX_SPEED
+from ..tasks.lines import new_work
 from ..tasks.pot_aim import solved_aim
 from .positions import Positions
 from .prospects import FAR, FOLLOWS
@@ -146,13 +146,11 @@ def _contacts(positions, on_table, on, seed, strokes, chances):
 
 
 @kernel
-def _aim(stroke, positions, found, phys, end_mass_ratio, fidelity, n_steps, motion, phase, work):
-    """Solve the aim of a stroke at the pot ``found``."""
-    ball, pocket = int(found[POT_BALL]), int(found[POT_POCKET])
-    stroke[AIM] = solved_aim(
-        positions, ball, POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y], found[GHOST_X], found[GHOST_Y], stroke[SPEED],
-        stroke[SIDE], stroke[TOP], 0.0, phys, end_mass_ratio, fidelity, n_steps, motion, phase, work,
-    )  # fmt: skip
+def _aim(stroke, positions, pot, law, work):
+    """Solve the aim of a stroke at a pot."""
+    pocket, ghost = int(pot[POT_POCKET]), (pot[GHOST_X], pot[GHOST_Y])
+    target, tip = (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]), (stroke[SPEED], stroke[SIDE], stroke[TOP], 0.0)
+    stroke[AIM] = solved_aim(positions, int(pot[POT_BALL]), target, ghost, tip, law, work)
 
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
@@ -162,7 +160,7 @@ def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_rat
     ``which`` (n, m): at which pot each stroke is, widest first, its speed and tip being given; without rows, all are spread.
     """
     found, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
-    motion, phase, work = np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    law, work = Law(phys, end_mass_ratio, fidelity, n_steps), new_work()
     m = strokes.shape[1]
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
@@ -185,7 +183,7 @@ def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_rat
                     j += 1
                     reached += weights[j] / total
                 _spread_stroke(i, seed, strokes[k, i])
-            _aim(strokes[k, i], p, found[j], phys, end_mass_ratio, fidelity, n_steps, motion, phase, work)
+            _aim(strokes[k, i], p, found[j], law, work)
             chances[k, i] = pot_chance(p, found[j], spread, LOST)
 
 

@@ -14,16 +14,14 @@ from .._jit import entry
 from .._types import Fidelity, Integers, Scalars, Vector, Vectors
 from ..game.balls import N_BALLS, balls_on_kernel, bits
 from ..game.frame_columns import BALL_ON
-from ..game.pots import POT_COLUMNS
 from ..geometry import BALL_RADIUS
-from ..physics.cloth import COLUMNS
 from ..physics.cue import MAX_ELEVATION, squirt
 from ..physics.impact.contact import parse_fidelity
-from ..physics.impact.polynomial import WORK
 from ..physics.parameters import Physics, PhysicsLike
+from ..tasks.arrays import Law
 from ..tasks.box_actions import MAX_SPEED, MIN_SPEED
 from ..tasks.discrete_actions import SIZE, chosen, masks
-from ..tasks.lines import LINE_ROWS
+from ..tasks.lines import new_work
 from ..tasks.pot_aim import solved_aim
 from ..tasks.tables import STROKES_ONLY
 from .positions import Positions, PositionsLike, rows_of
@@ -110,13 +108,11 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
 
 @entry(what="the choices as actions", uses=(chosen,))
 def _as_actions(positions, on_table, game, rows, picks, phys, end_mass_ratio, fidelity, n_steps, out):
-    found, motion, phase, work = np.empty((LINE_ROWS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    law, work = Law(phys, end_mass_ratio, fidelity, n_steps), new_work()
     for i in range(len(rows)):
         k = rows[i]
         on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
-        speed, side, top, aim, _ = chosen(
-            picks[i], positions[k], on_table[k], on, phys, end_mass_ratio, fidelity, n_steps, found, motion, phase, work
-        )
+        speed, side, top, aim, _ = chosen(picks[i], positions[k], on_table[k], on, law, work)
         out[i, 0] = 2.0 * (speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0
         out[i, 1], out[i, 2] = 2.0 * side, 2.0 * top
         turned = (aim + squirt(side, end_mass_ratio)) / pi
@@ -172,13 +168,11 @@ def solved_choices(at: Positions, rows: Integers, choices: Integers, dynamics: D
 
 @entry(what="the solving of aims", uses=(solved_aim,))
 def _pot_aim(positions, rows, balls, targets, ghosts, strokes, phys, end_mass_ratio, fidelity, n_steps, aims):
-    motion, state, work = np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    law, work = Law(phys, end_mass_ratio, fidelity, n_steps), new_work()
     for i in range(len(rows)):
-        p, (speed, side, top, elevation) = positions[rows[i]], (strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3])
-        aims[i] = solved_aim(
-            p, balls[i], targets[i, 0], targets[i, 1], ghosts[i, 0], ghosts[i, 1], speed, side, top, elevation, phys, end_mass_ratio,
-            fidelity, n_steps, motion, state, work,
-        )  # fmt: skip
+        stroke = strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3]
+        target, ghost = (targets[i, 0], targets[i, 1]), (ghosts[i, 0], ghosts[i, 1])
+        aims[i] = solved_aim(positions[rows[i]], balls[i], target, ghost, stroke, law, work)
 
 
 def pot_aim(
