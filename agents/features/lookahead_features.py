@@ -1,7 +1,7 @@
 """What does an agent with a one-shot lookahead observe? The simulated outcomes of 12 strokes at each of the two widest pots.
 
 The observation is ``pot_features.with_pots`` followed by ``STROKES_SEEN`` rows, one for each stroke at each of these pots: means of its
-outcomes over the errors of ``NOISE_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play
+outcomes over the errors of ``EVEN_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play
 only these strokes. A decision costs 120 simulated shots: slower than an agent that observes the table alone, far quicker than ``search``.
 
 Several noise samples a stroke are needed: one outcome does not show how execution errors affect the next pot.
@@ -13,9 +13,9 @@ from gymnasium import spaces
 from snooker_env.game import BallOn
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning import RULE_OF_THUMB, Planner, Positions, prospects_of, spread_of
+from snooker_env.planning.sobol import EVEN_SAMPLES
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
-from .noise_samples import NOISE_SAMPLES
 from .pot_features import SHOWN, with_pots
 
 POTS_SEEN = 2
@@ -56,7 +56,7 @@ class ForesightView:
         if self._tables is not tables:
             self._tables, self._planner = tables, Planner(tables, threads=self._threads)
             noise = self._planner.noise
-            self._samples = np.array(NOISE_SAMPLES[:1] if noise.silent else NOISE_SAMPLES, np.uint64)
+            self._samples = np.array(EVEN_SAMPLES[:1] if noise.silent else EVEN_SAMPLES, np.uint64)
             self._spread = spread_of(noise, self._planner.physics)
         table, stroke = np.nonzero(masks)
         k, m = len(self._samples), len(table)

@@ -14,7 +14,7 @@ from agents.players.by_name import is_player, player_of
 from agents.players.stroke_players import BUDGET, NAMES, is_stroke_player, model_for, stroke_player
 from snooker_env.benchmark import play_visits, summary
 from snooker_env.planning import Planner, Positions, actions_of
-from snooker_env.planning.stroke_search import evenly, schedule
+from snooker_env.planning.stroke_search import at_pots, schedule
 from snooker_env.tasks import LEVELS, Noise
 
 GOING = np.array([True, False, True, True])
@@ -119,7 +119,7 @@ def test_each_kind_has_its_value_and_its_proposals(model):
         kinds[kind] = (
             isinstance(search.value, Value),
             isinstance(search.propose, PolicyProposals),
-            search.propose is evenly,
+            search.propose is at_pots,
             search.pots_only,
         )
         assert search.budget == 30 and search.shots <= 30 * 3
