@@ -137,9 +137,18 @@ def fan(
 
 
 def fan_options(
-    r: Floats, here: Any, ball: int | None, pocket: int | None, speed: float, tops: Sequence[float], sides: Sequence[float],
-    elevation: float, aim: float | None, table: Table, physics: Physics,
-) -> list[Option]:  # fmt: skip
+    r: Floats,
+    here: Any,
+    ball: int | None,
+    pocket: int | None,
+    speed: float,
+    tops: Sequence[float],
+    sides: Sequence[float],
+    elevation: float,
+    aim: float | None,
+    table: Table,
+    physics: Physics,
+) -> list[Option]:
     """The strokes of a fan: for each top and side the aim (as given, or one that pots the ball), and the shot."""
     tops, sides = array("tops", tops, (-1,)).tolist(), array("sides", sides, (-1,)).tolist()
     if not tops or not sides:
@@ -150,7 +159,7 @@ def fan_options(
         ball = _object(ball, here)
         pocket, line = _line(r, ball, pocket, table, physics.R)
         aims = line + _SHIFTS
-    found = []
+    options = []
     for top in tops:
         for side in sides:
             struck = [strike(speed, one, side, top, elevation, physics) for one in aims]
@@ -165,8 +174,8 @@ def fan_options(
                 k = int(good[len(good) // 2])
             v, w = np.zeros((len(r), 2)), np.zeros((len(r), 3))
             v[CUE], w[CUE] = struck[k][0][:2], struck[k][1]
-            found.append(Option(top, side, float(aims[k]), simulate(r, v, w, table, physics, on_table=here)))
-    return found
+            options.append(Option(top, side, float(aims[k]), simulate(r, v, w, table, physics, on_table=here)))
+    return options
 
 
 def _batch(r, here, struck, table, physics):
@@ -224,20 +233,20 @@ def _way(shot):
     """The cue ball's path after it has met a ball, or all of it if it meets none: (m, 2) [m]."""
     met = _met(shot)
     since = -np.inf if met is None else met.time
-    own = [piece for piece in paths(shot).get(CUE, []) if piece.times[-1] > since]
-    points = [piece.points[piece.times >= since] for piece in own]
+    pieces = [piece for piece in paths(shot).get(CUE, []) if piece.times[-1] > since]
+    points = [piece.points[piece.times >= since] for piece in pieces]
     return np.concatenate(points) if points else shot.positions[[CUE]]
 
 
 def _ends(shots):
     """Where the cue ball starts, where it meets the ball, and where that ball stops: (m, 2) [m]."""
-    found = []
+    points = []
     for shot in shots:
         met = _met(shot)
-        found.append(shot.at(0.0)[0][CUE])
+        points.append(shot.at(0.0)[0][CUE])
         if met is not None:
-            found += [met.centre, shot.positions[met.other]]
-    return np.array(found)
+            points += [met.centre, shot.positions[met.other]]
+    return np.array(points)
 
 
 def shade(top: float, tops: Sequence[float]) -> tuple[int, ...]:
