@@ -87,7 +87,7 @@ class Session:
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
         self._rules: dict[str, Rules] = {}
-        self.tables = Frames(self._options.rules, 1)
+        self.tables: Frames = Frames(self._options.rules, 1)
         self.new(layout=layout, seed=seed)
 
     # what is ----------------------------------------------------------------------------------------------------------------
