@@ -12,6 +12,7 @@ from .._types import Bools, Floats, Ints
 from ..envs.vector import SnookerVectorEnv
 from ..game.balls import BallOn
 from ..planning import Positions, pots
+from ..players import VISITS, Player, decided, decision_seeds
 from .tasks import HELD_OUT_SEED
 
 CENTURY = 100
@@ -51,13 +52,9 @@ class Strokes:
 
     Examples
     --------
-    >>> import numpy as np
+    >>> import snooker_env as sn
     >>> from snooker_env.benchmark import play_visits
-    >>> class Soft:
-    ...     options = {}
-    ...     def act(self, tables, observations, going):
-    ...         return np.full((len(going), 4), -1.0)
-    >>> strokes = play_visits(Soft(), 2, layout="colours")
+    >>> strokes = play_visits(sn.player("ghost_ball"), 2, layout="colours")
     >>> strokes.visits, strokes.a_visit(strokes.points).shape
     (2, (2,))
     """
@@ -125,30 +122,40 @@ class Strokes:
 
 
 def play_visits(
-    player: Any, visits: int, *, layout: str = "held_out", noise: Any = "professional",
-    first_seed: int | Sequence[int | None] = HELD_OUT_SEED, threads: int | None = None, each: Callable[[int], None] | None = None,
+    player: Player,
+    visits: int,
+    *,
+    layout: str = "held_out",
+    noise: Any = "professional",
+    first_seed: int | Sequence[int] = HELD_OUT_SEED,
+    seed: int = 0,
+    threads: int | None = None,
+    each: Callable[[int], None] | None = None,
+    after: Callable[[Any], None] | None = None,
     **options: Any,
-) -> Strokes:  # fmt: skip
+) -> Strokes:
     """Play visits side by side and record every stroke.
 
     Parameters
     ----------
-    player : object
-        A player, with ``options`` and ``act(tables, observations, going)``.
+    player : Player
+        The player, not bound yet.
     visits : int
         Number of visits.
-    layout : str
-        As in ``Options``.
-    noise : str, Noise or dict
+    layout, noise
         As in ``Options``.
     first_seed : int or sequence of int
         Seed of the first table, the others have the seeds after it; or the seed of each table.
+    seed : int, optional
+        Seed of what the player draws; default 0. A table's strokes depend on it and on the table's own seed alone.
     threads : int, optional
         As in ``SnookerVectorEnv``.
     each : callable, optional
         Called after each round of strokes with the number of visits that still go on.
+    after : callable, optional
+        Called with the environment after each decision, before its strokes are played.
     **options
-        Other options of the environment; they replace the player's own.
+        Other options of the environment.
 
     Returns
     -------
@@ -157,26 +164,25 @@ def play_visits(
 
     Examples
     --------
-    >>> import numpy as np
+    >>> import snooker_env as sn
     >>> from snooker_env.benchmark import play_visits
-    >>> class Soft:
-    ...     options = {}
-    ...     def act(self, tables, observations, going):
-    ...         return np.full((len(going), 4), -1.0)
-    >>> play_visits(Soft(), 3, layout="colours").visit.tolist()[:3]
+    >>> play_visits(sn.player("ghost_ball"), 3, layout="colours").visit.tolist()[:3]
     [0, 1, 2]
     """
-    seeds = first_seed if isinstance(first_seed, int) else list(first_seed)
-    tables = SnookerVectorEnv(visits, layout=layout, noise=noise, threads=threads, **{**player.options, **options})
-    observations, _ = tables.reset(seed=seeds)
+    seeds = first_seed + np.arange(visits) if isinstance(first_seed, int) else np.array(first_seed, np.int64)
+    tables = SnookerVectorEnv(visits, layout=layout, noise=noise, threads=threads, **{**VISITS, **options})
+    tables.reset(seed=seeds.tolist())
+    bound = player.at(tables)
     log, going, number, decision_seconds, shots = [], np.ones(visits, bool), 0, 0.0, 0
     while going.any():
         ball_on = Positions.of(tables).ball_on[going]
         began, before = time.perf_counter(), simulated()
-        actions = player.act(tables, observations, going)
+        actions = decided(bound, tables, going, decision_seeds(seed, seeds, number)).astype(np.float32)
         decision_seconds += time.perf_counter() - began
         shots += simulated() - before
-        observations, _, ended, _, info = tables.step(actions)
+        if after is not None:
+            after(tables)
+        _, _, ended, _, info = tables.step(actions)
         here = np.flatnonzero(going)
         left = Positions.of(tables)[here]
         cue = np.where(left.on_table[:, :1], left.positions[:, 0], np.nan)
@@ -209,13 +215,9 @@ def summary(strokes: Strokes) -> dict[str, Any]:
 
     Examples
     --------
-    >>> import numpy as np
+    >>> import snooker_env as sn
     >>> from snooker_env.benchmark import play_visits, summary
-    >>> class Soft:
-    ...     options = {}
-    ...     def act(self, tables, observations, going):
-    ...         return np.full((len(going), 4), -1.0)
-    >>> summary(play_visits(Soft(), 3, layout="colours"))["visits"]
+    >>> summary(play_visits(sn.player("ghost_ball"), 3, layout="colours"))["visits"]
     3
     """
     pots, points = strokes.a_visit(strokes.points > 0), strokes.a_visit(strokes.points)

@@ -11,9 +11,9 @@ from gymnasium.utils.env_checker import data_equivalence
 
 import snooker_env as sn
 from snooker_env.benchmark import AtFrames
-from snooker_env.game.sides import swapped
 from snooker_env.game.balls import BLACK, CUE, GREEN, SPOTS, BallOn
 from snooker_env.game.frame_columns import ANYWHERE, BREAKER, COLUMNS, IN_HAND, SCORE_0, SCORE_1, STRIKER, WINNER
+from snooker_env.game.sides import swapped
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
 from snooker_env.tasks import OpponentPool
 from snooker_env.tasks.stroke import ShotBuffers
