@@ -22,6 +22,7 @@ lot for a re-spotted black is passed in.
 """
 
 from dataclasses import asdict, dataclass
+from operator import itemgetter
 from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
@@ -56,6 +57,7 @@ _FLAGS = {
     "miss_called": columns.MISS_CALLED, "warned": columns.WARNED, "anywhere": columns.ANYWHERE,
 }  # fmt: skip
 """The columns of the fields of a ``Frame`` that are plain integers, and bools."""
+_integers, _flags = itemgetter(*_INTEGERS.values()), itemgetter(*_FLAGS.values())
 
 
 class _Asked(NamedTuple):
@@ -313,10 +315,12 @@ class Frame:
         ``time_to_play`` could not begin in time.
         """
         self._in_phase("stroke", "play")
-        late = 0 < self.shot_clock < integer("time_to_play", time_to_play, 0, MOST_CLOCK)
-        lasted = integer("duration", duration, 0, MOST_CLOCK) if self.rule_set.clock else 0
+        late, lasted, rules = False, 0, self.rule_set
+        integer("time_to_play", time_to_play, 0, MOST_CLOCK)
+        if rules.clock:
+            late, lasted = 0 < self.shot_clock < time_to_play, integer("duration", duration, 0, MOST_CLOCK)
         result = ruling_of(self.situation, Stroke(late=True) if late else stroke)
-        conditions = Conditions(self.rule_set.code, MISS_RULES.index(self.miss), int(time_to_play))
+        conditions = Conditions(rules.code, MISS_RULES.index(self.miss), int(time_to_play))
         row, effort = self._row(), Effort(bool(clear_path), bool(full_ball_path), bool(attempt))
         _play(row, result, conditions, effort, layout is not None, lasted)
         return self._next(row, layout), verdict_of(result)
@@ -425,8 +429,8 @@ def _unpacked(row, rules, miss, layout):
             layout=layout if at[columns.SAVED_LAYOUT] else None,
         )
     return Frame(
-        **{name: at[column] for name, column in _INTEGERS.items()},
-        **{name: bool(at[column]) for name, column in _FLAGS.items()},
+        **dict(zip(_INTEGERS, _integers(at), strict=True)),
+        **dict(zip(_FLAGS, map(bool, _flags(at)), strict=True)),
         scores=(at[columns.SCORE_0], at[columns.SCORE_1]),
         ball_on=BallOn(at[columns.BALL_ON]),
         phase=PHASES[at[columns.PHASE]],

@@ -81,6 +81,8 @@ class Frames(Tables):
         self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
         self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
+        game, won = rules.rule_set, rules.frames // 2 + 1
+        self._numbers = game.code, self._miss, rules.time_to_play, self._reward, limit, rules.max_strokes, won, game.clock
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
             write_frame(Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.saved, 0)
@@ -94,14 +96,14 @@ class Frames(Tables):
         return Layouts(self._saved_positions, self._saved_on_table)
 
     @property
+    def _saved(self) -> tuple[Floats, Bools]:
+        """For kernels: the parts of ``saved``, in a plain tuple."""
+        return self._saved_positions, self._saved_on_table
+
+    @property
     def _setting(self) -> tuple[Any, ...]:
         """For kernels: the parts of ``frame_kernels.Setting``, in a plain tuple."""
-        rules = self.rules
-        game, frames = rules.rule_set, rules.frames // 2 + 1
-        return (
-            game.code, self._miss, rules.time_to_play, self._reward, self.limit, rules.max_strokes, frames, game.clock, self.packed[0],
-            self._jaws,
-        )  # fmt: skip
+        return *self._numbers, self.packed[0], self._jaws
 
     def _columns(self) -> tuple[str, ...]:
         return (*super()._columns(), "_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due")
@@ -159,7 +161,7 @@ class Frames(Tables):
     def decide(self, which: Ints, actions: Floats) -> Bools:
         """What the strikers of the tables ``which`` say before their strokes; returns which of them play one."""
         plays = np.empty(len(which), np.bool_)
-        frame_kernels.decide(which, actions, self.arrays, self._setting, plays)
+        frame_kernels.decide(which, actions, self.arrays, self._saved, self._setting, plays)
         return plays
 
     def complete(self, which: Ints, out: StepOutput, buffers: ShotBuffers, crew: Crew, *, own: bool, alone: bool = False) -> None:
@@ -177,11 +179,11 @@ class Frames(Tables):
 
     def _conclude(self, which, b, out, own, alone):
         if self.rules.misses:
-            remember(which, self.arrays, b.arrays, self.rules.table.noses, self.rules.table.jaws)
+            remember(which, self.arrays, self._saved, b.played, self.rules.table.noses, self.rules.table.jaws)
         if self._miss == ATTEMPTS:
             judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
         played = self._played if own else self._replies
-        frame_kernels.conclude(which, self.arrays, b.arrays, self._setting, own, alone, played, out.arrays)
+        frame_kernels.conclude(which, self.arrays, b.played, self._setting, own, alone, played, out.arrays)
 
     def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:
         """One turn of the striker on each table, of two players. ``out`` gets the infos; returns where there was a stroke, (n,) bool.
@@ -235,7 +237,7 @@ class Frames(Tables):
         crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _finish(self, which, out):
-        frame_kernels.finish(which, self.arrays, self._setting, self.due, self._replies, self._played, out.arrays)
+        frame_kernels.finish(which, self.arrays, self._saved, self._setting, self.due, self._replies, self._played, out.arrays)
 
     def _reply(self, which, out, crew):
         """All strokes of the opponent on the tables ``which`` until it is the agent's turn or the frame has ended."""
@@ -283,7 +285,7 @@ class Frames(Tables):
         self.begun[which], self.due[which], self.nominated[which] = True, False, AUTO
 
     def _show(self, which, out, *, fresh):
-        frame_kernels.show(which, fresh, self.arrays, self._setting, self._replies, out.arrays)
+        frame_kernels.show(which, fresh, self.arrays, self._saved, self._setting, self._replies, out.arrays, out.last)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
         """The info of the first table as ``player`` sees it; ``last``: the output of the last stroke, or None if there is none."""
@@ -304,7 +306,7 @@ class Frames(Tables):
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
         """The observations of ``player`` on the tables ``which``: float32 (len(which), SIZE), a new array."""
         rows = np.empty((len(which), self.SIZE), np.float32)
-        frame_kernels.observe(which, player, self.arrays, self._setting, rows)
+        frame_kernels.observe(which, player, self.arrays, self._saved, self._setting, rows)
         return rows
 
     # states ----------------------------------------------------------------------------------------------------------------

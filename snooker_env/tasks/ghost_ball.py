@@ -29,7 +29,7 @@ from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_PO
 from ..game.rule_sets import SHOOT_OUT
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
-from .arrays import ShotArrays, TableArrays
+from .arrays import StruckArrays
 from .declarations import A_END_MASS, A_NOMINATE, nominated_ball
 from .escapes import ROLL
 from .lines import LINE_ROWS, racked
@@ -137,8 +137,8 @@ def named(positions, on_table, row, aim):
 @entry(what="the geometric opponent", seconds=3)
 def _ghost_ball(which, tables, shots, packed, rules):
     """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike. ``rules``: the code of the rule set."""
-    (positions, on_table, game, streams, nominated, _, _), shots = TableArrays(*tables), ShotArrays(*shots)
-    options, noise, _ = packed
+    positions, on_table, game, streams, nominated = tables
+    shots, (options, noise, _) = StruckArrays(*shots), packed
     found, drive = np.empty((LINE_ROWS, POT_COLUMNS)), DRIVE if rules == SHOOT_OUT else 0.0
     for j in range(which.shape[0]):
         k = which[j]
@@ -178,6 +178,6 @@ class GhostBallOpponent:
 
     def prepare(self, frames: "Frames", which: Ints, actions: Any, buffers: ShotBuffers) -> Ints:
         """Carry its strokes out up to the strike, one on each table."""
-        _ghost_ball(which, frames.arrays, buffers.arrays, frames.packed, frames.rules.rule_set.code)
+        _ghost_ball(which, frames.arrays, buffers.struck, frames.packed, frames.rules.rule_set.code)
         frames.hold_late(which, buffers)
         return which

@@ -35,12 +35,13 @@ def copy_row(row, to):
 
 
 @kernel
-def keep_last(k, out):
-    """Save table k's rows of the ``OutputArrays``, if there is room, before a new episode overwrites them."""
-    if out.last_observations.shape[0]:
-        copy_row(out.observations[k], out.last_observations[k])
-        copy_row(out.reals[k], out.last_reals[k])
-        copy_row(out.counts[k], out.last_counts[k])
+def keep_last(k, out, last):
+    """Save table k's rows of the ``OutputArrays`` in ``last``, if there is room, before a new episode overwrites them."""
+    observations, reals, counts = last
+    if observations.shape[0]:
+        copy_row(out.observations[k], observations[k])
+        copy_row(out.reals[k], reals[k])
+        copy_row(out.counts[k], counts[k])
 
 
 @kernel
@@ -110,10 +111,12 @@ class StepOutput:
     @property
     def arrays(self) -> tuple[Any, ...]:
         """For kernels: the parts of ``OutputArrays``, in a plain tuple."""
-        return (
-            self.observations, self.rewards, self.terminated, self.truncated, self.reals, self.counts, self.last_observations,
-            self.last_reals, self.last_counts,
-        )  # fmt: skip
+        return self.observations, self.rewards, self.terminated, self.truncated, self.reals, self.counts
+
+    @property
+    def last(self) -> tuple[Singles, Floats, Ints]:
+        """The arrays that keep the end of an episode where another one starts."""
+        return self.last_observations, self.last_reals, self.last_counts
 
 
 class Crew:
@@ -174,9 +177,6 @@ class Tables(ABC):
     """(n, 2) Key and counter of each table's random stream."""
     nominated: Ints = np.empty(0, np.int64)
     """(n,) Of frames: the colour that each striker has nominated. A visit has none: no rows."""
-    _saved_positions: Floats = np.empty((0, N_BALLS, 2))
-    _saved_on_table: Bools = np.empty((0, N_BALLS), np.bool_)
-    """Of frames: where the balls lay before the last foul (``frame_columns.Layouts``). A visit has no rows."""
     begun: Bools
     """(n,) Which tables have an episode, possibly one that has ended."""
     packed: tuple[Floats, Floats, Floats]
@@ -194,9 +194,7 @@ class Tables(ABC):
     @property
     def arrays(self) -> tuple[Any, ...]:
         """For kernels: the parts of ``arrays.TableArrays``, in a plain tuple."""
-        return (
-            self.positions, self.on_table, self.game, self.streams, self.nominated, self._saved_positions, self._saved_on_table,
-        )  # fmt: skip
+        return self.positions, self.on_table, self.game, self.streams, self.nominated
 
     def seed(self, k: int, rng: np.random.Generator) -> None:
         """Give table k a new stream with a key drawn from a NumPy generator."""
@@ -287,7 +285,7 @@ class Tables(ABC):
 
     def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers) -> None:
         """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
-        stroke.address(which, actions, self.arrays, buffers.arrays, self.packed, self.rules.fidelity)
+        stroke.address(which, actions, self.arrays, buffers.struck, self.packed, self.rules.fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots of the tables ``which`` that have been struck; returns the rows of shots that need ``again``."""
