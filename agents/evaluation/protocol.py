@@ -21,7 +21,6 @@ tables above and below.
 """
 
 import argparse
-import json
 import os
 import shlex
 import sys
@@ -34,7 +33,7 @@ with needs("agents.evaluate"):
     import numpy as np
 
     import snooker_env
-    from commands.files import writable, write_atomic
+    from commands.files import writable, write_atomic, write_json
     from commands.physics_option import physics_option
     from commands.provenance import provenance
     from snooker_env.benchmark import HELD_OUT_SEED, RESAMPLES, counts, play_visits, tables_of
@@ -298,7 +297,7 @@ def write(report, shown, args):
         drawn = files["picture"] and Path(os.path.relpath(files["picture"], file.parent)).as_posix()
         write_atomic(file, markdown(report, drawn))
 
-    writers = {"json": lambda file: write_atomic(file, json.dumps(report, indent=1) + "\n"), "markdown": text, "picture": picture}
+    writers = {"json": lambda file: write_json(file, report), "markdown": text, "picture": picture}
     for name, file in files.items():
         try:
             if file:

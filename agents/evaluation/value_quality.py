@@ -9,7 +9,6 @@ same positions. Standard errors are over visits.
 """
 
 import argparse
-import json
 import shlex
 import sys
 from pathlib import Path
@@ -20,7 +19,7 @@ with needs("agents.value_quality"):
     import numpy as np
 
     import snooker_env
-    from commands.files import writable, write_atomic
+    from commands.files import writable, write_atomic, write_json
     from commands.provenance import provenance
     from snooker_env.benchmark import play_visits, tables_of
     from snooker_env.checks import integer, refuse
@@ -117,7 +116,7 @@ def main(argv=None):
     report = {"command": "python -m agents.value_quality " + shlex.join(argv), "agent": args.agent, **provenance()}
     report["results"] = [quality(player_of(args.agent), args.visits, layout, noise) for layout in args.layouts for noise in args.noise]
     if args.json:
-        write_atomic(args.json, json.dumps(report, indent=1) + "\n")
+        write_json(args.json, report)
     if args.markdown:
         made = f"snooker_env {report['version']}, at commit {report['commit']} on {report['machine']}"
         write_atomic(args.markdown, page(f"How good the value of {args.agent} is", report["command"], made, parts(report)))

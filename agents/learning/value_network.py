@@ -45,16 +45,9 @@ class ValueNetwork(nn.Module):
 
 
 class Value:
-    """The value [points] of positions by a ``ValueNetwork``: called with n ``Positions``, it returns float32 (n,).
+    """The value [points] of positions by the present weights of a ``ValueNetwork``: called with n ``Positions``, it returns float32 (n,).
 
-    Parameters
-    ----------
-    network : ValueNetwork
-        Its present weights are copied.
-    spread : float
-        Standard deviation of the cue ball's direction [rad], of ``planning.spread_of``.
-    threads : int
-        Largest number of threads; fewer than ``WORTH_A_THREAD`` positions take one. Results do not depend on it.
+    ``spread``: standard deviation of the cue ball's direction [rad], of ``planning.spread_of``. Results do not depend on ``threads``.
     """
 
     def __init__(self, network, spread, threads=1):
