@@ -4,10 +4,10 @@ import io
 import json
 import tempfile
 
-from snooker_env._files import write_atomic
+from snooker_env._files import UNFINISHED, write_atomic
 from snooker_env.checks import refuse
 
-__all__ = ["save_figure", "writable", "write_atomic", "write_json"]
+__all__ = ["UNFINISHED", "save_figure", "writable", "write_atomic", "write_json"]
 
 
 def writable(name, file):

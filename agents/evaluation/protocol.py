@@ -36,6 +36,7 @@ with needs("agents.evaluate"):
     from commands.files import writable, write_atomic, write_json
     from commands.physics_option import physics_option
     from commands.provenance import provenance
+    from commands.tables import show
     from snooker_env.benchmark import HELD_OUT_SEED, RESAMPLES, counts, play_visits, tables_of
     from snooker_env.checks import choice, integer, parse_fidelity, refuse
     from snooker_env.game import plan_of
@@ -51,7 +52,6 @@ with needs("agents.evaluate"):
     from .entrants import Entrant, options_of
     from .metrics import EntrantMetrics
     from .report import AXES, main_condition, markdown, parts
-    from .text_tables import show
     from .travel import sent
     from .visits import joined, parts_of
 

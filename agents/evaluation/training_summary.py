@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from snooker_env._tables import text_table
+from commands.tables import text_table
 from snooker_env.benchmark import play_visits, summary, tables_of
 
 from ..features.views import view_of

@@ -21,13 +21,13 @@ with needs("agents.value_quality"):
     import snooker_env
     from commands.files import writable, write_atomic, write_json
     from commands.provenance import provenance
+    from commands.tables import TextTable, page, show
     from snooker_env.benchmark import play_visits, tables_of
     from snooker_env.checks import integer, refuse
     from snooker_env.planning import RULE_OF_THUMB, SURE, Positions, prospects_of
     from snooker_env.tasks import Noise
 
     from ..players.by_name import player_of
-    from .text_tables import TextTable, page, show
 
 GROUPS, LEAST = 10, 20
 """Number of groups of positions, fewer where a group would have fewer than ``LEAST``."""
