@@ -2,11 +2,10 @@
 
 import os
 import re
-import uuid
 from collections.abc import Callable
 from pathlib import Path
 
-UNFINISHED = re.compile(r"\..+\.[0-9a-f]{32}\.tmp(\.\w+)?")
+UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")
 """Names of the temporary files; a process that was killed leaves one behind."""
 
 
@@ -21,7 +20,7 @@ def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], objec
     if target.exists() and not target.is_file():
         write(target)
         return
-    temporary = target.with_name(f".{target.stem}.{uuid.uuid4().hex}.tmp{target.suffix}")  # a name that no machine uses twice
+    temporary = target.with_name(f".{target.stem}.{os.urandom(8).hex()}.tmp{target.suffix}")  # a name that no machine uses twice
     try:
         write(temporary)
         with temporary.open("rb+") as file:

@@ -1,4 +1,4 @@
-"""How are tables and figures written, on a terminal and in Markdown?"""
+"""How are tables and figures written, on a terminal and in Markdown? Cells are texts, and a figure carries its interval."""
 
 from collections.abc import Mapping, Sequence
 

@@ -129,7 +129,8 @@ class Cluster(Here):
         try:
             result, processor = self._ray.get(one)
         except exceptions.RayTaskError as error:
-            raise fault_of(error.cause, error.ip) from None
+            where = re.search(r"\bip=([^,)\s]+)", str(error))
+            raise fault_of(error.cause, where[1] if where else "another machine") from None
         except exceptions.RayError as error:
             raise ClusterError(f"a part was given up, its worker died {RETRIES + 1} times ({_line(error)})") from None
         if self._processors and processor not in self._processors:

@@ -24,6 +24,7 @@ with needs("agents.tournament"):
     import snooker_env
     from commands.files import writable, write_atomic
     from commands.physics_option import physics_option
+    from commands.tables import show
     from snooker_env import Options
     from snooker_env.benchmark import RESAMPLES, machine, read_result, write_result
     from snooker_env.checks import choice, integer, refuse
@@ -35,7 +36,6 @@ with needs("agents.tournament"):
     from ..players.by_name import NAMES, player_of
     from . import encounters
     from .entrants import Entrant, options_of
-    from .text_tables import show
     from .tournament_figures import ANCHOR_ELO, schedule
     from .tournament_file import faults, kept, result_of, seeds_of
     from .tournament_play import CHUNK, TABLES, TimedPlayer

@@ -109,7 +109,8 @@ def results_of(agents, seeds, where, count=None):
 def test_two_nodes_play_what_one_machine_plays(cluster, monkeypatch):
     """Every kind of player; by the workers of both nodes."""
     monkeypatch.setattr(visits, "SIZE", 10)
-    agents = [Entrant.of(name) for name in ("random", "ghost_ball", "best_pot_30", "planner_30", "ppo_mask", "tests.cluster.players:Noted")]
+    names = ("tests.cluster.players:Noted", "random", "ghost_ball", "best_pot_30", "planner_30", "ppo_mask")
+    agents = [Entrant.of(name) for name in names]
     seeds = tables_of("held_out", 24)
     assert cluster.cores == 2
     far, near = results_of(agents, seeds, cluster), results_of(agents, seeds, Here())

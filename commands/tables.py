@@ -3,7 +3,9 @@
 from dataclasses import dataclass, replace
 from textwrap import fill
 
-from snooker_env._tables import markdown_table, text_table
+from snooker_env._tables import markdown_table, shown, text_table
+
+__all__ = ["WIDTH", "TextTable", "markdown_table", "page", "show", "shown", "text_table"]
 
 WIDTH = 100
 """Columns of text that no table is wider than."""
