@@ -109,7 +109,7 @@ class Session:
         return [k for k, act in enumerate(self.acts[: self.at]) if act.played is not None]
 
     def nominations(self) -> tuple[int, ...]:
-        """The colours that the striker may nominate before his stroke: after a red, and as a free ball."""
+        """The colours that the striker may nominate before their stroke: after a red, and as a free ball."""
         frame = self.frame
         if frame.phase != "stroke":
             return ()
@@ -172,7 +172,7 @@ class Session:
             raise refuse("nominate", NAMES[nominated], allowed)
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
-        """Play the striker's stroke from where the cue ball lies; ``nominated``: his colour, or AUTO for the one first struck."""
+        """Play the striker's stroke from where the cue ball lies; ``nominated``: the colour named, or AUTO for the one first struck."""
         self.check_stroke(nominated)
         before, tables = self.state, self.tables
         striker = self.frame.striker

@@ -12,7 +12,7 @@ import yaml
 import snooker_env as sn
 
 ROOT = Path(__file__).parents[2]
-SKIPPED = {".venv", ".venv-ray", "tests", ".git", "build", "runs"}
+SKIPPED = {".venv", "tests", ".git", "build", "runs"}
 TEXTS = [p for p in ROOT.rglob("*") if p.suffix in (".py", ".md", ".sh", ".toml") and not set(p.relative_to(ROOT).parts) & SKIPPED]
 
 
