@@ -84,12 +84,12 @@ def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
     """
     errors = LEVELS[noise]
     sigma = 0.0 if errors.silent else radians(errors.direction_deg())
-    found = {}
+    tolerances = {}
     for position in positions:
         some = pots(position, most=MOST)
         for ball, pocket, tolerance in zip(some.ball[0].tolist(), some.pocket[0].tolist(), some.tolerance[0].tolist(), strict=True):
             if ball >= 0:
-                found[ball, pocket] = tolerance
+                tolerances[ball, pocket] = tolerance
     at = positions[0]
     places, ids = at.positions[0], ids_of(on & mask_of_present(at.on_table[0]))
     ways = [(ball, pocket) for ball in ids for pocket in range(len(POCKETS))]
@@ -102,15 +102,15 @@ def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
     skip: Any = np.column_stack([np.full(len(ways), CUE), balls])
     barred = obstructions(at, rows, places[balls], aims, ignore=skip)
     barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, ignore=skip)
-    return [_line(*way, places, ghosts[k], aims[k], barred[k], found, sigma) for k, way in enumerate(ways)]
+    return [_line(*way, places, ghosts[k], aims[k], barred[k], tolerances, sigma) for k, way in enumerate(ways)]
 
 
-def _line(ball, pocket, places, ghost, aim, barred, found, sigma):
+def _line(ball, pocket, places, ghost, aim, barred, tolerances, sigma):
     run, way = ghost - places[CUE], aim - places[ball]
     far, on = hypot(*run), hypot(*way)
     cos_cut = float(run @ way / max(far * on, 1e-12))
     cut = acos(min(1.0, max(-1.0, cos_cut)))
-    tolerance = found.get((ball, pocket), 0.0)
+    tolerance = tolerances.get((ball, pocket), 0.0)
     blocked = tuple(NAMES[i] for i in np.flatnonzero(barred))
     why = "" if tolerance or blocked else "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
     chance = erf(tolerance / (sigma * sqrt(2.0))) if sigma else None
