@@ -52,7 +52,7 @@ class Suggestion(CueStroke):
     spread : float or None
         Root of the mean square distance from that point [m].
     score : float or None
-        The agent's own score of the stroke, in its own unit: points for the built-in lookahead, a probability for a policy.
+        The agent's own score of the stroke, in its own unit: points for a search, a probability for a policy.
     words : str
         All this in one line of text.
 
@@ -124,7 +124,7 @@ class Advice(Sequence[Suggestion]):
     agent : str
         Name of the agent.
     own : bool
-        Whether the strokes are the agent's own; False where none of its own is fair, so that the built-in lookahead was asked.
+        Whether the strokes are the agent's own; False where none of its own is fair, so that others were judged, too.
     noise : str or dict
         Execution errors: a level's name, or the fields of ``Noise``.
     samples : int
@@ -174,7 +174,7 @@ class Advice(Sequence[Suggestion]):
         """Whose strokes these are if not the agent's own, and by what they are ordered, in words."""
         by = {True: "pots by points expected", False: "strokes without a pot by how often they are fair"}
         parts = ", then ".join(by[pot] for pot in dict.fromkeys(one.kind == "pot" for one in self))
-        whose = "" if self.own else f"{self.agent} has no fair stroke here; these are of lookahead. "
+        whose = "" if self.own else f"{self.agent} has no fair stroke here; these are not its own. "
         return f"{whose}{parts.capitalize()}:"
 
     def to_dict(self) -> dict[str, Any]:

@@ -8,7 +8,16 @@ from numpy.typing import NDArray
 
 from .._check import choice, refuse_what
 from .._types import Bools, Ints, Observation
-from ..game.frame_columns import ANYWHERE, IN_HAND, PLACE_ANYWHERE
+from ..game.balls import mask_of_present
+from ..game.frame_columns import (
+    ANYWHERE,
+    COLUMNS,
+    IN_HAND,
+    PLACE_ANYWHERE,
+    SCORE_0,
+    VISIT_COLUMNS,
+    begin_frame,
+)
 from ..planning import Positions
 from ..planning.trials import decoded
 from ..tasks.discrete_actions import Choices
@@ -77,9 +86,7 @@ class SeenPlayer(BoundPlayer):
     def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
         given = dict(getattr(seen, "options", {}) if options is None else options)
         self.seen, self.name = seen, name or type(seen).__name__
-        self.frames = (
-            choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
-        )
+        self.frames = choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
         for key in given:
             choice(f"key of the options of player {self.name}", key, OPTIONS)
         if not self.frames:
@@ -123,7 +130,7 @@ class SeenPlayer(BoundPlayer):
         """The positions as it sees them, and where cue balls in hand have been placed for it (n, 2), else NaN."""
         none = np.full((len(at), 2), np.nan)
         if self.frames:
-            return at, none
+            return (at if at.of_frames else _begun(at)), none
         if not self._rules.actions.placement:
             return placed(at, keys)
         anywhere, visits = at.anywhere & at.in_hand, at.as_visits()
@@ -148,9 +155,16 @@ class SeenPlayer(BoundPlayer):
         try:
             actions = np.asarray(answer)
             if actions.ndim == 0 or len(actions) != n:
-                raise refuse_what(
-                    "actions", f"array of shape {actions.shape}", f"must be {n}, one for each position"
-                )
+                raise refuse_what("actions", f"array of shape {actions.shape}", f"must be {n}, one for each position")
             return rules.actions.check_many(actions, n)
         except ValueError as error:
             raise ValueError(f"player {self.name}: {error}") from None
+
+
+def _begun(at: Positions) -> Positions:
+    """Positions of visits as those of frames: the striker's points alone have been scored."""
+    game = np.zeros((len(at), COLUMNS), np.int64)
+    for row, on_table in zip(game, at.on_table, strict=True):
+        begin_frame(row, mask_of_present(on_table), 0, 0)
+    game[:, :VISIT_COLUMNS], game[:, SCORE_0] = at.game, at.points
+    return Positions(at.positions, at.on_table, game)

@@ -209,10 +209,13 @@ def test_an_agent_plays_by_itself_and_waits_after_an_undo(game):
 
 def test_an_agent_that_fails_is_reported_and_the_game_waits(game):
     class Broken:
-        def act(self, *given):
+        def at(self, rules):
+            return self
+
+        def play(self, positions, seeds):
             raise AssertionError
 
-    game.service.seats._players["broken"] = Broken()
+    game.service.seats.players["broken"] = Broken()
     game("position", position=EASY)
     game("players", players=["broken", "person"])
     state = waited(game, lambda s: not s["thinking"])
@@ -232,7 +235,7 @@ def test_only_agents_of_the_start_may_be_named(game):
 
 def test_advice_is_ranked_named_and_drawn(game):
     game("position", position=EASY)
-    found = game("advise", agent="lookahead", n=10, samples=40)["suggestions"]
+    found = game("advise", n=10, samples=40)["suggestions"]
     assert 1 <= len(found) <= 10
     assert all("points expected" in one["words"] for one in found)
     best = next(one for one in found if (one["ball"], one["pocket"]) == ("red 1", "top right"))

@@ -266,7 +266,7 @@ def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--position", "nowhere.json"], "nowhere.json"), (["--layout", "x"], "layout = 'x'"), (["--agent", "nobody"], "agent = 'nobody'"),
+        (["--position", "nowhere.json"], "nowhere.json"), (["--layout", "x"], "layout = 'x'"), (["--agent", "nobody"], "player = 'nobody'"),
         (["--position", str(ROOT / "pyproject.toml")], "must be a file of JSON"), (["--port", "99999"], "port"),
         (["--seed", "-1"], "seed = -1"),
     ],
