@@ -4,13 +4,10 @@ A player's strokes depend on positions and seeds alone, and the seeds on the tab
 machine plays at once.
 """
 
-import itertools
-
 import numpy as np
 
 from commands.physics_option import physics_option
 from snooker_env.benchmark import Strokes, play_visits
-from snooker_env.players import decision_seeds
 
 from ..cluster.job import Part
 from .travel import arrived
@@ -30,8 +27,8 @@ def play(shared, args, threads):
     """The task: the strokes of some visits, a dict of arrays."""
     k, seeds = args["k"], args["seeds"]
     options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
-    again = rekeyed(k, np.array(seeds)) if args["rekey"] else None
-    strokes = play_visits(arrived(shared), len(seeds), first_seed=seeds, seed=k, threads=threads, after=again, **options)
+    rekey = k if args["rekey"] else None
+    strokes = play_visits(arrived(shared), len(seeds), first_seed=seeds, seed=k, threads=threads, rekey=rekey, **options)
     columns = {name: getattr(strokes, name) for name in COLUMNS}
     return columns | {"seconds": np.float64(strokes.decision_seconds), "simulated": np.int64(strokes.simulated)}
 
@@ -43,15 +40,3 @@ def joined(results, total):
     order = np.lexsort((columns["visit"], columns["number"]))
     seconds, simulated = (sum(one[name].item() for one in results) for name in ("seconds", "simulated"))
     return Strokes(total, *(columns[name][order] for name in COLUMNS), decision_seconds=seconds, simulated=simulated)
-
-
-def rekeyed(seed, seeds):
-    """Gives tables new random streams after each decision: whoever saw the errors coming would lose by it. ``seeds``: the tables'."""
-    decisions = itertools.count()
-
-    def again(tables):
-        number = next(decisions)
-        for column, part in enumerate((2 * number, 2 * number + 1)):
-            tables.tables.streams[:, column] = decision_seeds(seed ^ 0xA5A5A5A5, seeds, part).astype(np.uint64)
-
-    return again

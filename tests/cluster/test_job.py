@@ -27,8 +27,7 @@ def same(a, b):
 def test_parts_make_what_all_tables_at_once_make(name, rekey, monkeypatch):
     monkeypatch.setattr(visits, "SIZE", 8)
     seeds, agent = tables_of("held_out", 20), Entrant("a", (name,))
-    again = visits.rekeyed(0, np.array(seeds)) if rekey else None
-    at_once = play_visits(player(name), 20, first_seed=seeds, after=again, **AT)
+    at_once = play_visits(player(name), 20, first_seed=seeds, rekey=0 if rekey else None, **AT)
     (parted,) = protocol.play_agent(agent, AT, seeds, 100, rekey).strokes
     assert same(at_once, parted) and parted.simulated == at_once.simulated
 
