@@ -25,9 +25,9 @@ SHARED = ("physics", "table", "fidelity", "noise")
 OF_FRAMES = ("game", "miss", "time_to_play")
 """Those of frames alone."""
 OPTIONS = (
-    "action", "aim", "observation", "elevation", "placement", "decision", "nominate", "concede", "claim", "lot",
+    "action", "aim", "observation", "elevation", "placement", "decision", "nominate", "concede", "claim", "lot", "miss",
 )  # fmt: skip
-"""Options that say how a network sees and acts."""
+"""Options that say how a network sees and acts; with a miss rule it sees the layout that "replace" restores."""
 
 
 @runtime_checkable
@@ -77,9 +77,7 @@ class SeenPlayer(BoundPlayer):
     def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
         given = dict(getattr(seen, "options", {}) if options is None else options)
         self.seen, self.name = seen, name or type(seen).__name__
-        self.frames = (
-            choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
-        )
+        self.frames = choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
         for key in given:
             choice(f"key of the options of player {self.name}", key, OPTIONS)
         if not self.frames:
@@ -95,8 +93,9 @@ class SeenPlayer(BoundPlayer):
         """Read its options with the physics of ``options``; ValueError if they are not those of an environment."""
         same: dict[str, Any] = {name: getattr(options, name) for name in SHARED}
         if self.frames:
-            same |= {"task": "frame"} | {name: getattr(options, name) for name in OF_FRAMES}
-        self._rules = Options(**same, **self.sees).rules
+            match = {"task": "match", "frames": options.frames} if options.task == "match" else {"task": "frame"}
+            same |= match | {name: getattr(options, name) for name in OF_FRAMES}
+        self._rules = Options(**same | self.sees).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
@@ -138,19 +137,15 @@ class SeenPlayer(BoundPlayer):
         tables: Any = (Frames if self.frames else Visits)(rules, 0)
         tables.n, tables.positions, tables.on_table, tables.game = n, at.positions, at.on_table, at.game
         if self.frames:
-            tables._saved_positions, tables._saved_on_table = (
-                np.zeros_like(at.positions),
-                np.zeros_like(at.on_table),
-            )
+            none = np.zeros_like(at.positions), np.zeros_like(at.on_table)
+            tables._saved_positions, tables._saved_on_table = none if at.saved is None else at.saved
         rows = np.arange(n)
         masks = tables.action_masks(rows) if isinstance(rules.actions, Choices) else None
         answer = self.seen.act(shaped(rules.observation, tables.observe(rows), masks), masks, keys)
         try:
             actions = np.asarray(answer)
             if actions.ndim == 0 or len(actions) != n:
-                raise refuse_what(
-                    "actions", f"array of shape {actions.shape}", f"must be {n}, one for each position"
-                )
+                raise refuse_what("actions", f"array of shape {actions.shape}", f"must be {n}, one for each position")
             return rules.actions.check_many(actions, n)
         except ValueError as error:
             raise ValueError(f"player {self.name}: {error}") from None

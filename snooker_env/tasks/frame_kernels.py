@@ -105,7 +105,7 @@ _OK = int(Status.OK)
 
 
 @kernel
-def _choose(k, wish, rules, row, positions, on_table, saved):
+def choose_as(k, wish, rules, row, positions, on_table, saved):
     """The decision ``wish`` after a foul; whether a stroke follows."""
     what = PLAY_AGAIN if wish < -1.0 / 3.0 else PLAY
     if wish > 1.0 / 3.0:
@@ -119,7 +119,7 @@ def _choose(k, wish, rules, row, positions, on_table, saved):
 
 
 @kernel
-def _give_up(row, kind):
+def give_up(row, kind):
     """Charge the loser of a frame that he gave up, by conceding it or by a third miss, with the points left on the table; the score stands.
 
     S4 R5(b), for matches in which points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once.
@@ -144,14 +144,14 @@ def decide(which, actions, options, rules, kind, positions, on_table, game, save
         plays[j] = said == SAYS_NOTHING
         if said == CONCEDES:
             concede(row)
-            _give_up(row, kind)
+            give_up(row, kind)
         elif said == CLAIMS:
             claim(row)
         elif row[PHASE] == LOT:
             draw(row, 1 - row[STRIKER] if said == OTHER_BEGINS else row[STRIKER])
         elif row[PHASE] == CHOICE:
             wish = a[int(options[A_DECISION])] if options[A_DECISION] >= 0 else 0.0
-            plays[j] = _choose(k, wish, rules, row, positions, on_table, saved)
+            plays[j] = choose_as(k, wish, rules, row, positions, on_table, saved)
         if plays[j] and options[A_NOMINATE] >= 0:
             nominated[k] = nomination_of(a, options, row)
 
@@ -219,7 +219,7 @@ def conclude(which, positions, on_table, game, streams, nominated, r, potted, st
         after_stroke(row, result, rules, miss, clear, full, attempt, stored, time_to_play, lasted)
         row[STROKES] += 1
         if row[OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
-            _give_up(row, kind)
+            give_up(row, kind)
         if row[PHASE] == LOT:
             _leave_the_black(p, on)
             u, _ = pair(streams[k])
