@@ -57,14 +57,12 @@ class TrialVisits(Visits):
         _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
 
 
-def decoded(
-    rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None
-) -> tuple[Floats, Positions]:
+def decoded(rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None) -> tuple[Floats, Positions]:
     """Strokes (n, 5) that checked actions mean on ``at[which]``, and where they are played: the cue ball placed where they say.
 
     ``nominated`` (n,): of frames, what is nominated with each stroke; a choice is a pot of that ball.
     """
-    visits, after, n = TrialVisits(replace(rules, noise=NO_NOISE, opponent=None), 0), at[which], len(which)
+    visits, after, n = TrialVisits(replace(rules, noise=NO_NOISE), 0), at[which], len(which)
     visits.lay(after, np.zeros((n, 2), np.uint64))
     if nominated is not None:
         visits.nominated = nominated

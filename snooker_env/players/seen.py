@@ -34,9 +34,9 @@ SHARED = ("physics", "table", "fidelity", "noise")
 OF_FRAMES = ("game", "miss", "time_to_play")
 """Those of frames alone."""
 OPTIONS = (
-    "action", "aim", "observation", "elevation", "placement", "decision", "nominate", "concede", "claim", "lot",
+    "action", "aim", "observation", "elevation", "placement", "decision", "nominate", "concede", "claim", "lot", "miss",
 )  # fmt: skip
-"""Options that say how a network sees and acts."""
+"""Options that say how a network sees and acts; with a miss rule it sees the layout that "replace" restores."""
 
 
 @runtime_checkable
@@ -102,8 +102,9 @@ class SeenPlayer(BoundPlayer):
         """Read its options with the physics of ``options``; ValueError if they are not those of an environment."""
         same: dict[str, Any] = {name: getattr(options, name) for name in SHARED}
         if self.frames:
-            same |= {"task": "frame"} | {name: getattr(options, name) for name in OF_FRAMES}
-        self._rules = Options(**same, **self.sees).rules
+            match = {"task": "match", "frames": options.frames} if options.task == "match" else {"task": "frame"}
+            same |= match | {name: getattr(options, name) for name in OF_FRAMES}
+        self._rules = Options(**same | self.sees).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
@@ -145,10 +146,8 @@ class SeenPlayer(BoundPlayer):
         tables: Any = (Frames if self.frames else Visits)(rules, 0)
         tables.n, tables.positions, tables.on_table, tables.game = n, at.positions, at.on_table, at.game
         if self.frames:
-            tables._saved_positions, tables._saved_on_table = (
-                np.zeros_like(at.positions),
-                np.zeros_like(at.on_table),
-            )
+            none = np.zeros_like(at.positions), np.zeros_like(at.on_table)
+            tables._saved_positions, tables._saved_on_table = none if at.saved is None else at.saved
         rows = np.arange(n)
         masks = tables.action_masks(rows) if isinstance(rules.actions, Choices) else None
         answer = self.seen.act(shaped(rules.observation, tables.observe(rows), masks), masks, keys)

@@ -130,7 +130,7 @@ class Setting(NamedTuple):
 
 
 @kernel
-def _choose(k, wish, rules, tables, saved):
+def choose_as(k, wish, rules, tables, saved):
     """The decision ``wish`` after a foul; whether a stroke follows."""
     row = tables.game[k]
     what = PLAY_AGAIN if wish < -1.0 / 3.0 else PLAY
@@ -145,7 +145,7 @@ def _choose(k, wish, rules, tables, saved):
 
 
 @kernel
-def _give_up(row, reward):
+def give_up(row, reward):
     """Charge the loser of a frame that was given up, conceded or by a third miss, with the points left on the table; the score stands.
 
     S4 R5(b), for matches in which points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once.
@@ -171,14 +171,14 @@ def decide(which, actions, tables, saved, setting, plays):
         plays[j] = said == SAYS_NOTHING
         if said == CONCEDES:
             concede(row)
-            _give_up(row, setting.reward)
+            give_up(row, setting.reward)
         elif said == CLAIMS:
             claim(row)
         elif row[PHASE] == LOT:
             draw(row, 1 - row[STRIKER] if said == OTHER_BEGINS else row[STRIKER])
         elif row[PHASE] == CHOICE:
             wish = a[int(options[A_DECISION])] if options[A_DECISION] >= 0 else 0.0
-            plays[j] = _choose(k, wish, setting.rules, tables, saved)
+            plays[j] = choose_as(k, wish, setting.rules, tables, saved)
         if plays[j] and options[A_NOMINATE] >= 0:
             tables.nominated[k] = nomination_of(a, options, row)
 
@@ -243,7 +243,7 @@ def conclude(which, tables, shots, setting, own, alone, played, output):
         after_stroke(row, result, conditions, effort, setting.miss != NO_MISSES, int(1000.0 * shots.duration[j] + 0.5))
         row[STROKES] += 1
         if row[OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
-            _give_up(row, setting.reward)
+            give_up(row, setting.reward)
         if row[PHASE] == LOT:
             _leave_the_black(p, on)
             u, _ = pair(tables.streams[k])

@@ -16,6 +16,7 @@ from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import stream_of
 from ..physics.parameters import Physics
 from . import discrete_actions, stroke
+from .box_actions import Actions
 from .discrete_actions import Choices
 from .options import NEVER, Rules
 from .played import Played, judged, struck
@@ -241,10 +242,12 @@ class Tables(ABC):
 
     def action_masks(self, which: Ints | None = None) -> Bools:
         """Available discrete actions on the tables ``which`` (all if None): bool (len(which), choices)."""
-        which = np.arange(self.n) if which is None else which
-        actions = self.rules.actions
+        return self.masks_of(np.arange(self.n) if which is None else which, self.rules.actions, self.packed[0])
+
+    def masks_of(self, which: Ints, actions: Actions | Choices, options: Floats) -> Bools:
+        """``action_masks`` of one space of actions; ``options``: packed, of it."""
         out = np.empty((len(which), actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE), np.bool_)
-        options = self.packed[0] if isinstance(actions, Choices) else STROKES_ONLY
+        options = options if isinstance(actions, Choices) else STROKES_ONLY
         discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
         return out
 
@@ -285,7 +288,11 @@ class Tables(ABC):
 
     def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers) -> None:
         """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
-        stroke.address(which, actions, self.arrays, buffers.struck, self.packed, self.rules.fidelity)
+        self.strike(which, actions, buffers, self.packed)
+
+    def strike(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: tuple[Floats, Floats, Floats]) -> None:
+        """``address`` with the options and errors of ``packed``."""
+        stroke.address(which, actions, self.arrays, buffers.struck, packed, self.rules.fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots of the tables ``which`` that have been struck; returns the rows of shots that need ``again``."""
