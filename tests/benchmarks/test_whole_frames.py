@@ -3,9 +3,6 @@
 import pytest
 
 from benchmarks import frames
-from snooker_env.game.balls import BLACK, PINK
-from snooker_env.game.frame_columns import SCORE_0
-from snooker_env.tasks.ghost_ball import GhostBallOpponent
 
 
 @pytest.mark.parametrize(("kind", "miss", "count"), [("random", "off", 30), ("random", "clear_path", 10), ("ghost_ball", "off", 10)])
