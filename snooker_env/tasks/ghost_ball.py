@@ -156,7 +156,8 @@ def _ghost_ball(which, tables, shots, packed, rules):
         if options[A_NOMINATE] >= 0:
             nominated[k] = named(p, on, row, aim)
         speed *= 1.0 + (0.04 if row[IN_HAND] and racked(p, on) else 0.2) * (jitter - 0.5)
-        strike((speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0), p, on, stream, options, noise, j, shots)
+        intended = speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0
+        strike(intended, p, on, stream, options, noise, j, shots)
 
 
 class GhostBallOpponent:
