@@ -113,8 +113,9 @@ def _spread_stroke(i, seed, stroke):
 def _aim(stroke, positions, pot, law, work):
     """Solve the aim of a stroke at a pot."""
     pocket, ghost = int(pot[POT_POCKET]), (pot[GHOST_X], pot[GHOST_Y])
-    target, tip = (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]), (stroke[SPEED], stroke[SIDE], stroke[TOP], 0.0)
-    stroke[AIM] = solved_aim(positions, int(pot[POT_BALL]), target, ghost, tip, law, work)
+    target, level = (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]), 0.0
+    played = stroke[SPEED], stroke[SIDE], stroke[TOP], level
+    stroke[AIM] = solved_aim(positions, int(pot[POT_BALL]), target, ghost, played, law, work)
 
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))

@@ -40,14 +40,15 @@ def remember(which, tables, saved, shots, noses, jaws):
         if shots.status[j] != _OK:
             continue
         k = which[j]
-        positions, on_table, row, seen = tables.positions[k], tables.on_table[k], tables.game[k], shots.seen[j]
-        mask = bits(on_table)
+        positions, on_table, row = tables.positions[k], tables.on_table[k], tables.game[k]
+        mask, seen = bits(on_table), shots.seen[j]
         first, touching, moved, potted = see(j, shots, positions, on_table)
         seen[CLEAR_PATH], seen[FULL_PATH] = True, False
         before = Before(mask, row[BALL_ON], row[FREE_BALL], 0)
         if ruling(before, Facts(first, touching, moved, potted, 0, tables.nominated[k]), 0).fouls & MISSED:
             in_hand, on = row[IN_HAND] + row[ANYWHERE], strikeable(row, mask & ~1)
-            seen[CLEAR_PATH], seen[FULL_PATH] = best_paths(positions, on_table, on, in_hand, noses, jaws, BALL_RADIUS)
+            clear, full = best_paths(positions, on_table, on, in_hand, noses, jaws, BALL_RADIUS)
+            seen[CLEAR_PATH], seen[FULL_PATH] = clear, full
         for i in range(N_BALLS):
             saved.positions[k, i, 0], saved.positions[k, i, 1] = positions[i, 0], positions[i, 1]
             saved.on_table[k, i] = on_table[i]
@@ -66,9 +67,9 @@ def question(which, on_table, game, status, seen, asked):
 
 @entry(what="the attempts of snookered strikers", seconds=1)
 def gap_of(positions, on_table, row, shots, path, j):
-    """How near the cue ball came to a ball on in shot j, before it struck another or came to rest [m]; ``row``: the frame before it.
+    """How near the cue ball came to a ball on in shot j, before it struck another or came to rest [m].
 
-    ``path``: the segments of all paths and their numbers.
+    ``row``: the frame before it; ``path``: the segments of all paths and their numbers.
     """
     shots, (segments, n_segments) = PlayedArrays(*shots), path
     until, on = shots.duration[j], strikeable(row, bits(on_table) & ~1)

@@ -91,7 +91,8 @@ class Frames(Tables):
         self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
         game, won = rules.rule_set, rules.frames // 2 + 1
-        self._numbers = game.code, self._miss, rules.time_to_play, self._reward, limit, rules.max_strokes, won, game.clock
+        limits = limit, rules.max_strokes, won, game.clock
+        self._numbers = game.code, self._miss, rules.time_to_play, self._reward, *limits
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
             write_frame(Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.saved, 0)
@@ -248,7 +249,8 @@ class Frames(Tables):
         crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _finish(self, which, out):
-        frame_kernels.finish(which, self.arrays, self.saved_arrays, self._setting, self.due, self._replies, self._played, out.arrays)
+        counted = self.due, self._replies, self._played
+        frame_kernels.finish(which, self.arrays, self.saved_arrays, self._setting, *counted, out.arrays)
 
     def _reply(self, which, out, crew):
         """All strokes of the opponent on the tables ``which`` until it is the agent's turn or the frame has ended."""
@@ -296,7 +298,8 @@ class Frames(Tables):
         self.begun[which], self.due[which], self.nominated[which] = True, False, AUTO
 
     def _show(self, which, out, *, fresh):
-        frame_kernels.show(which, fresh, self.arrays, self.saved_arrays, self._setting, self._replies, out.arrays, out.last)
+        tables = self.arrays, self.saved_arrays, self._setting
+        frame_kernels.show(which, fresh, *tables, self._replies, out.arrays, out.last)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
         """The info of the first table as ``player`` sees it; ``last``: the output of the last stroke, or None if there is none."""

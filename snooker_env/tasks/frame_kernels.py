@@ -1,8 +1,8 @@
 """What happens to frames inside a step? Decisions, the referee, observations, rewards and infos, as kernels over tables.
 
-``tasks.frame`` calls them in the order of a turn. ``which``: the tables concerned; row j of a shot's arrays belongs to which[j].
-``tables``, ``saved``, ``shots``, ``output``, ``setting``: the parts of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and
-``Setting``.
+``tasks.frame`` calls them in the order of a turn. ``which``: the tables concerned; row j of a shot's arrays
+belongs to which[j]. ``tables``, ``saved``, ``shots``, ``output``, ``setting``: the parts of ``TableArrays``,
+``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``.
 """
 
 from typing import NamedTuple
@@ -146,7 +146,7 @@ def choose_as(k, wish, rules, tables, saved):
 
 @kernel
 def give_up(row, reward):
-    """Charge the loser of a frame that was given up, conceded or by a third miss, with the points left on the table; the score stands.
+    """Charge the loser of a frame that was given up, or lost by a third miss, with the points left.
 
     S4 R5(b), for matches in which points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once.
     """
@@ -159,8 +159,9 @@ def give_up(row, reward):
 def decide(which, actions, tables, saved, setting, plays):
     """What the strikers of the tables ``which`` say before a stroke: declarations, decisions after a foul, nominations.
 
-    A decision below -1/3: the offender plays again; above 1/3: from the position before, if a miss was called, or, after the last one that
-    may be, the striker from anywhere on the table. ``plays[j]``: whether a stroke follows.
+    A decision below -1/3: the offender plays again; above 1/3: from the position before, if a miss was
+    called, or, after the last one that may be, the striker from anywhere on the table. ``plays[j]``: whether
+    a stroke follows.
     """
     tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
     options = setting.options
@@ -215,7 +216,8 @@ def conclude(which, tables, shots, setting, own, alone, played, output):
 
     What each striker has nominated is AUTO afterwards. ``alone``: the table returns to the agent.
     """
-    tables, shots, setting, out = TableArrays(*tables), PlayedArrays(*shots), Setting(*setting), OutputArrays(*output)
+    tables, shots, setting = TableArrays(*tables), PlayedArrays(*shots), Setting(*setting)
+    out = OutputArrays(*output)
     rules, conditions = setting.rules, Conditions(setting.rules, setting.miss, setting.time_to_play)
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
@@ -240,7 +242,8 @@ def conclude(which, tables, shots, setting, own, alone, played, output):
         tables.nominated[k] = AUTO
         write_ruling(seen, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result)
         effort = Effort(seen[CLEAR_PATH], seen[FULL_PATH], seen[ATTEMPT])
-        after_stroke(row, result, conditions, effort, setting.miss != NO_MISSES, int(1000.0 * shots.duration[j] + 0.5))
+        lasted = int(1000.0 * shots.duration[j] + 0.5)
+        after_stroke(row, result, conditions, effort, setting.miss != NO_MISSES, lasted)
         row[STROKES] += 1
         if row[OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
             give_up(row, setting.reward)
@@ -272,18 +275,19 @@ def _share(number, scale):
 
 @kernel
 def observe_frame_into(out, k, tables, saved, setting, player):
-    """Write the observation of ``player``: that of a visit, then ``observations.FRAME_ENTRIES``, then the saved layout if there is room."""
+    """Write what ``player`` observes: as in a visit, ``FRAME_ENTRIES`` and, with room, the saved layout."""
     row, present = tables.game[k], tables.on_table[k]
     on = strikeable(row, bits(present) & ~1)
     observe_into(out, tables.positions[k], present, row[BALL_ON], on, row[IN_HAND], row[POINTS])
     mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
     to_play, left = not row[OVER] and row[STRIKER] == player, available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
+    clock = min(1.0, row[CLOCK] / setting.clock) if setting.clock else 0.0
     more = (
         _share(mine, 147.0), _share(other, 147.0), _share(mine - other, 147.0), left / 155.0,
         1.0 if to_play else 0.0, 1.0 if row[FREE_BALL] else 0.0, 1.0 if row[PHASE] == CHOICE else 0.0, 1.0 if row[MISS_CALLED] else 0.0,
         1.0 if row[RESPOTTED_BLACK] else 0.0, 1.0 if row[BREAKER] == player else 0.0, row[FAILURES] / 2.0, 1.0 if row[WARNED] else 0.0,
         1.0 if row[PHASE] == LOT else 0.0, _share(row[FRAMES_0 + player], 1.0), _share(row[FRAMES_1 - player], 1.0),
-        _share(setting.frames, 1.0), min(1.0, row[CLOCK] / setting.clock) if setting.clock else 0.0, _share(row[MISSES], 5.0),
+        _share(setting.frames, 1.0), clock, _share(row[MISSES], 5.0),
         1.0 if row[ANYWHERE] else 0.0,
     )  # fmt: skip
     for c in range(len(more)):
@@ -334,16 +338,18 @@ def finish(which, tables, saved, setting, due, replies, played, output):
 
     ``due`` (n,): whether the end of the frame has still to be reported: it is not, afterwards.
     """
-    tables, saved, setting, out = TableArrays(*tables), Layouts(*saved), Setting(*setting), OutputArrays(*output)
+    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         row = tables.game[k]
         row[STEPS] += 1
         worth = _worth(row, setting.reward)
-        out.rewards[k] = frame_reward_of(setting.reward, worth - row[PAID], row[WINNER] if row[OVER] else -1, AGENT)
+        winner = row[WINNER] if row[OVER] else -1
+        out.rewards[k] = frame_reward_of(setting.reward, worth - row[PAID], winner, AGENT)
         row[PAID], due[k] = worth, False
-        out.terminated[k] = row[OVER]
-        out.truncated[k] = (not row[OVER] and row[STROKES] >= setting.max_strokes) or row[STEPS] >= setting.limit
+        stopped = not row[OVER] and row[STROKES] >= setting.max_strokes
+        out.terminated[k], out.truncated[k] = row[OVER], stopped or row[STEPS] >= setting.limit
         if not played[k]:
             write_empty_info(k, out, row[BALL_ON])
         _write_frame_info(k, row, AGENT, replies[k], out)
@@ -377,7 +383,7 @@ def begin(which, drawn, breakers, in_hand, on_table, game, streams):
 
 @entry(what="the frames of a match", seconds=1)
 def count_frames(which, game, needed, goes_on):
-    """Count the frames that have ended on the tables ``which`` for their winners; ``goes_on[j]``: the match, won by ``needed``, does."""
+    """Count the frames that have ended on the tables ``which``; ``goes_on[j]``: nobody has won ``needed``."""
     for j in range(which.shape[0]):
         row = game[which[j]]
         row[FRAMES_0 + row[WINNER]] += 1
@@ -398,8 +404,9 @@ def begin_next(which, alone, reward, in_hand, on_table, game):
 
 @entry(what="the resets of frames", seconds=1)
 def show(which, fresh, tables, saved, setting, replies, output, last):
-    """Write the results of a reset for the tables ``which``; if ``fresh``, ``last`` (``StepOutput.last``) first keeps the previous rows."""
-    tables, saved, setting, out = TableArrays(*tables), Layouts(*saved), Setting(*setting), OutputArrays(*output)
+    """Write the results of a reset for the tables ``which``; ``fresh``: ``last`` first keeps the old rows."""
+    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         if fresh:

@@ -182,9 +182,9 @@ def address(which, actions, tables, shots, packed, fidelity):
 
 @kernel
 def see(j, shots, positions, on_table):
-    """Extract the referee's facts of shot j, played from ``positions`` and ``on_table`` (as before it), into its row of ``seen``.
+    """The referee's facts of shot j, with ``positions`` and ``on_table`` as before it; also in ``seen``.
 
-    Returns them: (first, touching, moved, potted), as in ``ruling.Facts``.
+    Returns (first, touching, moved, potted), as in ``ruling.Facts``.
     """
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
@@ -200,9 +200,9 @@ def see(j, shots, positions, on_table):
 
 @kernel
 def write_ruling(seen, player, ball_on, free_ball, before, result):
-    """Record the referee's ``Ruling`` on a shot, whose row is ``seen``; ``before``: points of the break until then."""
-    seen[PLAYER], seen[WAS_ON], seen[FREE] = player, ball_on, free_ball
-    seen[BREAK], seen[SCORED], seen[COST], seen[FOULS] = before + result.points, result.points, result.penalty, result.fouls
+    """Record the referee's ``Ruling`` on a shot in its row of ``seen``; ``before``: the break until then."""
+    seen[PLAYER], seen[WAS_ON], seen[FREE], seen[BREAK] = player, ball_on, free_ball, before + result.points
+    seen[SCORED], seen[COST], seen[FOULS] = result.points, result.penalty, result.fouls
 
 
 class ShotBuffers:

@@ -37,7 +37,7 @@ def copy_row(row, to):
 
 @kernel
 def keep_last(k, out, last):
-    """Save table k's rows of the ``OutputArrays`` in ``last``, if there is room, before a new episode overwrites them."""
+    """Save table k's rows of the output in ``last``, if it has rows, before an episode overwrites them."""
     observations, reals, counts = last
     if observations.shape[0]:
         copy_row(out.observations[k], observations[k])

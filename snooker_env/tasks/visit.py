@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .._jit import entry
+from .._jit import entry, kernel
 from .._types import Bools, Floats, Ints, Singles
 from ..game.apply_ruling import settle_visit
 from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
@@ -27,12 +27,19 @@ from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, write_empty_in
 _OK = int(Status.OK)
 
 
+@kernel
+def _observe(out, positions, on_table, state):
+    """Write the flat observation of one table."""
+    on = balls_on_kernel(state[BALL_ON], bits(on_table))
+    observe_into(out, positions, on_table, state[BALL_ON], on, state[IN_HAND], state[POINTS])
+
+
 @entry(what="the referee of visits", seconds=4)
 def _conclude(which, positions, on_table, game, shots, rules, output):
     """Judge the shots that came to rest and update their tables; write all results of the step.
 
-    ``shots``, ``output``: the parts of ``PlayedArrays``, ``OutputArrays``; ``rules``: the code of the reward, the limit of steps, whether
-    a visit ends with its first stroke.
+    ``shots``, ``output``: the parts of ``PlayedArrays``, ``OutputArrays``; ``rules``: the code of the reward,
+    the limit of steps, whether a visit ends with its first stroke.
     """
     shots, out, (reward, limit, one_stroke) = PlayedArrays(*shots), OutputArrays(*output), rules
     for j in range(which.shape[0]):
@@ -52,8 +59,7 @@ def _conclude(which, positions, on_table, game, shots, rules, output):
         state[OVER] = one_stroke or ruling.visit_end != VISIT.CONTINUES
         out.rewards[k] = reward_of(reward, ruling.points, ruling.penalty)
         out.terminated[k], out.truncated[k] = state[OVER], state[STEPS] >= limit
-        mask = bits(on)
-        observe_into(out.observations[k], p, on, state[BALL_ON], balls_on_kernel(state[BALL_ON], mask), state[IN_HAND], state[POINTS])
+        _observe(out.observations[k], p, on, state)
         write_stroke_info(k, out, j, shots, ball_on, ruling)
         out.reals[k, I_BREAK] = state[POINTS]
 
@@ -72,8 +78,7 @@ def _begin(which, fresh, in_hand, tables, output, last):
             keep_last(k, out, last)
             state[BALL_ON], state[IN_HAND] = next_on_kernel(mask), in_hand
             state[POINTS] = state[OVER] = state[STEPS] = 0
-        on = balls_on_kernel(state[BALL_ON], mask)
-        observe_into(out.observations[k], positions[k], on_table[k], state[BALL_ON], on, state[IN_HAND], state[POINTS])
+        _observe(out.observations[k], positions[k], on_table[k], state)
         write_empty_info(k, out, state[BALL_ON])
         out.reals[k, I_BREAK] = state[POINTS]
 
@@ -83,8 +88,7 @@ def observe(which, positions, on_table, game, out):
     """The flat observations of the tables ``which``: one row of ``out`` each."""
     for j in range(which.shape[0]):
         k = which[j]
-        on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
-        observe_into(out[j], positions[k], on_table[k], game[k, BALL_ON], on, game[k, IN_HAND], game[k, POINTS])
+        _observe(out[j], positions[k], on_table[k], game[k])
 
 
 class Visits(Tables):

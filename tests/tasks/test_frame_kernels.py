@@ -1,4 +1,4 @@
-"""Do tables of frames hand the referee and the frame what was played? Against ``Frame`` and Python's own calls, stroke for stroke."""
+"""Do tables of frames hand the referee and the frame what was played? Against ``Frame``, stroke by stroke."""
 
 from collections import Counter
 from dataclasses import replace
