@@ -39,8 +39,8 @@ class Here:
 
     def played(self, parts):
         """Yield the number and the result of each (task, shared data, arguments)."""
-        for k, part in enumerate(parts):
-            yield k, run(*part, self._threads)
+        for k, (task, shared, args) in enumerate(parts):
+            yield k, run(task, shared, args, self._threads)
 
     def map(self, task, shared, many):
         """The results of a task for many arguments, in their order."""
@@ -52,7 +52,7 @@ def ended(parts, shared, where, store=None):
     keys, left = keys_of(parts, shared), []
     kept = store.names("parts") if store else ()
     for k, key in enumerate(keys):
-        result = store.part(key) if f"{key}.npz" in kept else None
+        result = store.part(key) if store and f"{key}.npz" in kept else None
         if result is None:
             left.append(k)
         else:

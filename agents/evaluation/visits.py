@@ -5,6 +5,8 @@ tables at once. The parts always have ``SIZE`` visits: the last bits of a networ
 machine and many are to agree to the last bit.
 """
 
+from typing import Any
+
 import numpy as np
 
 from commands.physics_option import physics_option
@@ -27,7 +29,7 @@ def parts_of(shared, k, condition, seeds, budget, rekey):
 def play(shared, args, threads):
     """The task: the strokes of some visits, a dict of arrays."""
     k, seeds, first = args["k"], args["seeds"], args["first"]
-    player = arrived(shared, args["budget"], k)
+    player: Any = arrived(shared, args["budget"], k)
     if hasattr(player, "tables_of"):  # it draws for all tables at once, and must know which of them it has
         player.tables_of(first, args["total"])
     if args["rekey"]:
