@@ -13,7 +13,7 @@ WIDTH = 100
 
 @dataclass
 class TextTable:
-    """Cells as text; the first ``keys`` columns say what a row is about, the first ``left`` are words, the others numbers."""
+    """Cells as text: ``keys`` columns say what a row is about, the first ``left`` are words, the others numbers."""
 
     title: str
     header: list

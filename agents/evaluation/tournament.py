@@ -294,9 +294,9 @@ def _read(file):
         content = read_result(file)
         return content, faults(content)
     except ValueError as error:
-        return None, [str(error)]
+        return {}, [str(error)]
     except OSError as error:
-        return None, [f"cannot be read: {error.strerror}"]
+        return {}, [f"cannot be read: {error.strerror}"]
 
 
 def _check(files):

@@ -50,14 +50,6 @@ class Thinking(StrokePlayer):
         return super().rank(tables, observations, going)
 
 
-class Slow(float):
-    """A factor that notes, slowly, each product that it is in."""
-
-    def __mul__(self, other):
-        note(0, len(other))
-        return float(self) * other
-
-
 class Failing(Noted):
     """Has an error of its own."""
 
