@@ -12,7 +12,7 @@ from tests.processes import ROOT, python
 def lint(config, at=ROOT):
     """Exit code and words of import-linter."""
     pytest.importorskip("importlinter")
-    code = f"from importlinter.cli import lint_imports as lint; exit(lint({str(config)!r}, cache_dir=None))"
+    code = f"from importlinter.cli import lint_imports as lint; exit(lint({str(config)!r}, no_cache=True))"
     env = os.environ | {"PYTHONPATH": str(at)}
     done = subprocess.run([sys.executable, "-c", code], cwd=at, env=env, capture_output=True, text=True, check=False)
     return done.returncode, done.stdout + done.stderr
