@@ -12,18 +12,7 @@ from .ask import AGENT, advise
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print advice for a position.
-
-    Parameters
-    ----------
-    argv : sequence of str, optional
-        The command line; default: that of the process.
-
-    Returns
-    -------
-    int
-        Exit code: 0; 2 for wrong arguments or files, after one line that says what is wrong.
-    """
+    """Print advice for a position."""
     parser = argparse.ArgumentParser("python -m snooker_env.advice", description="Ranked strokes of a player, and their outcomes.")
     parser.add_argument("--position", required=True, metavar="FILE", help="JSON of a position: from Position.save, or hand-written")
     parser.add_argument("--agent", default=AGENT, help=f"{', '.join(players())}, a model's .zip or MODULE:CLASS (default: {AGENT})")

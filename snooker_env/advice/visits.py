@@ -26,10 +26,7 @@ EVEN_SAMPLES = np.array((354, 1840, 979, 2326, 3875), np.uint64)
 
 
 def played_on(practice: Practice, left: Positions, visits: NDArray[np.int64], seed: int) -> NDArray[np.float64]:
-    """Points of the rest of n visits, continued from the positions ``left``: float64 (n,).
-
-    ``visits`` (n,): the number of each. Visits with equal numbers meet equal errors in their second stroke, their third, and so on.
-    """
+    """Points (n,) of the rest of n visits from the positions ``left``; those with equal numbers ``visits`` (n,) meet equal errors."""
     total, going, number = np.zeros(len(left)), np.arange(len(left)), 0
     most = int(visits.max()) + 1 if len(visits) else 0
     while len(going):

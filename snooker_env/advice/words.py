@@ -32,11 +32,8 @@ def ball_words(ball: int) -> str:
 
 
 def rolling(speed: float, top: float, distance: float, physics: Physics) -> float:
-    """Surface speed of a struck ball's rotation over its speed after a distance [m]: 1 for rolling, 0 for stun, < 0 for backspin.
-
-    The ball slides until it rolls. Its speed v falls by mu_s g t; its rotation R w, which begins at 5/2 v times the tip's height, grows by
-    5/2 mu_s g t.
-    """
+    """Surface speed of a struck ball's rotation over its speed after a distance [m]: 1 for rolling, 0 for stun, < 0 for backspin."""
+    # It slides until it rolls: v falls by mu_s g t, and R w, at first 5/2 v times the tip's height, grows by 5/2 mu_s g t.
     brake = physics.mu_s * physics.g
     v, roll = speed, 2.5 * top * speed
     way = 1.0 if roll < v else -1.0  # too much top: the rotation falls, the ball gains speed
@@ -52,11 +49,8 @@ def rolling(speed: float, top: float, distance: float, physics: Physics) -> floa
 
 
 def spin_words(stroke: CueStroke, distance: float | None, physics: Physics) -> str:
-    """The spin of a stroke: "deep screw", "screw", "drag", "stun", "plain", "follow" or "top", with "left side" or "right side".
-
-    For a blow below the middle it depends on the backspin left when the ball on, ``distance`` [m] away, is reached: screw, none (stun), or
-    rolling already (drag). A blow on the middle is plain, or stun if the ball still slides. ``distance`` None: nothing is struck.
-    """
+    """The spin of a stroke when it reaches the ball on, ``distance`` [m] away; None: nothing is struck."""
+    # Below the middle: backspin is left (screw), none (stun), or it rolls already (drag). On the middle: plain, or stun if it slides.
     top = stroke.top
     arrives = None if distance is None else rolling(stroke.speed, top, distance, physics)
     if top > _STILL:

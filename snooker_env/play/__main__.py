@@ -92,18 +92,7 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Serve until Ctrl-C.
-
-    Parameters
-    ----------
-    argv : list of str, optional
-        The command line; default: that of the process.
-
-    Returns
-    -------
-    int
-        0; 2 if the command line is invalid; 130 if it was interrupted while it loaded.
-    """
+    """Serve until Ctrl-C."""
     args = _arguments(argv)
     from .server import PlayServer
 

@@ -30,15 +30,7 @@ Handler = Callable[[Service, dict[str, Any]], Any]
 
 @dataclass(frozen=True)
 class Route:
-    """One route.
-
-    Attributes
-    ----------
-    handler : callable
-        ``handler(service, fields)``: JSON types, or a ``str``: an HTML page.
-    fields : tuple of str
-        The fields that a request may have.
-    """
+    """One route: what answers it, with JSON types or with a ``str``, an HTML page; and the fields that a request may have."""
 
     handler: Handler
     fields: tuple[str, ...] = ()

@@ -18,13 +18,7 @@ OFFERED = (AGENT, "search_2000", "ghost_ball", "random")
 
 
 class Seats:
-    """The two seats, and the players that may take them.
-
-    Parameters
-    ----------
-    agents : mapping of str to Player
-        Agents that may be chosen besides those ``OFFERED``, by name.
-    """
+    """The two seats, and the players that may take them: ``OFFERED``, and ``agents`` by name."""
 
     who: list[str]
     """``PERSON`` or the name of an agent, for each seat."""

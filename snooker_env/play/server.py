@@ -146,8 +146,6 @@ class PlayHandler(BaseHTTPRequestHandler):
             return self._serve
         raise AttributeError(name)
 
-    # one request ------------------------------------------------------------------------------------------------------------
-
     def finish(self) -> None:
         """Read the rest of a refused request: closing a connection with unread bytes would lose the answer."""
         with suppress(OSError):
@@ -247,8 +245,6 @@ class PlayHandler(BaseHTTPRequestHandler):
         refused.headers = headers  # type: ignore[attr-defined]
         return refused
 
-    # answers ----------------------------------------------------------------------------------------------------------------
-
     def _file(self, name):
         file, kind = FILES[name]
         self._send(200, (WEB / file).read_bytes(), f"{kind}; charset=utf-8")
@@ -295,15 +291,7 @@ def _once(pairs):
 
 
 class PlayServer(ThreadingHTTPServer):
-    """The server of one game, on 127.0.0.1.
-
-    Parameters
-    ----------
-    service : Service
-        The game.
-    port : int
-        The port; 0 for any that is free.
-    """
+    """The server of one game, on 127.0.0.1; port 0 stands for any that is free."""
 
     daemon_threads = True
     request_queue_size = MOST_AT_ONCE

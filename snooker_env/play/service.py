@@ -34,15 +34,7 @@ class StaleError(RuntimeError):
 
 
 class Service:
-    """One game, its seats, and the thread in which agents think.
-
-    Parameters
-    ----------
-    session : Session
-        The game.
-    seats : Seats
-        The players.
-    """
+    """One game, its seats, and the thread in which agents think."""
 
     paused: bool
     """Whether an agent whose turn it is waits for ``go_on``: after an undo, a load or a position set up, and between two agents."""
@@ -66,8 +58,6 @@ class Service:
             self._closed = True
             self._changed.notify_all()
 
-    # for requests -----------------------------------------------------------------------------------------------------------
-
     @contextmanager
     def reading(self) -> Iterator[Session]:
         """The game, for reading: no other thread changes it meanwhile."""
@@ -76,10 +66,7 @@ class Service:
 
     @contextmanager
     def acting(self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False) -> Iterator[Session]:
-        """The game, for changing it. ``pause``: an agent whose turn it is then waits; ``any_turn``: allowed also during an agent's turn.
-
-        Raises ValueError during an agent's turn, StaleError if the revision is out of date. After an error inside, nothing has changed.
-        """
+        """The game, for changing it; StaleError for an old revision. ``pause``: an agent to play then waits; ``any_turn``: in its turn, too."""
         with self._changed:
             if revision not in (None, self.revision):
                 raise StaleError
@@ -117,8 +104,6 @@ class Service:
                 return  # it is thinking already: another page was first
             self.paused, self.trouble = False, ""
             self._moved()
-
-    # agents -----------------------------------------------------------------------------------------------------------------
 
     def agent_to_play(self) -> bool:
         """Whether it is an agent's turn."""

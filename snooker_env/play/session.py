@@ -40,39 +40,21 @@ STATE = ("positions", "on_table", "frame", "strokes", "stream")
 
 @dataclass(frozen=True, eq=False)
 class Act:
-    """An act in the game.
-
-    Attributes
-    ----------
-    what : str
-        "new", "stroke", "choice", "set_up", "load", "concede" or "claim".
-    state : dict
-        The table after it, as JSON types.
-    player : int or None
-        Who did it.
-    played : Played or None
-        For a stroke: as it was struck, simulated and judged.
-    detail : str
-        For a choice: the decision; for a stroke: the colour that was nominated.
-    """
+    """An act in the game: "new", "stroke", "choice", "set_up", "load", "concede" or "claim"."""
 
     what: str
     state: dict[str, Any]
+    """The table after it, as JSON types."""
     player: int | None = None
+    """Who did it."""
     played: Played | None = None
+    """For a stroke: as it was struck, simulated and judged."""
     detail: str = ""
+    """For a choice: the decision; for a stroke: the colour that was nominated."""
 
 
 class Session:
-    """A frame that can be played, set up, undone, saved and loaded.
-
-    Parameters
-    ----------
-    layout : str
-        How the table is dealt: the name of a layout.
-    seed : int
-        Seed of all random numbers.
-    """
+    """A frame that can be played, set up, undone, saved and loaded; ``layout`` deals it, ``seed`` is that of all random numbers."""
 
     noise: list[NoiseName]
     """Execution errors of each seat: names of ``snooker_env.tasks.LEVELS``."""
@@ -93,8 +75,6 @@ class Session:
         self._with: dict[str, Options] = {}
         self.tables = Frames(self._options.rules, 1)
         self.new(layout=layout, seed=seed)
-
-    # what is ----------------------------------------------------------------------------------------------------------------
 
     @property
     def frame(self) -> Frame:
@@ -150,8 +130,6 @@ class Session:
         other.acts, other.at = [self.acts[self.at - 1]], 1
         return other
 
-    # what is done -----------------------------------------------------------------------------------------------------------
-
     def new(self, *, layout: str | None = None, seed: int = 0, breaker: int = 0) -> None:
         """Begin a new frame; earlier acts are forgotten. ValueError for an unknown layout."""
         options = self._options if layout is None else self._options.but(layout=layout)
@@ -177,10 +155,7 @@ class Session:
             raise refuse("nominate", NAMES[nominated], allowed)
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
-        """Play the striker's stroke from where the cue ball lies.
-
-        ``nominated``: a colour, AUTO for the one first struck, or DECLINED for no free ball.
-        """
+        """Play the stroke from where the cue ball lies; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
         self.check_stroke(nominated)
         before, tables = self.state, self.tables
         striker = self.frame.striker
@@ -276,8 +251,6 @@ class Session:
         """Redo an act that was undone; returns whether there was one."""
         return self._go(self.at + 1)
 
-    # files ------------------------------------------------------------------------------------------------------------------
-
     def save(self) -> dict[str, Any]:
         """The current game as JSON types."""
         return {"format": "snooker-game", "version": 1, "practice": self.practice, "noise": list(self.noise), "state": self.state}
@@ -301,8 +274,6 @@ class Session:
         self.practice = practice
         self.noise[:] = levels
         self.acts, self.at = [Act("load", self.state)], 1
-
-    # inside -----------------------------------------------------------------------------------------------------------------
 
     def _did(self, act: Act) -> Act:
         del self.acts[self.at :]

@@ -13,10 +13,12 @@ from ..game.frame_columns import (
     ANYWHERE,
     COLUMNS,
     IN_HAND,
+    ON_TABLE,
     PLACE_ANYWHERE,
+    RACK,
     SCORE_0,
     VISIT_COLUMNS,
-    begin_frame,
+    WINNER,
 )
 from ..planning import Positions
 from ..planning.trials import decoded
@@ -163,7 +165,6 @@ class SeenPlayer(BoundPlayer):
 def _begun(at: Positions) -> Positions:
     """Positions of visits as those of frames: the striker's points alone have been scored."""
     game = np.zeros((len(at), COLUMNS), np.int64)
-    for row, on_table in zip(game, at.on_table, strict=True):
-        begin_frame(row, mask_of_present(on_table), 0, 0)
-    game[:, :VISIT_COLUMNS], game[:, SCORE_0] = at.game, at.points
+    game[:, :VISIT_COLUMNS], game[:, SCORE_0], game[:, WINNER] = at.game, at.points, -1
+    game[:, ON_TABLE] = game[:, RACK] = [mask_of_present(on_table) & ~1 for on_table in at.on_table]
     return Positions(at.positions, at.on_table, game)
