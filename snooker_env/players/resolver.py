@@ -90,7 +90,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
     if (built_in := _built_in(text)) is not None:
         return built_in
     if text.startswith(PROGRAM):
-        from .program import ProgramPlayer
+        from ..play.program import ProgramPlayer
 
         return ProgramPlayer(text.removeprefix(PROGRAM))
     if (entry := _installed().get(text)) is not None:
