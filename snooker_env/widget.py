@@ -19,9 +19,15 @@ SPINS = ("off", "cue", "all")
 
 
 def replay_widget(
-    source: Any, *, speed: float = 1.0, playing: bool = False, paths: bool = True, ghosts: bool = True, labels: bool = False,
+    source: Any,
+    *,
+    speed: float = 1.0,
+    playing: bool = False,
+    paths: bool = True,
+    ghosts: bool = True,
+    labels: bool = False,
     spin: Literal["off", "cue", "all"] = "cue",
-) -> Any:  # fmt: skip
+) -> Any:
     """Make a widget that plays a replay in a notebook.
 
     Its traits are synchronised in both directions: ``stroke`` (from 0), ``time`` within it [s] (below 0 before the strike), and

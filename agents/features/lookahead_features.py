@@ -1,7 +1,7 @@
 """What does an agent with a one-shot lookahead observe? The simulated outcomes of 12 strokes at each of the two widest pots.
 
 The observation is ``pot_view.with_pots`` followed by ``STROKES_SEEN`` rows, one for each stroke at each of these pots: means of its
-outcomes over the errors of ``NOISE_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play
+outcomes over the errors of ``EVEN_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play
 only these strokes. A decision costs 120 simulated shots: slower than an agent that observes the table alone, far quicker than ``search``.
 
 Several noise samples a stroke are needed: one outcome does not show how execution errors affect the next pot.
@@ -15,9 +15,9 @@ from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning import RULE_OF_THUMB, Planner, action_masks, prospects_of, spread_of
 from snooker_env.planning.learned.pot_view import SHOWN, with_pots
 from snooker_env.planning.planner import options_in
+from snooker_env.planning.sobol import EVEN_SAMPLES
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
-from .noise_samples import NOISE_SAMPLES
 
 POTS_SEEN = 2
 SEEN_SPEEDS, SEEN_TOPS = (1, 3, 5, 7), (0, 2, 4)
@@ -49,7 +49,7 @@ class ForesightView:
         """The view under the rules and the noise of ``options``."""
         bound = ForesightView(self._threads)
         bound._planner = planner = Planner(options_in(options).but(action="discrete"), threads=self._threads)
-        bound._samples = np.array(NOISE_SAMPLES[:1] if planner.noise.silent else NOISE_SAMPLES, np.uint64)
+        bound._samples = np.array(EVEN_SAMPLES[:1] if planner.noise.silent else EVEN_SAMPLES, np.uint64)
         bound._spread = spread_of(planner.noise, planner.physics)
         return bound
 

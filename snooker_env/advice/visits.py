@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..planning import Positions, action_masks
+from ..planning.sobol import EVEN_SAMPLES
 from ..tasks.discrete_actions import SIDES, STROKES, choice_of
 from . import seeds
 from .practice import Practice
@@ -23,8 +24,7 @@ PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(2) for s i
 overestimated."""
 BEST = 3
 """Number of strokes that meet noise samples."""
-EVEN_SAMPLES = np.array((354, 1840, 979, 2326, 3875), np.uint64)
-"""Keys of five noise samples whose errors of each kind are evenly spread (found by the repository's ``agents.noise_samples``)."""
+_SAMPLES = np.array(EVEN_SAMPLES, np.uint64)
 
 
 def played_on(practice: Practice, left: Positions, visits: NDArray[np.int64], seed: int) -> NDArray[np.float64]:
@@ -56,9 +56,9 @@ def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
     finalists = np.take_along_axis(strokes, best[:, :, None], 1)
     if practice.sure:
         return finalists[:, 0]
-    k = len(EVEN_SAMPLES)
+    k = len(_SAMPLES)
     tries = np.repeat(finalists.reshape(-1, 5), k, 0)
-    brought = _led_to(practice, at, np.repeat(np.arange(n), BEST * k), tries, np.tile(EVEN_SAMPLES, n * BEST))
+    brought = _led_to(practice, at, np.repeat(np.arange(n), BEST * k), tries, np.tile(_SAMPLES, n * BEST))
     return finalists[np.arange(n), brought.reshape(n, BEST, k).mean(axis=2).argmax(axis=1)]
 
 

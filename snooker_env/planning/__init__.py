@@ -28,11 +28,10 @@ from .proposals import Proposals, at_balls, at_pots, over_cushions, spread_strok
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import sobol_points
 from .stops import Stops
-from .stroke_search import GENERATORS, Ranked, StrokeSearch
+from .stroke_search import Ranked, StrokeSearch
 from .strokes import action_masks, actions_of, as_actions, pot_aim
 
 __all__ = [
-    "GENERATORS",
     "RULE_OF_THUMB",
     "SURE",
     "Outcomes",

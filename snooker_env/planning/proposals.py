@@ -21,11 +21,10 @@ from ..game.balls import VALUES, balls_on_kernel, bits, touching_balls
 from ..game.frame_columns import BALL_ON
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
-from ..physics import cloth
-from ..physics.impact.polynomial import WORK
+from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_SPEED
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
-from ..tasks.lines import EASY
+from ..tasks.lines import EASY, new_work
 from ..tasks.pot_aim import solved_aim
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .positions import Positions
@@ -111,13 +110,11 @@ def _spread_stroke(i, seed, stroke):
 
 
 @kernel
-def _aim(stroke, positions, found, phys, end_mass_ratio, fidelity, n_steps, motion, phase, work):
-    """Solve the aim of a stroke at the pot ``found``."""
-    ball, pocket = int(found[POT_BALL]), int(found[POT_POCKET])
-    stroke[AIM] = solved_aim(
-        positions, ball, POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y], found[GHOST_X], found[GHOST_Y], stroke[SPEED],
-        stroke[SIDE], stroke[TOP], 0.0, phys, end_mass_ratio, fidelity, n_steps, motion, phase, work,
-    )  # fmt: skip
+def _aim(stroke, positions, pot, law, work):
+    """Solve the aim of a stroke at a pot."""
+    pocket, ghost = int(pot[POT_POCKET]), (pot[GHOST_X], pot[GHOST_Y])
+    target, tip = (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]), (stroke[SPEED], stroke[SIDE], stroke[TOP], 0.0)
+    stroke[AIM] = solved_aim(positions, int(pot[POT_BALL]), target, ghost, tip, law, work)
 
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
@@ -127,7 +124,7 @@ def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_rat
     ``which`` (n, m): at which pot each stroke is, widest first, its speed and tip being given; without rows, all are spread.
     """
     found, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
-    motion, phase, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    law, work = CueLaw(phys, end_mass_ratio, fidelity, n_steps), new_work()
     m = strokes.shape[1]
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
@@ -150,7 +147,7 @@ def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_rat
                     j += 1
                     reached += weights[j] / total
                 _spread_stroke(i, seed, strokes[k, i])
-            _aim(strokes[k, i], p, found[j], phys, end_mass_ratio, fidelity, n_steps, motion, phase, work)
+            _aim(strokes[k, i], p, found[j], law, work)
             chances[k, i] = pot_chance(p, found[j], spread, LOST)
 
 
@@ -193,7 +190,7 @@ def _contacts(positions, on_table, game, seeds, strokes, chances):
 def _escapes(positions, on_table, game, seeds, phys, end_mass_ratio, strokes, chances):
     """Fill strokes (n, m, 5) and chances (n, m) with strokes over cushions, where there is no pot and hardly anything is seen."""
     found, windows, lines = np.empty((1, POT_COLUMNS)), np.empty((MOST_EDGES, 3)), np.empty((ESCAPES, POT_COLUMNS))
-    motion, phase, work, aims = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK), np.empty(ESCAPES)
+    law, work, aims = CueLaw(phys, end_mass_ratio, 0, 0), new_work(), np.empty(ESCAPES)
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
         on, touching = balls_on_kernel(game[k, BALL_ON], bits(here)), touching_balls(p, here)
@@ -215,7 +212,7 @@ def _escapes(positions, on_table, game, seeds, phys, end_mass_ratio, strokes, ch
             faster = 0.0 if again == 0 else sobol(again - 1, 0, seed + j % many)
             stroke[SPEED], stroke[SIDE], stroke[TOP] = line[LINE_SPEED] * exp(0.5 * faster), 0.0, ROLLING
             if again == 0:
-                aims[j] = escape_aim(line[LINE_AIM], stroke[SPEED], 0.0, ROLLING, p, here, on, phys, end_mass_ratio, motion, phase, work)
+                aims[j] = escape_aim(line[LINE_AIM], (stroke[SPEED], 0.0, ROLLING), p, here, on, law, work)
             aside = 0.0 if again == 0 else line[LINE_ROOM] * (2.0 * sobol(again - 1, 4, seed + j % many) - 1.0)
             stroke[AIM] = turned(aims[j % many] + aside)
 

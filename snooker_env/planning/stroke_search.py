@@ -52,8 +52,8 @@ Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 """Values [points] of n positions that strokes have left: (n,)."""
 Propose: TypeAlias = Callable[["StrokeSearch", Positions, int, Ints], Proposals]
 """A generator: proposals of m strokes for each position, called with the search, the n positions, m and the seeds (n,)."""
-GENERATORS: tuple[Propose, ...] = (at_pots, at_balls, over_cushions)
-"""The generators of a search, unless others are given."""
+WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)
+"""The generators for positions in which those of the search have no stroke."""
 
 
 class Ranked(NamedTuple):
@@ -131,8 +131,8 @@ class StrokeSearch:
         Values [points] of n ``Positions``: (n,). Default: the rule of thumb ``prospects_of``.
     propose : callable or sequence of callable, optional
         One or several generators of the strokes that are looked at, ``propose(search, at, m, seeds)`` -> ``Proposals``. Those that have
-        strokes for a position share the looks evenly. The first is taken to propose pots. Default: ``at_pots``, ``at_balls`` and
-        ``over_cushions``.
+        strokes for a position share the looks evenly; the first is taken to propose pots. Where none of them has any, ``at_balls`` and
+        ``over_cushions`` do. Default: ``at_pots``.
     pots_only : bool, optional
         Score by the chance of the pot alone, without points and what follows; without a pot, less that of a foul. Default False.
     noise : str, dict or Noise, optional
@@ -160,7 +160,7 @@ class StrokeSearch:
         budget: int = 120,
         *,
         value: Value | None = None,
-        propose: Propose | Sequence[Propose] = GENERATORS,
+        propose: Propose | Sequence[Propose] = at_pots,
         pots_only: bool = False,
         noise: NoiseLike | None = None,
         threads: int | None = None,
@@ -281,20 +281,26 @@ class StrokeSearch:
         return self.planner.play(at, rows, strokes=strokes, errors=errors)
 
     def _proposed(self, at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Bools]:
-        """Strokes (n, m, 5), their chances (n, m), and the positions (n,) for which others than the first generator had strokes."""
+        """Strokes (n, m, 5), their chances (n, m), and the positions (n,) where strokes without a pot are among them."""
         generators = (self.propose,) if callable(self.propose) else tuple(self.propose)
+        strokes, chances, has = self._shared(generators, at, m, seeds)
+        bare = ~has.any(axis=0)
+        if bare.any():
+            strokes, chances = strokes.copy(), chances.copy()
+            strokes[bare], chances[bare], _ = self._shared(WITHOUT_POTS, at[bare], m, seeds[bare])
+        return strokes, chances, bare | has[1:].any(axis=0)
+
+    def _shared(self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Bools]:
+        """Strokes and chances of the generators in turn, in each position of those that have any, and which have: (generators, n)."""
         made = [generate(self, at, m, seeds) for generate in generators]
         has = np.stack([each.chances.any(axis=1) for each in made])
-        if not has.any(axis=0).all():
-            k = int(np.argmin(has.any(axis=0)))
-            raise refuse_what("propose", f"no stroke for positions[{k}]", "must have strokes for every position")
         if len(made) == 1:
-            return *made[0], np.zeros(len(at), np.bool_)
-        turn = np.arange(m)[None] % has.sum(axis=0)[:, None]  # whose turn it is, among those that have strokes
-        which = (np.cumsum(has, axis=0)[:, :, None] <= turn).sum(axis=0)
-        every, looks = np.arange(len(at))[:, None], np.arange(m)[None]
+            return *made[0], has
+        turn = np.arange(m) % np.maximum(1, has.sum(axis=0))[:, None]
+        which = np.minimum((np.cumsum(has, axis=0)[:, :, None] <= turn).sum(axis=0), len(made) - 1)
+        every, looks = np.arange(len(at))[:, None], np.arange(m)
         strokes, chances = (np.stack(part)[which, every, looks] for part in zip(*made, strict=True))
-        return strokes, chances, has[1:].any(axis=0)
+        return strokes, chances, has
 
     def _gains(self, at: Positions, safe: Bools, strokes: Floats, errors: Floats) -> Floats:
         """What strokes (n, m, s, 5) under the errors (n, s, 5) of each position bring, and the value of what they leave: (n, m, s)."""

@@ -54,7 +54,8 @@ class RefusedError(Exception):
 
     def __init__(self, status: int, message: str, field: str | None = None, value: Any = None):
         super().__init__(message)
-        self.status, self.body = status, {"field": field, "value": value, "message": message}
+        self.status: int = status
+        self.body: dict[str, Any] = {"field": field, "value": value, "message": message}
 
 
 class TimedReader:
@@ -108,7 +109,8 @@ class PlayHandler(BaseHTTPRequestHandler):
 
     server: "PlayServer"
     protocol_version = default_request_version = "HTTP/1.1"
-    server_version, sys_version = "snooker_env", ""
+    server_version: str = "snooker_env"
+    sys_version: str = ""
 
     def setup(self) -> None:
         """Install the limited reader."""
@@ -160,11 +162,13 @@ class PlayHandler(BaseHTTPRequestHandler):
                 self._file(name)
                 return
             route = (GET if self.command == "GET" else POST)[name[4:]]
-            found = answer(self.server.service, route, query if self.command == "GET" else self._body())
-            if isinstance(found, str):
-                self._send(200, found.encode(), "text/html", {"Content-Disposition": 'attachment; filename="replay.html"'})
+            reply = answer(self.server.service, route, query if self.command == "GET" else self._body())
+            if isinstance(reply, str):
+                attached = {"Content-Disposition": 'attachment; filename="replay.html"'}
+                self._send(200, reply.encode(), "text/html", attached)
             else:
-                self._send(200, json.dumps(found, allow_nan=False, separators=(",", ":")).encode(), "application/json")
+                text = json.dumps(reply, allow_nan=False, separators=(",", ":"))
+                self._send(200, text.encode(), "application/json")
         except RefusedError as refused:
             self._refuse(refused)
         except ValueError as error:
@@ -306,8 +310,9 @@ class PlayServer(ThreadingHTTPServer):
 
     def __init__(self, service: Service, port: int = 0):
         super().__init__(("127.0.0.1", port), PlayHandler)
-        self.service, self.token = service, secrets.token_urlsafe(24)
-        self.hosts = frozenset(f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost", "[::1]"))
+        self.service: Service = service
+        self.token: str = secrets.token_urlsafe(24)
+        self.hosts: frozenset[str] = frozenset(f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost", "[::1]"))
         self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
 
     @property

@@ -42,8 +42,10 @@ class Service:
     """Why the last agent did not play, or ""."""
 
     def __init__(self, session: Session, seats: Seats):
-        self.session, self.seats = session, seats
-        self.revision, self.paused, self.trouble = 0, False, ""
+        self.session: Session = session
+        self.seats: Seats = seats
+        self.revision: int = 0
+        self.paused, self.trouble = False, ""
         self._changed = threading.Condition(threading.RLock())
         self._asking = threading.BoundedSemaphore(2)
         self._closed = False

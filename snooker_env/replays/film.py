@@ -31,7 +31,10 @@ USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif":
 
 
 def shown(
-    strokes: Iterable[Shot | Played], table: Table, players: tuple[str, ...], title: str
+    strokes: Iterable[Shot | Played],
+    table: Table,
+    players: tuple[str, ...],
+    title: str,
 ) -> Iterator[tuple[Film, Scene]]:
     """For each stroke its film, and the table after it with the referee's words."""
     strokes = list(strokes)
@@ -54,7 +57,10 @@ def filmed(table: Table, stroke: Shot | Played, during: ScoreBar | None, after: 
 
 
 def frames(
-    films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: tuple[int, int]
+    films: Iterable[tuple[Film, Scene]],
+    fps: float,
+    speed: float,
+    size: tuple[int, int],
 ) -> Iterator[NDArray[np.uint8]]:
     """The pictures of what ``shown`` gives."""
     from ..render.pygame_view import rgb_array

@@ -29,6 +29,7 @@ from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_PO
 from ..game.rule_sets import SHOOT_OUT
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
+from .arrays import ShotArrays, TableArrays
 from .declarations import A_END_MASS, A_NOMINATE, nominated_ball
 from .escapes import ROLL
 from .lines import LINE_ROWS, racked
@@ -134,8 +135,10 @@ def named(positions, on_table, row, aim):
 
 
 @entry(what="the geometric opponent", seconds=3)
-def _ghost_ball(which, positions, on_table, game, rules, nominated, streams, options, noise, r, v, w, here, shots):
+def _ghost_ball(which, tables, shots, packed, rules):
     """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike. ``rules``: the code of the rule set."""
+    (positions, on_table, game, streams, nominated, _, _), shots = TableArrays(*tables), ShotArrays(*shots)
+    options, noise, _ = packed
     found, drive = np.empty((LINE_ROWS, POT_COLUMNS)), DRIVE if rules == SHOOT_OUT else 0.0
     for j in range(which.shape[0]):
         k = which[j]
@@ -148,12 +151,12 @@ def _ghost_ball(which, positions, on_table, game, rules, nominated, streams, opt
         if row[IN_HAND]:
             put(p, on, mask, row[ANYWHERE], found, stream)
         jitter, _ = pair(stream)
-        failed = row[SAVED] != 0  # he plays from a position that has been restored
+        failed = row[SAVED] != 0  # it plays from a position that has been restored
         speed, side, top, aim = stroke_at(p, on, mask, row[IN_HAND], failed, drive, found, stream)
         if options[A_NOMINATE] >= 0:
             nominated[k] = named(p, on, row, aim)
         speed *= 1.0 + (0.04 if row[IN_HAND] and racked(p, on) else 0.2) * (jitter - 0.5)
-        strike((speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0), p, on, stream, options, noise, j, r, v, w, here, shots)
+        strike((speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0), p, on, stream, options, noise, j, shots)
 
 
 class GhostBallOpponent:
@@ -175,11 +178,6 @@ class GhostBallOpponent:
 
     def prepare(self, frames: "Frames", which: Ints, actions: Any, buffers: ShotBuffers) -> Ints:
         """Carry its strokes out up to the strike, one on each table."""
-        b, f = buffers, frames
-        options, noise, _ = frames.packed
-        _ghost_ball(
-            which, f.positions, f.on_table, f.game, f.rules.rule_set.code, f.nominated, f.streams, options, noise, b.r, b.v, b.w, b.here,
-            b.shots,
-        )  # fmt: skip
-        f.hold_late(which, b)
+        _ghost_ball(which, frames.arrays, buffers.arrays, frames.packed, frames.rules.rule_set.code)
+        frames.hold_late(which, buffers)
         return which

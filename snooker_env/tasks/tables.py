@@ -36,29 +36,30 @@ def copy_row(row, to):
 
 @kernel
 def keep_last(k, out):
-    """Save table k's rows of the outputs, if there is room, before a new episode overwrites them; ``out``: six arrays."""
-    observations, reals, counts, last_observations, last_reals, last_counts = out
-    if last_observations.shape[0]:
-        copy_row(observations[k], last_observations[k])
-        copy_row(reals[k], last_reals[k])
-        copy_row(counts[k], last_counts[k])
+    """Save table k's rows of the ``OutputArrays``, if there is room, before a new episode overwrites them."""
+    if out.last_observations.shape[0]:
+        copy_row(out.observations[k], out.last_observations[k])
+        copy_row(out.reals[k], out.last_reals[k])
+        copy_row(out.counts[k], out.last_counts[k])
 
 
 @kernel
-def write_stroke_info(j, k, result, ball_on, seen, duration, n_events, reals, counts):
+def write_stroke_info(k, out, j, shots, ball_on, result):
     """Write the info of table k for shot j, on which the referee made the ``Ruling`` result."""
-    reals[k, I_POINTS], reals[k, I_SECONDS] = result.points, duration[j]
+    reals, counts, seen = out.reals, out.counts, shots.seen[j]
+    reals[k, I_POINTS], reals[k, I_SECONDS] = result.points, shots.duration[j]
     pots, lowest = 0, -1
     for i in range(N_BALLS - 1, 0, -1):
-        pots += (seen[j, stroke.DOWN] >> i) & 1
-        lowest = i if (seen[j, stroke.FIRST] >> i) & 1 else lowest
+        pots += (seen[stroke.DOWN] >> i) & 1
+        lowest = i if (seen[stroke.FIRST] >> i) & 1 else lowest
     counts[k, I_PENALTY], counts[k, I_POTS], counts[k, I_FOULS] = result.penalty, pots, result.fouls
-    counts[k, I_BALL_ON], counts[k, I_FIRST], counts[k, I_EVENTS] = ball_on, lowest, n_events[j]
+    counts[k, I_BALL_ON], counts[k, I_FIRST], counts[k, I_EVENTS] = ball_on, lowest, shots.n_events[j]
 
 
 @kernel
-def write_empty_info(k, ball_on, reals, counts):
+def write_empty_info(k, out, ball_on):
     """Write the info of table k if no stroke was played."""
+    reals, counts = out.reals, out.counts
     for c in range(reals.shape[1]):
         reals[k, c] = 0.0
     for c in range(counts.shape[1]):
@@ -107,9 +108,12 @@ class StepOutput:
         self.masks, self.last_masks = (np.zeros((rows if choices else 0, choices), np.int8) for rows in (n, m))
 
     @property
-    def rows(self) -> tuple[Singles, Floats, Ints, Singles, Floats, Ints]:
-        """The arrays that an episode's start overwrites, and those that keep its end."""
-        return self.observations, self.reals, self.counts, self.last_observations, self.last_reals, self.last_counts
+    def arrays(self) -> tuple[Any, ...]:
+        """For kernels: the parts of ``OutputArrays``, in a plain tuple."""
+        return (
+            self.observations, self.rewards, self.terminated, self.truncated, self.reals, self.counts, self.last_observations,
+            self.last_reals, self.last_counts,
+        )  # fmt: skip
 
 
 class Crew:
@@ -170,6 +174,9 @@ class Tables(ABC):
     """(n, 2) Key and counter of each table's random stream."""
     nominated: Ints = np.empty(0, np.int64)
     """(n,) Of frames: the colour that each striker has nominated. A visit has none: no rows."""
+    _saved_positions: Floats = np.empty((0, N_BALLS, 2))
+    _saved_on_table: Bools = np.empty((0, N_BALLS), np.bool_)
+    """Of frames: where the balls lay before the last foul (``frame_columns.Layouts``). A visit has no rows."""
     begun: Bools
     """(n,) Which tables have an episode, possibly one that has ended."""
     packed: tuple[Floats, Floats, Floats]
@@ -183,6 +190,13 @@ class Tables(ABC):
         self.streams = np.zeros((n, 2), np.uint64)
         self.begun = np.zeros(n, np.bool_)
         self.packed = rules.packed()
+
+    @property
+    def arrays(self) -> tuple[Any, ...]:
+        """For kernels: the parts of ``arrays.TableArrays``, in a plain tuple."""
+        return (
+            self.positions, self.on_table, self.game, self.streams, self.nominated, self._saved_positions, self._saved_on_table,
+        )  # fmt: skip
 
     def seed(self, k: int, rng: np.random.Generator) -> None:
         """Give table k a new stream with a key drawn from a NumPy generator."""
@@ -273,11 +287,7 @@ class Tables(ABC):
 
     def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers) -> None:
         """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
-        (options, noise, phys), (fidelity, n_steps), b = self.packed, self.rules.fidelity, buffers
-        stroke.address(
-            which, actions, self.positions, self.on_table, self.game, self.nominated, self.streams, options, noise, phys, fidelity, n_steps,
-            b.r, b.v, b.w, b.here, b.shots,
-        )  # fmt: skip
+        stroke.address(which, actions, self.arrays, buffers.arrays, self.packed, self.rules.fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots of the tables ``which`` that have been struck; returns the rows of shots that need ``again``."""

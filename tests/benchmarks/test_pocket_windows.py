@@ -76,13 +76,6 @@ def test_pots_are_offered_by_these_windows():
             assert [given(np.cos(a), pocket == MIDDLE) for a in np.radians(angles)] == pytest.approx(found, abs=most)
 
 
-def test_a_turned_path_and_a_shifted_one_ask_for_the_same_opening():
-    here, physics = alone(sn.Table.preset("match"), CORNER), sn.Physics.preset("match")
-    for distance in (1.0, 1.7):
-        shifted, turned = (float(windows(here, Paths(0.0, distance, 2.0, True, way), physics).width) for way in (False, True))
-        assert shifted == pytest.approx(turned * distance, rel=0.05)
-
-
 def test_no_window_where_the_ball_stops_short():
     here, physics = alone(sn.Table.preset("match"), CORNER), sn.Physics.preset("match")
     found = windows(here, Paths(0.0, np.array([0.3, 1.7]), 0.5, True, False), physics)
@@ -122,15 +115,6 @@ def test_alciatore_s_target_sizes_by_his_formulas():
     for kind, sizes in (("corner", corner), ("side", {0: 3.229, 45: 1.920, 60: 0.692})):
         for degrees, inches in sizes.items():
             assert pool_tables.published(kind, degrees) == pytest.approx(inches, abs=2e-3)
-
-
-def test_slow_mirrors_are_alciatore_s_pool_pockets():
-    """0.1 m/s: the drop takes so long that it is as good as at once."""
-    physics = sn.Physics(**pool_tables.MIRROR)
-    for kind, angles in (("corner", (0, 10, 20)), ("side", (0, 15, 30, 45))):
-        here = pool_tables.pocket(kind)
-        found = windows(here, Paths(np.radians(angles), pool_tables.DISTANCE, 0.1, False, False), physics).width / pool_tables.INCH
-        assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)
 
 
 def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():

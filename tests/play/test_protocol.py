@@ -207,15 +207,6 @@ def test_an_agent_plays_by_itself_and_waits_after_an_undo(game):
     assert waited(game, lambda s: not s["thinking"])["strokes"] >= 1
 
 
-def test_two_agents_play_a_stroke_at_a_time(game):
-    game("position", position=EASY)
-    game("players", players=["ghost_ball", "random"])
-    state = waited(game, lambda s: not s["thinking"])
-    assert state["strokes"] == 1 and state["paused"]
-    game("go")
-    assert waited(game, lambda s: not s["thinking"])["strokes"] == 2
-
-
 def test_an_agent_that_fails_is_reported_and_the_game_waits(game):
     class Broken:
         def act(self, *given):

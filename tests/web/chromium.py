@@ -28,6 +28,7 @@ def chromium():
 def module_page(browser, **options):
     """An empty page in which ``window.table`` is what ``table.js`` exports."""
     page = browser.new_page(**options)
-    page.set_content(f"<!DOCTYPE html><body><script type=module>{table_js()}\nwindow.table = {{decode, TableView, Player, mount}};</script>")
+    script = f"{table_js()}\nwindow.table = {{decode, TableView, Player, mount}};"
+    page.set_content(f"<!DOCTYPE html><body><script type=module>{script}</script>")
     page.wait_for_function("window.table")
     return page

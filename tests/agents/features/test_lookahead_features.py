@@ -4,14 +4,16 @@ import numpy as np
 from positions import tables
 
 from agents.features import lookahead_features
-from agents.features.noise_samples import NOISE_SAMPLES, errors_of, find, unevenness
+from agents.features.noise_samples import find, first_of, unevenness
 from agents.players.built_in import DISCRETE, GhostBall
 from agents.players.by_name import player_of
 from snooker_env.benchmark import play_visits, summary
 from snooker_env.game.balls import BallOn
 from snooker_env.planning import Planner, Positions, prospects
 from snooker_env.planning.learned import pot_view
+from snooker_env.planning.sobol import EVEN_SAMPLES
 from snooker_env.tasks.discrete_actions import SIZE
+from snooker_env.tasks.noise import errors_of
 from snooker_env.tasks.visit import BALL_ON
 
 
@@ -52,7 +54,7 @@ def test_foresight_is_the_mean_over_noise_samples_with_the_errors_of_the_tables(
     for stroke in (1, 10):
         points, worth, cue, on = (np.zeros((5, 4)) for _ in range(4))
         next_best = np.zeros((5, 4, 3))
-        for i, key in enumerate(NOISE_SAMPLES):
+        for i, key in enumerate(EVEN_SAMPLES):
             other.reset(options={"states": env.get_state()})
             other.tables.streams[:] = (key, 0)
             _, points[i], ended, _, _ = other.step(lookahead_features.PICKS[np.full(4, stroke)])
@@ -104,13 +106,13 @@ def test_worth_by_hand():
 
 
 def test_noise_samples_are_even():
-    errors = errors_of(NOISE_SAMPLES)
+    errors = errors_of(first_of(EVEN_SAMPLES))
     likely = [-1.2816, -0.5244, 0.0, 0.5244, 1.2816]
     assert np.abs(np.sort(errors[:, [0, 3]], axis=0).T - likely).max() < 0.25 and np.abs(errors.mean(0)).max() < 0.15
     assert np.abs(np.corrcoef(errors[:, :4].T) - np.eye(4)).max() < 0.55
-    _, least, median = find(len(NOISE_SAMPLES), keys=200, starts=1)
+    _, least, median = find(len(EVEN_SAMPLES), keys=200, starts=1)
     assert unevenness(errors) < least < median / 2
-    many = errors_of(range(1, 400_001))  # standard errors: 0.0016 of a mean, 0.0022 of a variance
+    many = errors_of(first_of(range(1, 400_001)))  # standard errors: 0.0016 of a mean, 0.0022 of a variance
     assert np.abs(many.mean(0)).max() < 0.01 and np.abs(np.cov(many.T) - np.eye(5)).max() < 0.01
     assert unevenness(many[:2000]) < 0.01
 
