@@ -1,7 +1,8 @@
 """Which agent is judged? A player for each training seed, by name, file, class, command or object, and what is declared of it."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -148,6 +149,17 @@ class Agent:
         made = saved_player(Path(source), self.options, self.trust) if self.options else player_named(source, trust=self.trust)
         made.at(task.judged())
         return made
+
+
+@contextmanager
+def seated(agent: Agent, task: Task, run: int) -> Iterator[Player]:
+    """The player of one training seed; a program is ended afterwards."""
+    player = agent.player(task, run)
+    try:
+        yield player
+    finally:
+        if isinstance(player, ProgramPlayer):
+            player.close()
 
 
 def text_of(source: Any) -> str:

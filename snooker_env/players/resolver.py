@@ -100,6 +100,8 @@ def player(name: Any, *, trust: bool = False) -> Player:
     if OWN.fullmatch(text):
         module, _, maker = text.partition(":")
         return _of_object(_made(text, lambda: getattr(importlib.import_module(module), maker)))
+    if Path(text).suffix in (".zip", ".npz") or "/" in text or "\\" in text:
+        raise refuse("player", text, "must be a file or folder that is there: it is missing")
     known = ", ".join(map(repr, players()))
     raise refuse(
         "player",
