@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..planning import Positions, action_masks
+from ..planning.sobol import EVEN_SAMPLES
 from ..tasks.discrete_actions import SIDES, STROKES, choice_of
 from .practice import GOING_ON, Practice, keys
 
@@ -21,8 +22,6 @@ PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(2) for s i
 overestimated."""
 BEST = 3
 """Number of strokes that meet noise samples."""
-EVEN_SAMPLES = np.array((354, 1840, 979, 2326, 3875), np.uint64)
-"""Keys of five noise samples whose errors of each kind are evenly spread (found by the repository's ``agents.noise_samples``)."""
 
 
 def played_on(practice: Practice, left: Positions, visits: NDArray[np.int64], seed: int) -> NDArray[np.float64]:

@@ -64,7 +64,7 @@ def shares(scores: Floats) -> Floats:
 class Random(ChoicePlayer):
     """Uniformly random choices of ``action="discrete"``, of those available."""
 
-    name = "random"
+    name, training_shots = "random", 0
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
         """A random number for each choice."""

@@ -90,7 +90,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
     if (built_in := _built_in(text)) is not None:
         return built_in
     if text.startswith(PROGRAM):
-        from .program import ProgramPlayer
+        from ..play.program import ProgramPlayer
 
         return ProgramPlayer(text.removeprefix(PROGRAM))
     if (entry := _installed().get(text)) is not None:
@@ -100,6 +100,8 @@ def player(name: Any, *, trust: bool = False) -> Player:
     if OWN.fullmatch(text):
         module, _, maker = text.partition(":")
         return _of_object(_made(text, lambda: getattr(importlib.import_module(module), maker)))
+    if Path(text).suffix in (".zip", ".npz") or "/" in text or "\\" in text:
+        raise refuse("player", text, "must be a file or folder that is there: it is missing")
     known = ", ".join(map(repr, players()))
     raise refuse(
         "player",

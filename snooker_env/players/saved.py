@@ -102,6 +102,6 @@ def saved_player(path: Path, options: dict[str, Any], trust: bool) -> SeenPlayer
         raise refuse(
             "player",
             str(path),
-            "must be read in a clone of the repository: it is a model or a run of train.py",
+            "must be read in a clone of the repository, without options: it is a model or a run of train.py",
         )
     return SeenPlayer(SavedNetwork(FittingModel.of(path, options), trust), name=str(path))

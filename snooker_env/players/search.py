@@ -46,7 +46,7 @@ class SearchPlayer(BoundPlayer):
     def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
         self.budget = integer("budget", budget, 8, 10**7)
-        self._learned = learned
+        self._learned, self.training_shots = learned, None if kind.startswith("planner") else 0
         self.search: Any = None
         """The ``StrokeSearch`` where it is bound; None before."""
 

@@ -6,7 +6,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import choice, refuse_what
+from .._check import choice, refuse, refuse_what
 from .._types import Bools, Ints, Observation
 from ..game.balls import mask_of_present
 from ..game.frame_columns import (
@@ -98,6 +98,8 @@ class SeenPlayer(BoundPlayer):
         self._bound_sees(Options())
 
     def _bind(self, options: Options) -> None:
+        if self.frames and options.task != "frame":
+            raise refuse("player", self.name, "must see visits to play them: it sees frames")
         self._bound_sees(options)
 
     def _bound_sees(self, options: Options) -> None:

@@ -17,6 +17,8 @@ class BoundPlayer:
     """What built-in players share: ``at`` returns a copy bound to options, and ``play`` refuses before that."""
 
     name: str = ""
+    training_shots: int | None = None
+    """All simulated shots of its training; None: not known."""
     _options: Options | None = None
 
     def at(self, rules: RulesLike) -> Any:
@@ -59,7 +61,7 @@ def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
 class GhostBall(BoundPlayer):
     """The geometric player ``ghost_ball``: see ``tasks.ghost_ball``, whose kernels play it."""
 
-    name = "ghost_ball"
+    name, training_shots = "ghost_ball", 0
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""

@@ -5,7 +5,6 @@ import time
 from pathlib import Path
 
 import numpy as np
-
 from agents.players.stroke_players import StrokePlayer
 
 
