@@ -132,17 +132,24 @@ def test_in_hand_a_stroke_has_a_place_in_the_d_that_counts():
 
 
 def test_where_nothing_can_be_potted_a_ball_on_is_hit():
-    for position, kind in ((SNOOKERED, "escape"), (ALL["hidden"], "contact")):
-        one = sn.advise(position, n=1, **QUICK)[0]
-        assert one.kind == kind and one.pocket == -1 and one.ball == one.first and 1 <= one.ball <= 15
+    long = sn.Position(cue=(0.1, -1.2), black=(0.0, 1.4605))
+    for position, kind in ((SNOOKERED, "escape"), (long, "contact")):
+        noise = "professional" if kind == "escape" else "club"
+        one = sn.advise(position, n=1, noise=noise, **QUICK)[0]
+        assert one.kind == kind and one.pocket == -1 and one.ball == one.first and one.ball in (1, 21)
         assert bool(clear_paths(position).any_part[0]) == (kind == "contact")
-        points, fouls, _ = played(position, one.stroke, 400, noise="professional")
+        points, fouls, _ = played(position, one.stroke, 400, noise=noise)
         assert abs((~fouls).mean() - one.chance) < 4 * np.sqrt(0.25 / 60) and points.mean() == pytest.approx(one.points, abs=0.3)
-        assert one.words.startswith("escape off the " if kind == "escape" else "contact with the red, ") and " fair " in one.words
+        assert one.words.startswith("escape off the " if kind == "escape" else "contact with the black, ") and " fair " in one.words
+
+
+def test_where_no_ball_can_be_potted_directly_a_plant_is_found():
+    one = sn.advise(ALL["hidden"], n=1, **QUICK)[0]
+    assert one.kind == "pot" and " by a plant, " in one.words and one.chance > 0.6
 
 
 def test_a_long_pot_gives_way_to_a_mere_contact_and_a_short_one_does_not():
-    assert sn.advise(RESPOTTED, n=1, **QUICK)[0].kind == "contact"
+    assert sn.advise(RESPOTTED, n=1, noise="club", **QUICK)[0].kind == "contact"
     assert sn.advise(RESPOTTED, n=1, noise="none", **QUICK)[0].kind == "pot"
     assert sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), n=1, **QUICK)[0].kind == "pot"
 

@@ -109,6 +109,6 @@ def test_a_heading_says_by_what():
     assert sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="ghost_ball", **QUICK).order == "Pots by points expected:"
     assert sn.advise(SNOOKERED, **QUICK).order == "Strokes without a pot by how often they are fair:"
     long = sn.Position(in_hand=True, black=(0.0, 1.4605))
-    both = sn.advise(long, n=20, **QUICK)
+    both = sn.advise(long, n=20, noise="club", **QUICK)
     assert {one.kind == "pot" for one in both} == {True, False} and both[0].kind != "pot"
     assert both.order == "Strokes without a pot by how often they are fair, then pots by points expected:"
