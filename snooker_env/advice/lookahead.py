@@ -8,7 +8,7 @@ from .practice import Practice, starts, stroke_of_row
 
 BUDGET = 2600
 """Simulated shots of a decision, from each place that is tried."""
-DOUBTFUL = 0.4
+DOUBTFUL = 0.25
 """Largest chance of a pot at which strokes that pot nothing are tried as well."""
 
 

@@ -303,7 +303,7 @@ class StrokeSearch:
 
     def _shared(self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints]:
         """Strokes of the generators in turn, in each position of those that have any; chances; which generator each is of."""
-        made = [generate(self, at, m, seeds) for generate in generators]
+        made = [Proposals(*generate(self, at, m, seeds)) for generate in generators]
         if len(made) == 1:
             return *made[0], np.zeros((len(at), m), np.int64)
         has = np.stack([each.chances.any(axis=1) for each in made])

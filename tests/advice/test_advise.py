@@ -132,8 +132,7 @@ def test_in_hand_a_stroke_has_a_place_in_the_d_that_counts():
 
 
 def test_where_nothing_can_be_potted_a_ball_on_is_hit():
-    long = sn.Position(cue=(0.1, -1.2), black=(0.0, 1.4605))
-    for position, kind in ((SNOOKERED, "escape"), (long, "contact")):
+    for position, kind in ((SNOOKERED, "escape"), (RESPOTTED, "contact")):
         noise = "professional" if kind == "escape" else "club"
         one = sn.advise(position, n=1, noise=noise, **QUICK)[0]
         assert one.kind == kind and one.pocket == -1 and one.ball == one.first and one.ball in (1, 21)
