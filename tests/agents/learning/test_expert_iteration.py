@@ -5,7 +5,6 @@ import pickle
 import numpy as np
 import pytest
 import torch
-from agents.players.by_name import player_of
 from positions import tables
 
 from agents.features.views import training_tables
@@ -250,6 +249,6 @@ def test_policy_and_value_are_saved_and_read_together(tmp_path):
     assert packed(again) == packed(trained)
     env = tables(3, noise="professional", aim="absolute")
     played = [
-        player_of(f"planner_30@{tmp_path / name}").act(env, None, np.ones(3, bool)) for name in ("model.zip", "plain.zip", "")
+        sn.player(f"planner_30@{tmp_path / name}").at(env).play(Positions.of(env), np.arange(3)).values for name in ("model.zip", "plain.zip", "")
     ]  # the last one: the folder
     assert np.array_equal(played[0], played[1]) and np.array_equal(played[0], played[2]) and played[0].any(axis=1).all()
