@@ -35,7 +35,7 @@ def test_a_broken_contract_is_seen(tmp_path):
 
 
 def test_the_built_in_players_load_no_learning_library():
-    """Neither torch nor Stable-Baselines3, nor what reads the recipes: not even to play, the planner's learned value and policy included."""
+    """Neither torch nor Stable-Baselines3, nor what reads the recipes: not even to play as the planner does."""
     code = """if True:
         import sys
         import numpy as np, snooker_env as sn

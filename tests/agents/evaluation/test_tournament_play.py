@@ -5,11 +5,12 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+import snooker_env as sn
 from agents.evaluation import tournament_play
 from agents.evaluation.tournament_figures import COLUMNS
 from agents.evaluation.tournament_play import TimedPlayer, play_pair
 from agents.players import Geometric
-from snooker_env import SnookerVectorEnv, player
+from snooker_env import SnookerVectorEnv
 from snooker_env.players import SeenPlayer
 from snooker_env.tasks.stroke import FOULS, PLAYER, SCORED
 
@@ -32,7 +33,7 @@ def softly():
 
 
 def ghost_ball():
-    return player("ghost_ball")
+    return sn.player("ghost_ball")
 
 
 class Careful(SeenPlayer):
@@ -158,5 +159,5 @@ def test_the_frames_of_a_match_are_broken_in_turn(strokes):
 
 
 def test_a_random_player_meets_a_planner_of_discrete_choices():
-    rows = frames(play(player("random"), ghost_ball(), [0, 1], max_strokes=60))
+    rows = frames(play(sn.player("random"), ghost_ball(), [0, 1], max_strokes=60))
     assert len(rows) == 4 and all(r["strokes_second"] > 0 for r in rows)
