@@ -25,7 +25,7 @@ SHARED = ("physics", "table", "fidelity", "noise")
 OF_FRAMES = ("game", "miss", "time_to_play")
 """Those of frames alone."""
 OPTIONS = (
-    "action", "aim", "observation", "elevation", "placement", "decision", "nominate", "concede", "claim", "lot",
+    "action", "aim", "observation", "elevation", "placement", "decision", "nominate", "concede", "claim", "lot", "miss",
 )  # fmt: skip
 """Options that say how a network sees and acts."""
 
@@ -98,7 +98,7 @@ class SeenPlayer(BoundPlayer):
         same: dict[str, Any] = {name: getattr(options, name) for name in SHARED}
         if self.frames:
             same |= {"task": "frame"} | {name: getattr(options, name) for name in OF_FRAMES}
-        self._rules = Options(**same, **self.sees).rules
+        self._rules = Options(**(same | self.sees)).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
